@@ -1,0 +1,254 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Agent configurations for rsl_rl 5.5; :meth:`RslRlOnPolicyRunnerCfg.to_dict` is the only place that knows its format."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class CnnCfg:
+    """Convolutional encoder of one image group, layer by layer.
+
+    A sequence has one entry per layer; a single value holds for all layers.
+    """
+
+    output_channels: list[int] = [32, 64, 64]
+    """Channels after each layer; the length sets the number of layers."""
+
+    kernel_size: list[int] | int = [8, 4, 3]
+    """Kernel edge [px]. The default is the Nature-DQN encoder (Mnih et al. 2015), made for 84×84 images."""
+
+    stride: list[int] | int = [4, 2, 1]
+    """Stride [px]. Lower it for images under 64 px, where the last layer would have nothing left to see."""
+
+    dilation: list[int] | int = 1
+    """Spacing between kernel elements [px]."""
+
+    padding: str = "none"
+    """One of ``none``, ``zeros``, ``reflect``, ``replicate``, ``circular``."""
+
+    norm: list[str] | str = "none"
+    """One of ``none``, ``batch``, ``layer``. ``batch`` ties the worlds of a batch together; prefer ``layer``."""
+
+    activation: str = "elu"
+    """Activation after each layer: any name that rsl_rl resolves (``elu``, ``relu``, ``tanh``, ...)."""
+
+    max_pool: list[bool] | bool = False
+    """Whether a 3×3 max pool of stride 2 follows the layer."""
+
+    global_pool: str = "none"
+    """One of ``none``, ``max``, ``avg``: pools the last layer to one value a channel. Loses where the lumen is."""
+
+
+@configclass
+class GaussianDistributionCfg:
+    """Normal action distribution with a standard deviation that does not depend on the observation."""
+
+    class_name: str = "GaussianDistribution"
+    """Distribution class, resolved by rsl_rl."""
+
+    init_std: float = 1.0
+    """Initial standard deviation in units of the raw action, which the action terms scale from [-1, 1]."""
+
+    std_type: str = "scalar"
+    """``scalar`` learns the standard deviation, ``log`` its logarithm."""
+
+    std_range: list[float] | None = None
+    """Lowest and highest standard deviation; None leaves rsl_rl's wide default."""
+
+    learn_std: bool = True
+    """Whether the standard deviation is learnt. Turn off for a fixed exploration noise."""
+
+
+@configclass
+class BetaDistributionCfg:
+    """Beta action distribution: actions never leave ``action_range``. Suits steering wheels with hard stops."""
+
+    class_name: str = "BetaDistribution"
+    """Distribution class, resolved by rsl_rl."""
+
+    action_range: list[float] = [-1.0, 1.0]
+    """Lowest and highest raw action."""
+
+
+@configclass
+class RslRlMlpModelCfg:
+    """Multi-layer perceptron on the concatenated vector groups of an observation set."""
+
+    class_name: str = "MLPModel"
+    """Model class: a name in rsl_rl or ``module:Class``."""
+
+    hidden_dims: list[int] = [256, 128]
+    """Width of each hidden layer; at least one."""
+
+    activation: str = "elu"
+    """Activation between layers."""
+
+    obs_normalization: bool = False
+    """Whether vector observations are scaled by their running mean and deviation. Needs a vector group."""
+
+    distribution_cfg: GaussianDistributionCfg | BetaDistributionCfg | None = None
+    """Distribution over actions; None for a critic."""
+
+
+@configclass
+class RslRlCnnModelCfg(RslRlMlpModelCfg):
+    """CNN on the uint8 image groups of an observation set, joined with its vector groups before the MLP."""
+
+    class_name: str = "arcgym.rl.models:ByteCnnModel"
+    """Model class. The default keeps images as bytes in the rollout, a quarter of the memory of floats."""
+
+    cnn_cfg: CnnCfg = CnnCfg()
+    """Encoder, one copy for each image group."""
+
+
+@configclass
+class RslRlPpoAlgorithmCfg:
+    """Proximal policy optimisation (Schulman et al. 2017) as rsl_rl runs it."""
+
+    class_name: str = "PPO"
+    """Algorithm class: a name in rsl_rl or ``module:Class``; extra constructor arguments go in a subclass of this."""
+
+    num_learning_epochs: int = 5
+    """Passes over the rollout in one update."""
+
+    num_mini_batches: int = 4
+    """Mini-batches of one pass. More of them when a batch of images does not fit the device."""
+
+    learning_rate: float = 3.0e-4
+    """Learning rate; the first one when ``schedule`` is adaptive."""
+
+    schedule: str = "adaptive"
+    """``adaptive`` holds the KL divergence near ``desired_kl``, ``fixed`` keeps the learning rate."""
+
+    desired_kl: float = 0.01
+    """KL divergence of one update that the adaptive schedule aims at."""
+
+    gamma: float = 0.99
+    """Discount of one control step."""
+
+    lam: float = 0.95
+    """Trace decay of generalised advantage estimation (Schulman et al. 2016)."""
+
+    clip_param: float = 0.2
+    """Clipping range of the probability ratio and, with ``use_clipped_value_loss``, of the value step."""
+
+    entropy_coef: float = 0.005
+    """Weight of the entropy bonus. Must match the reward's scale: too large and the noise never falls."""
+
+    value_loss_coef: float = 1.0
+    """Weight of the value loss."""
+
+    use_clipped_value_loss: bool = True
+    """Whether the value step is clipped."""
+
+    max_grad_norm: float = 1.0
+    """Gradient clipping by norm."""
+
+    optimizer: str = "adam"
+    """Optimiser that rsl_rl resolves (``adam``, ``adamw``, ``sgd``, ``rmsprop``)."""
+
+    normalize_advantage_per_mini_batch: bool = False
+    """Whether advantages are normalised in each mini-batch rather than over the rollout."""
+
+    share_cnn_encoders: bool = False
+    """Whether the critic uses the actor's encoders; both sets must then name the same image groups."""
+
+
+@configclass
+class RslRlOnPolicyRunnerCfg:
+    """Everything about learning: runner, models and algorithm."""
+
+    class_name: str = "arcgym.rl.runner:OnPolicyRunner"
+    """Runner class that the scripts construct, as ``module:Class``."""
+
+    seed: int = 42
+    """Seed of networks and environment; ``--seed`` overrides it."""
+
+    num_steps_per_env: int = 24
+    """Control steps that each world contributes to one update."""
+
+    max_iterations: int = 500
+    """Updates of a full training run."""
+
+    save_interval: int = 50
+    """Updates between two checkpoints; the last one is always kept."""
+
+    experiment_name: str = "arcgym"
+    """Folder below ``logs/rsl_rl`` that collects the runs of one experiment."""
+
+    run_name: str = ""
+    """Suffix of the run's folder, after its time stamp."""
+
+    logger: str = "tensorboard"
+    """``tensorboard``, ``wandb`` or ``neptune``."""
+
+    log_project_name: str = "arcgym"
+    """Project name for ``wandb`` and ``neptune``."""
+
+    obs_groups: dict[str, list[str]] = {"actor": ["policy"], "critic": ["critic"]}
+    """Observation groups that each model reads."""
+
+    actor: RslRlMlpModelCfg = RslRlCnnModelCfg(distribution_cfg=GaussianDistributionCfg())
+    """Policy network."""
+
+    critic: RslRlMlpModelCfg = RslRlMlpModelCfg()
+    """Value network; must have no distribution."""
+
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoAlgorithmCfg()
+    """Learning algorithm."""
+
+    clip_actions: float | None = None
+    """Bound on the raw actions' magnitude, applied by the environment wrapper; None leaves them to the action terms."""
+
+    init_at_random_ep_len: bool = True
+    """Whether the worlds start at random places of their time limit, so that time-outs do not come all at once."""
+
+    check_for_nan: bool = True
+    """Whether the runner stops at a NaN in observation or reward. The environment resets broken worlds before that."""
+
+    torch_compile_mode: str | None = None
+    """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
+
+    resume: bool = False
+    """Whether to go on from ``load_run``/``load_checkpoint``; set by ``--resume``."""
+
+    load_run: str = ".*"
+    """Run folder to resume from: a name or a regular expression, the newest match wins."""
+
+    load_checkpoint: str = "latest"
+    """Checkpoint to resume from: a file name, ``latest`` or ``best``."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the training dictionary that rsl_rl 5.5 accepts: None entries left out, logger in its own format."""
+        result = _strip(self)
+        result["logger"] = _logger(self.logger, self.log_project_name)
+        return result
+
+
+def _strip(value: Any) -> Any:
+    """Convert nested configs to dictionaries without their None entries, which rsl_rl's constructors reject."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+        return {name: _strip(item) for name, item in fields.items() if item is not None}
+    if isinstance(value, dict):
+        return {key: _strip(item) for key, item in value.items() if item is not None}
+    if isinstance(value, (list, tuple)):
+        return [_strip(item) for item in value]
+    return value
+
+
+def _logger(name: str, project: str) -> str | dict[str, str]:
+    """Return rsl_rl's logger entry."""
+    writers = {"wandb": "WandbLogWriter", "neptune": "NeptuneLogWriter"}
+    if name == "tensorboard":
+        return name
+    if name not in writers:
+        raise ValueError(f"agent.logger is '{name}', expected one of: tensorboard, {', '.join(writers)}.")
+    return {"class_name": writers[name], "project_name": project}
