@@ -1,0 +1,242 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""What an endoscope is made of: the numbers from which its USD stage is written."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+EndoscopeKind = Literal["capsule", "magnetic", "proximal"]
+RootKind = Literal["free", "slide_roll"]
+
+SHAFT_LINK = 0.020
+"""Length of a shaft link [m]. The chain follows bends down to a radius of about 3 cm."""
+TIP_LINK = 0.010
+"""Length of a link of the distal section [m]."""
+TIP_LINKS = 10
+"""Number of distal links: 10 cm, about the actively bending length of a colonoscope (van der Stap 2016, 8 cm)."""
+INSERTION_LENGTH = 1.5
+"""Length of a scope with a shaft [m]: mid-transverse is about 1.2 m from the anus, and 0.2 m must stay outside."""
+REST_TIP_HEIGHT = 0.05
+"""Height of the tip above the anal verge in the rest pose [m]."""
+
+
+@dataclass(frozen=True)
+class CameraSpec:
+    """A camera fixed in the frame of the last link; it looks along its own -Z with +Y up."""
+
+    position: tuple[float, float, float]
+    """Origin of the camera in the frame of the last link [m]."""
+    quaternion: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
+    """Orientation (x, y, z, w). The default looks along the link's +Z, image up along the link's +Y."""
+    field_of_view: float = math.radians(150.0)
+    """Field of view over the image diagonal [rad]. The CF-HQ190L is labelled 170 degrees; labelled values are
+    significantly overstated (PMC5480555)."""
+    clipping: tuple[float, float] = (0.0005, 0.6)
+    """Nearest and farthest visible distance [m]."""
+
+
+@dataclass(frozen=True)
+class DriveSpec:
+    """Spring, damper and force limit of one degree of freedom of the root joint."""
+
+    stiffness: float
+    """[N/m] for the slide, [N m/rad] for the roll."""
+    damping: float
+    """[N s/m] for the slide, [N m s/rad] for the roll."""
+    max_force: float = math.inf
+    """Largest force [N] or torque [N m] the drive exerts; infinite means no limit."""
+
+
+@dataclass(frozen=True)
+class EndoscopeSpec:
+    """Geometry, masses and elasticity of an endoscope with L rigid links, base first.
+
+    The links hang on hinges of alternating axes, X for odd i and Y for even i, where hinge i joins link i - 1 to
+    link i. Bending in one plane is thus carried by every second hinge, which stands for two lever lengths of shaft:
+    its stiffness is EI / (2 lever), with the lever the mean length of its two links.
+    """
+
+    name: str
+    """Name of the asset and of its file."""
+    kind: EndoscopeKind
+    """How it is moved: a free capsule, a tip that a magnet pulls, or a shaft pushed from outside."""
+    root: RootKind
+    """Joint of the first link to the world: ``free`` or ``slide_roll`` (along and about the world's Z axis)."""
+    link_length: np.ndarray
+    """Length of each link [m], shape (L,). A lone link has this length over all, with its round ends."""
+    link_radius: np.ndarray
+    """Radius of each link [m], shape (L,)."""
+    link_mass: np.ndarray
+    """Real mass of each link [kg], shape (L,)."""
+    bending_rigidity: np.ndarray
+    """Bending rigidity EI of the shaft at each hinge [N m^2], shape (L - 1,)."""
+    hinge_limit: np.ndarray
+    """Largest angle of each hinge to either side [rad], shape (L - 1,)."""
+    camera: CameraSpec
+    """Camera of the tip."""
+    lights: np.ndarray
+    """Positions of the two lights in the frame of the last link [m], shape (2, 3)."""
+    bending_links: int = 0
+    """Number of distal links whose hinges the control wheels bend."""
+    damping_time: float = 0.1
+    """Damping of a hinge divided by its stiffness [s]. Larger values calm a lightly loaded shaft."""
+    slide_drive: DriveSpec | None = None
+    """Drive of the root along Z; None for a free root."""
+    roll_drive: DriveSpec | None = None
+    """Drive of the root about Z; None for a free root."""
+    sources: dict[str, str] = field(default_factory=dict)
+    """Where the numbers come from; written into the stage."""
+
+    @property
+    def total_length(self) -> float:
+        """Sum of the link lengths [m]."""
+        return float(self.link_length.sum())
+
+    @property
+    def hinge_stiffness(self) -> np.ndarray:
+        """Stiffness EI / (2 lever) of each hinge [N m/rad], shape (L - 1,)."""
+        lever = 0.5 * (self.link_length[:-1] + self.link_length[1:])
+        return self.bending_rigidity / (2.0 * lever)
+
+    @property
+    def hinge_damping(self) -> np.ndarray:
+        """Damping of each hinge [N m s/rad], shape (L - 1,)."""
+        return self.damping_time * self.hinge_stiffness
+
+
+def hinge_axis(hinge: int) -> Literal["X", "Y"]:
+    """Axis of hinge number `hinge`, counted from 1: X (up and down) if odd, Y (left and right) if even."""
+    return "X" if hinge % 2 else "Y"
+
+
+def capsule_half_height(length: float, radius: float, num_links: int) -> float:
+    """Half height of a link's collision capsule without its round ends [m].
+
+    The capsules of a chain overlap by their round ends, so that the chain has no gaps when it bends; a lone capsule
+    has its round ends within its length.
+    """
+    return 0.5 * length if num_links > 1 else 0.5 * length - radius
+
+
+def proximal_spec() -> EndoscopeSpec:
+    """Colonoscope pushed and rolled from outside the anus, with a bending section driven by control wheels."""
+    length = _chain_lengths()
+    links, bent = len(length), TIP_LINKS
+    radius = np.full(links, 0.0064)
+    radius[-bent:] = 0.0066
+    rigidity = np.full(links - 1, 0.025)
+    rigidity[-bent:] = 0.012
+    limit = np.full(links - 1, 0.9)
+    limit[-bent:] = _bending_limits(links, bent)
+    camera, lights = _tip_optics(length[-1], radius[-1], links)
+    return EndoscopeSpec(
+        name="proximal",
+        kind="proximal",
+        root="slide_roll",
+        link_length=length,
+        link_radius=radius,
+        link_mass=0.2 * length,
+        bending_rigidity=rigidity,
+        hinge_limit=limit,
+        camera=camera,
+        lights=lights,
+        bending_links=bent,
+        slide_drive=DriveSpec(stiffness=2000.0, damping=40.0, max_force=25.0),
+        roll_drive=DriveSpec(stiffness=2.0, damping=0.05, max_force=1.0),
+        sources={
+            "dimensions": "Olympus CF-HQ190L data sheet: tube 12.8 mm, tip 13.2 mm, angulation 180 up/down, 160 sides",
+            "rigidity": "CF-140S, EI 0.026-0.040 N m^2 at 24 C, less 17 % at 37 C (Flexural and torsional rigidity of "
+            "colonoscopes); bending section: softer, assumed",
+            "forces": "Appleyard et al. 2000: peak push 43 N, more than 10 N during 5 % of the time; torque 1.0 N m",
+            "mass": "0.2 kg/m, assumed",
+        },
+    )
+
+
+def magnetic_spec() -> EndoscopeSpec:
+    """Magnetic flexible endoscope: a head that a magnet outside the body pulls, on a passive soft tether."""
+    length = _chain_lengths()
+    links, head = len(length), 3
+    radius = np.full(links, 0.004)
+    radius[-head:] = 0.0066
+    mass = 0.078 * length
+    mass[-head:] = 3000.0 * math.pi * radius[-head:] ** 2 * length[-head:]
+    rigidity = np.full(links - 1, 0.003)
+    rigidity[-(head - 1) :] = 0.025
+    camera, lights = _tip_optics(length[-1], radius[-1], links)
+    return EndoscopeSpec(
+        name="magnetic",
+        kind="magnetic",
+        root="slide_roll",
+        link_length=length,
+        link_radius=radius,
+        link_mass=mass,
+        bending_rigidity=rigidity,
+        hinge_limit=np.full(links - 1, 0.9),
+        camera=camera,
+        lights=lights,
+        slide_drive=DriveSpec(stiffness=0.0, damping=0.5),
+        roll_drive=DriveSpec(stiffness=2.0, damping=0.05),
+        sources={
+            "design": "magnetic flexible endoscope of Martin et al. 2020 (PMC7571595): tether about 6 mm, head about "
+            "20 mm; here the head is slimmed to a colonoscope's 13.2 mm, the tether is 8 mm",
+            "rigidity": "0.003 N m^2, assumed: a shaft of 0.025 N m^2 sticks in the first bend at a pull of 4 N",
+            "mass": "tether: a colonoscope's 0.2 kg/m scaled by area; head: 3000 kg/m^3 with its magnet; both assumed",
+        },
+    )
+
+
+def capsule_spec() -> EndoscopeSpec:
+    """Untethered capsule of 10 x 20 mm that a magnet outside the body moves."""
+    length, radius = np.array([0.020]), np.array([0.005])
+    camera, lights = _tip_optics(length[0], radius[0], 1)
+    return EndoscopeSpec(
+        name="capsule",
+        kind="capsule",
+        root="free",
+        link_length=length,
+        link_radius=radius,
+        link_mass=np.array([0.005]),
+        bending_rigidity=np.empty(0),
+        hinge_limit=np.empty(0),
+        camera=camera,
+        lights=lights,
+        sources={"dimensions": "10 x 20 mm, 5 g: the capsule of the ARCGym paper (RA-L 2026)"},
+    )
+
+
+def endoscope_specs() -> tuple[EndoscopeSpec, ...]:
+    """The endoscopes that ARCGym ships."""
+    return capsule_spec(), magnetic_spec(), proximal_spec()
+
+
+def _chain_lengths() -> np.ndarray:
+    """Link lengths of a scope with a shaft, base first [m], shape (L,)."""
+    shaft_links = round((INSERTION_LENGTH - TIP_LINKS * TIP_LINK) / SHAFT_LINK)
+    return np.array([SHAFT_LINK] * shaft_links + [TIP_LINK] * TIP_LINKS)
+
+
+def _bending_limits(links: int, bent: int) -> np.ndarray:
+    """Limits of the hinges of the bending section [rad], shape (bent,): 180 degrees up/down, 160 left/right in all."""
+    axes = [hinge_axis(hinge) for hinge in range(links - bent, links)]
+    reach = {"X": math.radians(180.0), "Y": math.radians(160.0)}
+    return np.array([reach[axis] / axes.count(axis) for axis in axes])
+
+
+def _tip_optics(
+    length: float, radius: float, links: int, recess: float = 0.001, spread: float = 0.0036
+) -> tuple[CameraSpec, np.ndarray]:
+    """Camera on the axis, `recess` behind the front of the tip, and two lights on its surface at +-`spread` along X.
+
+    The recess keeps the lens on the lumen's side of a wall that the tip dents.
+    """
+    dome = capsule_half_height(length, radius, links)
+    camera = CameraSpec(position=(0.0, 0.0, dome + radius - recess))
+    height = dome + math.sqrt(radius**2 - spread**2)
+    return camera, np.array([[spread, 0.0, height], [-spread, 0.0, height]])

@@ -1,0 +1,31 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""The USD stage of an endoscope: the data class and the functions that write and read it."""
+
+from __future__ import annotations
+
+from arcgym.assets.endoscope_reader import EndoscopeStage, read_endoscope
+from arcgym.assets.endoscope_writer import (
+    ENDOSCOPE_PATH,
+    JOINTS_PATH,
+    LINKS_PATH,
+    ROOT_JOINT_PATH,
+    author_endoscopes,
+    hinge_name,
+    link_name,
+    write_endoscope,
+)
+
+__all__ = [
+    "ENDOSCOPE_PATH",
+    "JOINTS_PATH",
+    "LINKS_PATH",
+    "ROOT_JOINT_PATH",
+    "EndoscopeStage",
+    "author_endoscopes",
+    "hinge_name",
+    "link_name",
+    "read_endoscope",
+    "write_endoscope",
+]

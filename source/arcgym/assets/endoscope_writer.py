@@ -1,0 +1,193 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Writes the USD stage of an endoscope: links, joints with their drives, camera and lights."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics
+
+from arcgym.assets.endoscope_spec import (
+    REST_TIP_HEIGHT,
+    DriveSpec,
+    EndoscopeSpec,
+    capsule_half_height,
+    endoscope_specs,
+    hinge_axis,
+)
+
+ENDOSCOPE_PATH = "/Endoscope"
+LINKS_PATH = "/Endoscope/Links"
+JOINTS_PATH = "/Endoscope/Joints"
+ROOT_JOINT_PATH = "/Endoscope/Joints/root"
+ROLL_LIMIT = 3600.0
+"""Range of the roll to either side [deg]: ten turns, practically free, but an axis without a range is not imported."""
+SLIDE_MARGIN = 0.5
+"""How far the scope may be withdrawn below its rest pose [m]."""
+
+
+def author_endoscopes(out_dir: Path) -> list[Path]:
+    """Write the stages of all shipped endoscopes into `out_dir`; the same bytes every time. Returns their paths."""
+    out_dir.mkdir(parents=True, exist_ok=True)
+    return [write_endoscope(spec, out_dir / f"{spec.name}.usda") for spec in endoscope_specs()]
+
+
+def write_endoscope(spec: EndoscopeSpec, path: str | Path) -> Path:
+    """Write the USD stage of `spec` to `path`, replacing what is there.
+
+    The rest pose is straight along +Z on the world's Z axis, with the tip 5 cm above the anal verge.
+    """
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    stage = Usd.Stage.Open(layer)
+    _write_header(stage, spec)
+    nodes = REST_TIP_HEIGHT - spec.total_length + np.r_[0.0, np.cumsum(spec.link_length)]
+    for link in range(len(spec.link_length)):
+        _write_link(stage, spec, link, 0.5 * (nodes[link] + nodes[link + 1]))
+    _write_optics(stage, spec)
+    if spec.root == "slide_roll":
+        _write_root(stage, spec, 0.5 * (nodes[0] + nodes[1]))
+    for hinge in range(1, len(spec.link_length)):
+        _write_hinge(stage, spec, hinge)
+    layer.Export(str(path))
+    return Path(path)
+
+
+def link_name(link: int) -> str:
+    """Name of the prim of link number `link`, counted from 0 at the base."""
+    return f"link_{link:02d}"
+
+
+def hinge_name(hinge: int) -> str:
+    """Name of the prim of hinge number `hinge`, counted from 1."""
+    return f"hinge_{hinge:02d}"
+
+
+def _write_header(stage: Usd.Stage, spec: EndoscopeSpec) -> None:
+    """Units, the articulation root and what describes the whole scope."""
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    UsdPhysics.SetStageKilogramsPerUnit(stage, 1.0)
+    root = UsdGeom.Xform.Define(stage, ENDOSCOPE_PATH).GetPrim()
+    stage.SetDefaultPrim(root)
+    Usd.ModelAPI(root).SetKind(Kind.Tokens.component)
+    UsdPhysics.ArticulationRootAPI.Apply(root)
+    root.AddAppliedSchema("NewtonArticulationRootAPI")
+    _set(root, "newton:selfCollisionEnabled", Sdf.ValueTypeNames.Bool, False)
+    _set(root, "arcgym:kind", Sdf.ValueTypeNames.Token, spec.kind)
+    _set(root, "arcgym:bendingLinks", Sdf.ValueTypeNames.Int, spec.bending_links)
+    root.SetCustomData({"licence": "BSD-3-Clause", "sources": spec.sources})
+    UsdGeom.Scope.Define(stage, LINKS_PATH)
+    if spec.root == "slide_roll":
+        UsdGeom.Scope.Define(stage, JOINTS_PATH)
+
+
+def _write_link(stage: Usd.Stage, spec: EndoscopeSpec, link: int, height: float) -> None:
+    """One rigid link: a capsule for contact, with the mass and inertia of a solid cylinder."""
+    length, radius, mass = (float(a[link]) for a in (spec.link_length, spec.link_radius, spec.link_mass))
+    body = UsdGeom.Xform.Define(stage, f"{LINKS_PATH}/{link_name(link)}")
+    body.AddTranslateOp().Set(Gf.Vec3d(0.0, 0.0, height))
+    UsdPhysics.RigidBodyAPI.Apply(body.GetPrim())
+    _set(body.GetPrim(), "arcgym:length", Sdf.ValueTypeNames.Float, length)
+    mass_api = UsdPhysics.MassAPI.Apply(body.GetPrim())
+    mass_api.CreateMassAttr(mass)
+    mass_api.CreateCenterOfMassAttr(Gf.Vec3f(0.0))
+    mass_api.CreateDiagonalInertiaAttr(Gf.Vec3f(*cylinder_inertia(mass, radius, length)))
+    mass_api.CreatePrincipalAxesAttr(Gf.Quatf(1.0))
+    shape = UsdGeom.Capsule.Define(stage, f"{body.GetPath()}/Shape")
+    half_height = capsule_half_height(length, radius, len(spec.link_length))
+    shape.CreateAxisAttr(UsdGeom.Tokens.z)
+    shape.CreateRadiusAttr(radius)
+    shape.CreateHeightAttr(2.0 * half_height)
+    shape.CreateExtentAttr([(-radius, -radius, -half_height - radius), (radius, radius, half_height + radius)])
+    shape.CreateDisplayColorAttr([(0.05, 0.05, 0.06)])
+    UsdPhysics.CollisionAPI.Apply(shape.GetPrim())
+
+
+def cylinder_inertia(mass: float, radius: float, length: float) -> tuple[float, float, float]:
+    """Principal moments of inertia of a solid cylinder along Z about its centre [kg m^2]."""
+    across = mass * (3.0 * radius**2 + length**2) / 12.0
+    return across, across, 0.5 * mass * radius**2
+
+
+def _write_optics(stage: Usd.Stage, spec: EndoscopeSpec) -> None:
+    """Camera and lights, children of the last link."""
+    tip = f"{LINKS_PATH}/{link_name(len(spec.link_length) - 1)}"
+    camera = UsdGeom.Camera.Define(stage, f"{tip}/Camera")
+    x, y, z, w = spec.camera.quaternion
+    camera.AddTranslateOp().Set(Gf.Vec3d(*spec.camera.position))
+    camera.AddOrientOp().Set(Gf.Quatf(w, x, y, z))
+    aperture = 20.0
+    half_diagonal = aperture / math.sqrt(2.0)
+    camera.CreateHorizontalApertureAttr(aperture)
+    camera.CreateVerticalApertureAttr(aperture)
+    camera.CreateFocalLengthAttr(half_diagonal / math.tan(0.5 * spec.camera.field_of_view))
+    camera.CreateClippingRangeAttr(Gf.Vec2f(*spec.camera.clipping))
+    _set(camera.GetPrim(), "arcgym:fieldOfView", Sdf.ValueTypeNames.Float, spec.camera.field_of_view)
+    for name, position in zip(("LightLeft", "LightRight"), spec.lights, strict=True):
+        light = UsdLux.SphereLight.Define(stage, f"{tip}/{name}")
+        light.AddTranslateOp().Set(Gf.Vec3d(*map(float, position)))
+        light.CreateRadiusAttr(0.0009)
+        light.CreateExtentAttr([(-0.0009,) * 3, (0.0009,) * 3])
+
+
+def _write_root(stage: Usd.Stage, spec: EndoscopeSpec, height: float) -> None:
+    """The joint of the first link to the world, free to slide along and roll about Z."""
+    joint = UsdPhysics.Joint.Define(stage, ROOT_JOINT_PATH)
+    prim = joint.GetPrim()
+    joint.CreateBody1Rel().SetTargets([f"{LINKS_PATH}/{link_name(0)}"])
+    _write_frames(joint, height, 0.0)
+    for axis in ("transX", "transY", "rotX", "rotY"):
+        _write_limit(prim, axis, 1.0, -1.0)
+    _write_limit(prim, "transZ", -SLIDE_MARGIN, spec.total_length)
+    _write_limit(prim, "rotZ", -ROLL_LIMIT, ROLL_LIMIT)
+    _write_drive(prim, "transZ", spec.slide_drive, 1.0)
+    _write_drive(prim, "rotZ", spec.roll_drive, math.radians(1.0))
+
+
+def _write_hinge(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int) -> None:
+    """The hinge between links `hinge` - 1 and `hinge`, whose drive carries the elasticity of the shaft."""
+    joint = UsdPhysics.RevoluteJoint.Define(stage, f"{JOINTS_PATH}/{hinge_name(hinge)}")
+    joint.CreateBody0Rel().SetTargets([f"{LINKS_PATH}/{link_name(hinge - 1)}"])
+    joint.CreateBody1Rel().SetTargets([f"{LINKS_PATH}/{link_name(hinge)}"])
+    joint.CreateAxisAttr(hinge_axis(hinge))
+    _write_frames(joint, 0.5 * spec.link_length[hinge - 1], -0.5 * spec.link_length[hinge])
+    limit = math.degrees(spec.hinge_limit[hinge - 1])
+    joint.CreateLowerLimitAttr(-limit)
+    joint.CreateUpperLimitAttr(limit)
+    spring = DriveSpec(float(spec.hinge_stiffness[hinge - 1]), float(spec.hinge_damping[hinge - 1]))
+    _write_drive(joint.GetPrim(), "angular", spring, math.radians(1.0))
+
+
+def _write_frames(joint: UsdPhysics.Joint, height0: float, height1: float) -> None:
+    """Put the joint's frames on the Z axes of its two bodies, `height0` and `height1` from their centres [m]."""
+    joint.CreateLocalPos0Attr(Gf.Vec3f(0.0, 0.0, float(height0)))
+    joint.CreateLocalPos1Attr(Gf.Vec3f(0.0, 0.0, float(height1)))
+    joint.CreateLocalRot0Attr(Gf.Quatf(1.0))
+    joint.CreateLocalRot1Attr(Gf.Quatf(1.0))
+
+
+def _write_limit(prim: Usd.Prim, axis: str, low: float, high: float) -> None:
+    """Range of one axis of a joint; low > high locks it."""
+    limit = UsdPhysics.LimitAPI.Apply(prim, axis)
+    limit.CreateLowAttr(low)
+    limit.CreateHighAttr(high)
+
+
+def _write_drive(prim: Usd.Prim, axis: str, spec: DriveSpec, unit: float) -> None:
+    """Drive of one axis; `unit` is 1 for metres and one degree in radians for angles, which USD counts in degrees."""
+    drive = UsdPhysics.DriveAPI.Apply(prim, axis)
+    drive.CreateTypeAttr(UsdPhysics.Tokens.force)
+    drive.CreateTargetPositionAttr(0.0)
+    drive.CreateStiffnessAttr(spec.stiffness * unit)
+    drive.CreateDampingAttr(spec.damping * unit)
+    if math.isfinite(spec.max_force):
+        drive.CreateMaxForceAttr(spec.max_force)
+
+
+def _set(prim: Usd.Prim, name: str, value_type: Sdf.ValueTypeName, value: object) -> None:
+    """Create a custom attribute and set it."""
+    prim.CreateAttribute(name, value_type).Set(value)

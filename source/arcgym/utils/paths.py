@@ -1,0 +1,38 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Where the package finds its assets and leaves its logs."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+ASSETS_ENV = "ARCGYM_ASSETS"
+"""Environment variable that names the assets folder; it wins over the folders of the package and the checkout."""
+
+_PACKAGE = Path(__file__).resolve().parents[1]
+_CHECKOUT = Path(__file__).resolve().parents[3]
+
+
+def assets_dir() -> Path:
+    """Folder of the USD assets, the one that holds ``endoscopes/`` and ``colon_1/``.
+
+    Looked for in this order: the folder named by the environment variable ``ARCGYM_ASSETS``, ``data/usd`` of the
+    installed package, ``assets/usd`` of the checkout.
+
+    Raises:
+        FileNotFoundError: If none of them is a folder. A set ``ARCGYM_ASSETS`` must be one: it is never skipped.
+    """
+    named = os.environ.get(ASSETS_ENV)
+    places = [Path(named).expanduser()] if named else [_PACKAGE / "data" / "usd", _CHECKOUT / "assets" / "usd"]
+    for place in places:
+        if place.is_dir():
+            return place
+    tried = ", ".join(str(place) for place in places)
+    raise FileNotFoundError(f"No assets folder. Tried: {tried}. Set {ASSETS_ENV} to the folder that has 'endoscopes/'.")
+
+
+def logs_dir() -> Path:
+    """Folder ``logs`` of the working directory, where training runs go (not created here)."""
+    return Path.cwd() / "logs"
