@@ -1,0 +1,197 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Values of configurations: their declared types, plain forms for files, and back."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import re
+import sys
+import types
+import typing
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Literal, Union, get_args, get_origin
+
+from arcgym.utils.string import callable_name, did_you_mean, resolve_callable
+
+_SLICE = re.compile(r"slice\((None|-?\d+), (None|-?\d+), (None|-?\d+)\)")
+
+
+def is_config(value: Any) -> bool:
+    """Whether a value is an instance of a configuration class."""
+    return dataclasses.is_dataclass(value) and not isinstance(value, type)
+
+
+def is_missing(value: Any) -> bool:
+    """Whether a value is the mark of a field not yet set, or a pickled copy of it."""
+    return isinstance(value, type(dataclasses.MISSING))
+
+
+def field_types(cls: type) -> dict[str, Any]:
+    """Returns the declared type of every field; ``Any`` where a name is imported for type checkers only.
+
+    Unlike :func:`typing.get_type_hints` it resolves names of classes nested in the class that uses them.
+    """
+    hints: dict[str, Any] = {}
+    for base in reversed(cls.__mro__):
+        module = sys.modules.get(base.__module__)
+        for name, annotation in base.__dict__.get("__annotations__", {}).items():
+            hints[name] = _evaluate(annotation, vars(module) if module else {}, dict(vars(base)))
+    return hints
+
+
+def to_plain(value: Any) -> Any:
+    """Turns a value into dicts, lists, strings and numbers."""
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    if is_config(value):
+        return {name: to_plain(child) for name, child in vars(value).items()}
+    if isinstance(value, dict):
+        return {str(name): to_plain(child) for name, child in value.items()}
+    if isinstance(value, (list, tuple, set)):
+        return [to_plain(child) for child in value]
+    if is_missing(value):
+        return "MISSING"
+    if isinstance(value, enum.Enum):
+        return value.name
+    if isinstance(value, (type, types.FunctionType, types.BuiltinFunctionType)):
+        return callable_name(value)
+    return value.tolist() if hasattr(value, "tolist") else str(value)
+
+
+def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
+    """Fits a plain value, from a command line or a file, to a field.
+
+    Integers pass for floats, lists for tuples, dicts for configurations, ``"module:name"`` for callables, names for
+    members of an enumeration; nothing else is converted.
+
+    Args:
+        value: What was given.
+        expected: Declared type of the field; ``Any`` falls back to the type of ``current``.
+        current: Value that the field holds now.
+        path: Dotted name of the field, for messages.
+
+    Returns:
+        The value to store.
+
+    Raises:
+        TypeError: With the field, the expected type and what was given.
+        ValueError: If a callable, an enumeration member or a nested field does not exist.
+    """
+    if value is None and (_may_be_none(expected) or getattr(type(current), "can_be_none", False)):
+        return None
+    if expected in (Any, object):
+        if current is None or is_missing(current):
+            return value
+        expected = Callable if callable(current) and not is_config(current) else type(current)
+    origin = get_origin(expected)
+    if origin in (Union, types.UnionType):
+        return _coerce_union(value, expected, current, path)
+    if origin is Literal:
+        return _check(value in get_args(expected), value, value, expected, path)
+    kind = origin or expected
+    if kind in (Callable, typing.Callable, typing.get_origin(Callable[..., Any]), type):
+        return _coerce_callable(value, expected, path)
+    if not isinstance(kind, type):
+        return value
+    if isinstance(value, str) and issubclass(kind, enum.Enum):
+        return _coerce_enum(value, kind, path)
+    if kind in (tuple, list):
+        return _coerce_sequence(value, expected, kind, current, path)
+    if kind is dict:
+        return _coerce_mapping(value, expected, current, path)
+    if dataclasses.is_dataclass(kind) and isinstance(value, dict):
+        return _build_config(value, kind, current, path)
+    return _coerce_scalar(value, kind, expected, path)
+
+
+def _evaluate(annotation: Any, module: dict[str, Any], scope: dict[str, Any]) -> Any:
+    if not isinstance(annotation, str):
+        return annotation
+    try:
+        return eval(annotation, module, scope)  # noqa: S307 - source text of our own classes
+    except (NameError, AttributeError, TypeError):
+        return Any
+
+
+def _may_be_none(expected: Any) -> bool:
+    return expected is None or expected is type(None) or type(None) in get_args(expected)
+
+
+def _coerce_union(value: Any, expected: Any, current: Any, path: str) -> Any:
+    for option in get_args(expected):
+        try:
+            return coerce(value, option, current, path)
+        except TypeError:
+            continue
+    raise _mismatch(value, expected, path)
+
+
+def _coerce_callable(value: Any, expected: Any, path: str) -> Any:
+    if not isinstance(value, str):
+        return _check(callable(value), value, value, expected, path)
+    try:
+        return resolve_callable(value)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def _coerce_enum(value: str, kind: type[enum.Enum], path: str) -> enum.Enum:
+    if value not in kind.__members__:
+        raise ValueError(f"{path}: {kind.__name__} has no member '{value}'. {did_you_mean(value, kind.__members__)}")
+    return kind[value]
+
+
+def _coerce_sequence(value: Any, expected: Any, kind: type, current: Any, path: str) -> Any:
+    _check(isinstance(value, (list, tuple)), value, value, expected, path)
+    options = get_args(expected)
+    if kind is tuple and options and options[-1] is not Ellipsis:
+        _check(len(value) == len(options), value, value, expected, path)
+        element_types: Any = options
+    else:
+        element_types = [options[0] if options else Any] * len(value)
+    samples = (
+        list(current) if isinstance(current, (list, tuple)) and len(current) == len(value) else [None] * len(value)
+    )
+    items = zip(value, element_types, samples, strict=True)
+    return kind(coerce(item, of, sample, f"{path}.{i}") for i, (item, of, sample) in enumerate(items))
+
+
+def _coerce_mapping(value: Any, expected: Any, current: Any, path: str) -> dict[Any, Any]:
+    _check(isinstance(value, dict), value, value, expected, path)
+    of = (get_args(expected) or (Any, Any))[1]
+    known = current if isinstance(current, dict) else {}
+    return {name: coerce(item, of, known.get(name), f"{path}.{name}") for name, item in value.items()}
+
+
+def _build_config(value: dict[str, Any], kind: type, current: Any, path: str) -> Any:
+    from arcgym.utils.configclass import copy, from_dict
+
+    new = copy(current) if isinstance(current, kind) else kind()
+    from_dict(new, value, path)
+    return new
+
+
+def _coerce_scalar(value: Any, kind: type, expected: Any, path: str) -> Any:
+    if isinstance(value, bool) and kind in (int, float):
+        raise _mismatch(value, expected, path)
+    if kind is float and isinstance(value, int):
+        return float(value)
+    if isinstance(value, str) and issubclass(kind, Path):
+        return kind(value)
+    if isinstance(value, str) and kind is slice and (match := _SLICE.fullmatch(value)):
+        return slice(*(None if part == "None" else int(part) for part in match.groups()))
+    return _check(isinstance(value, kind), value, value, expected, path)
+
+
+def _check(fits: bool, result: Any, value: Any, expected: Any, path: str) -> Any:
+    if not fits:
+        raise _mismatch(value, expected, path)
+    return result
+
+
+def _mismatch(value: Any, expected: Any, path: str) -> TypeError:
+    name = expected.__name__ if isinstance(expected, type) and not get_args(expected) else str(expected)
+    return TypeError(f"'{path}' expects {name.replace('typing.', '')}, got {type(value).__name__} {value!r}.")

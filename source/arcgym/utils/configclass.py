@@ -1,0 +1,187 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration classes: dataclasses that nest, subclass and copy the way Isaac Lab users expect.
+
+A class under :func:`configclass` is a plain dataclass with these conveniences:
+
+* A member needs no annotation: ``joint_pos = ObsTerm(func=mdp.joint_pos)`` is a field.
+* Defaults may be mutable; every instance gets its own deep copy.
+* A field without default, or with :data:`MISSING`, must be set before :func:`validate` is called.
+* A subclass overrides a field by assigning it again; ``= None`` switches a term off.
+* ``super().__post_init__()`` always works, whether or not a base class defines one.
+* Instances have ``copy()``, ``replace()``, ``to_dict()``, ``from_dict()`` and ``validate()``.
+"""
+
+from __future__ import annotations
+
+import copy as copy_module
+import dataclasses
+import functools
+import types
+from collections.abc import Iterator
+from dataclasses import MISSING
+from typing import Any, TypeVar, dataclass_transform
+
+from arcgym.utils.coerce import coerce, field_types, is_config, is_missing, to_plain
+from arcgym.utils.string import did_you_mean
+
+__all__ = ["MISSING", "configclass", "copy", "from_dict", "is_config", "replace", "to_dict", "validate"]
+
+T = TypeVar("T")
+
+_NEVER_FIELDS = (types.FunctionType, classmethod, staticmethod, property, functools.cached_property, type)
+_ATOMIC = (type(None), bool, int, float, complex, str, bytes, type, types.FunctionType, types.BuiltinFunctionType)
+
+
+@dataclass_transform(field_specifiers=(dataclasses.field,))
+def configclass(cls: type[T]) -> type[T]:
+    """Turns a class into a configuration class; see the module's docstring."""
+    cls.__annotations__ = _complete_annotations(cls)
+    for name, annotation in cls.__annotations__.items():
+        if not _is_class_variable(annotation):
+            setattr(cls, name, _as_field(cls.__dict__.get(name, MISSING)))
+    methods = {
+        "copy": copy,
+        "replace": replace,
+        "to_dict": to_dict,
+        "from_dict": from_dict,
+        "validate": validate,
+        "__deepcopy__": _deepcopy,
+    }
+    for name, method in methods.items():
+        if name not in cls.__dict__:
+            setattr(cls, name, method)
+    if not hasattr(cls, "__post_init__"):
+        setattr(cls, "__post_init__", _no_post_init)  # noqa: B010 - unknown to type checkers
+    return dataclasses.dataclass(cls)
+
+
+def copy(cfg: T) -> T:
+    """Returns a deep copy; ``__post_init__`` does not run again."""
+    return copy_module.deepcopy(cfg)
+
+
+def replace(cfg: T, **changes: Any) -> T:
+    """Returns a copy with some fields changed; ``__post_init__`` does not run again, so the changes stand.
+
+    Raises:
+        ValueError: If a name is not a field.
+    """
+    new = copy(cfg)
+    for name, value in changes.items():
+        if name not in vars(new):
+            raise ValueError(f"{type(cfg).__name__} has no field '{name}'. {did_you_mean(name, vars(new))}")
+        setattr(new, name, value)
+    return new
+
+
+def to_dict(cfg: Any) -> dict[str, Any]:
+    """Returns nested dicts of plain values, fit for YAML: callables become ``"module:name"``, tuples lists."""
+    return to_plain(cfg)
+
+
+def from_dict(cfg: Any, data: dict[str, Any], path: str = "") -> None:
+    """Writes the values of nested dicts into ``cfg``, in place.
+
+    Args:
+        cfg: Configuration to change.
+        data: As :func:`to_dict` returns it; entries may be left out.
+        path: Where ``cfg`` sits in a larger configuration, for messages.
+
+    Raises:
+        ValueError: If a name is unknown, with the names that exist.
+        TypeError: If a value does not fit its field.
+    """
+    hints = field_types(type(cfg))
+    for name, value in data.items():
+        here = f"{path}.{name}" if path else name
+        if name not in vars(cfg):
+            raise ValueError(f"{type(cfg).__name__} has no field '{here}'. {did_you_mean(name, vars(cfg))}")
+        current = getattr(cfg, name)
+        if is_config(current) and isinstance(value, dict):
+            from_dict(current, value, here)
+        else:
+            setattr(cfg, name, coerce(value, hints.get(name, Any), current, here))
+
+
+def validate(cfg: Any) -> None:
+    """Checks a configuration and everything inside it.
+
+    A nested configuration may define ``validate_config(self)`` for checks of its own; it runs once nothing is missing.
+
+    Raises:
+        ValueError: If fields are missing, naming every path.
+    """
+    entries = list(_walk(cfg, ""))
+    missing = [path for path, value in entries if is_missing(value)]
+    if missing:
+        raise ValueError(f"{type(cfg).__name__} has fields without a value: {', '.join(missing)}.")
+    for _, value in entries:
+        check = getattr(value, "validate_config", None) if is_config(value) else None
+        if check is not None:
+            check()
+
+
+def _complete_annotations(cls: type) -> dict[str, Any]:
+    """Annotations of the class's own members in the order they were written, with those left out filled in."""
+    written = dict(cls.__dict__.get("__annotations__", {}))
+    inherited = _inherited_annotations(cls)
+    for name, value in cls.__dict__.items():
+        if name in written or name.startswith("_"):
+            continue
+        if name in inherited:
+            written[name] = inherited[name]
+        elif not isinstance(value, _NEVER_FIELDS):
+            written[name] = Any if isinstance(value, dataclasses.Field) or value is None else type(value)
+    return written
+
+
+def _inherited_annotations(cls: type) -> dict[str, Any]:
+    """Field name to type over all bases, resolved where each was written."""
+    found: dict[str, Any] = {}
+    for base in reversed(cls.__mro__[1:]):
+        if dataclasses.is_dataclass(base):
+            hints = field_types(base)
+            found.update({field.name: hints[field.name] for field in dataclasses.fields(base)})
+    return found
+
+
+def _is_class_variable(annotation: Any) -> bool:
+    return "ClassVar" in (annotation if isinstance(annotation, str) else str(annotation))
+
+
+def _as_field(value: Any) -> Any:
+    """Default of a dataclass field: shared when it cannot change, copied for each instance otherwise."""
+    if isinstance(value, dataclasses.Field) or isinstance(value, _ATOMIC):
+        return value
+    if is_missing(value):
+        return dataclasses.field(default_factory=lambda: MISSING)
+    return dataclasses.field(default_factory=lambda: copy_module.deepcopy(value))
+
+
+def _deepcopy(self: Any, memo: dict[int, Any]) -> Any:
+    """Copies attribute by attribute and keeps :data:`MISSING` the object it is."""
+    memo[id(MISSING)] = MISSING
+    new = object.__new__(type(self))
+    memo[id(self)] = new
+    for name, value in vars(self).items():
+        object.__setattr__(new, name, copy_module.deepcopy(value, memo))
+    return new
+
+
+def _no_post_init(self: Any) -> None:
+    """Lets subclasses call ``super().__post_init__()``."""
+
+
+def _walk(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Yields path and value of ``value`` and of everything nested in configurations, dicts and sequences."""
+    yield path, value
+    items: Any = ()
+    if is_config(value):
+        items = vars(value).items()
+    elif isinstance(value, dict):
+        items = value.items()
+    elif isinstance(value, (list, tuple)):
+        items = enumerate(value)
+    for name, child in items:
+        yield from _walk(child, f"{path}.{name}" if path else str(name))
