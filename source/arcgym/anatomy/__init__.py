@@ -1,4 +1,34 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+"""Colon anatomy: generating, validating, writing and reading stages. Needs numpy, scipy, pillow and usd-core only."""
 
-"""ARCGym anatomy."""
+from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS, segment_index
+from .stage import (
+    Centerline,
+    ColonStage,
+    StageError,
+    TissueMaterial,
+    VisualMesh,
+    WallMesh,
+    read_colon,
+    write_colon,
+)
+from .wall import inner_faces
+
+__all__ = [
+    "ANCHOR_ELASTIC",
+    "ANCHOR_FIXED",
+    "ANCHOR_FREE",
+    "RETROPERITONEAL",
+    "SEGMENTS",
+    "Centerline",
+    "ColonStage",
+    "StageError",
+    "TissueMaterial",
+    "VisualMesh",
+    "WallMesh",
+    "inner_faces",
+    "read_colon",
+    "segment_index",
+    "write_colon",
+]

@@ -1,0 +1,19 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fixtures shared by all tests."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from tiny import write_tiny_colon  # noqa: E402
+
+
+@pytest.fixture(scope="session")
+def tiny_colon_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_tiny_colon(tmp_path_factory.mktemp("tiny_colon"))
