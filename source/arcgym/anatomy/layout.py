@@ -32,7 +32,7 @@ DETAIL_TEXTURE = "arcgym:detailTexture"
 CUSTOM_DATA = "arcgym"
 
 WALL_SCHEMAS = ("PhysicsVolumeDeformableSimAPI", "PhysicsDeformableBodyAPI", "PhysicsCollisionAPI")
-"""Applied schemas that make a ``TetMesh`` a volume deformable for Newton's USD importer (AOUSD deformables proposal)."""
+"""Applied schemas that make a ``TetMesh`` a volume deformable (AOUSD deformables proposal, as Newton imports it)."""
 
 MATERIAL_SCHEMAS = ("PhysicsMaterialAPI", "PhysicsVolumeDeformableMaterialAPI")
 """Applied schemas of the tissue material bound to the wall for the purpose ``physics``."""

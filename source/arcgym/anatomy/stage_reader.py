@@ -210,7 +210,8 @@ def _read_tissue(reader: _Reader) -> TissueMaterial:
         raise reader.error(layout.WALL_PATH, "material:binding:physics", "no physics material is bound", mend)
     path = str(material.GetPath())
     _check_schemas(reader, material.GetPrim(), layout.MATERIAL_SCHEMAS)
-    values = [float(reader.value(path, f"physics:{name}")) for name in ("youngsModulus", "poissonsRatio", "density")]
+    names = ("youngsModulus", "poissonsRatio", "density")
+    values = [round(float(reader.value(path, f"physics:{name}")), 6) for name in names]
     if not (values[0] > 0 and 0 <= values[1] < 0.5 and values[2] > 0):
         found = f"E {values[0]:g} Pa, nu {values[1]:g}, density {values[2]:g} kg/m^3"
         raise reader.error(path, "physics:*", found, "Use E > 0, 0 <= nu < 0.5 and density > 0 in SI units")

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
@@ -32,17 +32,22 @@ def write_colon(stage: ColonStage, path: str | Path) -> Path:
     arrays_path = path.with_suffix(".usdc")
     textures = [_copy_beside(texture, path.parent) for texture in (stage.albedo_texture, stage.detail_texture)]
     _save_layer(arrays_path, lambda usd: _author_arrays(usd, stage))
-    _save_layer(path, lambda usd: _author_head(usd, stage, arrays_path.name, *textures))
+    _save_layer(path, lambda usd: _author_head(usd, stage, *textures), sublayer=f"./{arrays_path.name}")
     return path
 
 
-def _save_layer(path: Path, author: Any) -> None:
-    """Authors a new in-memory stage and exports it, so that an interrupted run leaves no half-written layer open."""
-    usd = Usd.Stage.CreateInMemory()
+def _save_layer(path: Path, author: Callable[[Usd.Stage], None], sublayer: str = "") -> None:
+    """Authors a layer in memory and writes it in one go, so that an interrupted run leaves no half-written file."""
+    layer = Sdf.Layer.CreateAnonymous(path.suffix)
+    usd = Usd.Stage.Open(layer)
     UsdGeom.SetStageUpAxis(usd, UsdGeom.Tokens.z)
     UsdGeom.SetStageMetersPerUnit(usd, 1.0)
+    usd.SetDefaultPrim(UsdGeom.Xform.Define(usd, layout.ROOT_PATH).GetPrim())
     author(usd)
-    usd.GetRootLayer().Export(str(path))
+    del usd
+    if sublayer:
+        layer.subLayerPaths.append(sublayer)
+    layer.Export(str(path))
 
 
 def _copy_beside(texture: Path, folder: Path) -> str:
@@ -53,20 +58,17 @@ def _copy_beside(texture: Path, folder: Path) -> str:
 
 
 def _author_arrays(usd: Usd.Stage, stage: ColonStage) -> None:
-    usd.SetDefaultPrim(UsdGeom.Xform.Define(usd, layout.ROOT_PATH).GetPrim())
     _author_wall(usd, stage.wall)
     _author_visual(usd, layout.VISUAL_PATH, stage.visual, UsdGeom.Tokens.render)
     _author_visual(usd, layout.PROXY_PATH, stage.visual_proxy, UsdGeom.Tokens.proxy)
     _author_centerline(usd, stage.centerline)
 
 
-def _author_head(usd: Usd.Stage, stage: ColonStage, arrays: str, albedo: str, detail: str) -> None:
-    usd.GetRootLayer().subLayerPaths.append(f"./{arrays}")
-    root = UsdGeom.Xform.Define(usd, layout.ROOT_PATH)
-    usd.SetDefaultPrim(root.GetPrim())
+def _author_head(usd: Usd.Stage, stage: ColonStage, albedo: str, detail: str) -> None:
+    root = usd.GetDefaultPrim()
     Usd.ModelAPI(root).SetKind(Kind.Tokens.component)
     metadata = {"name": stage.name, "frame": _FRAME, **stage.metadata}
-    root.GetPrim().SetCustomDataByKey(layout.CUSTOM_DATA, metadata)
+    root.SetCustomDataByKey(layout.CUSTOM_DATA, metadata)
     _author_tissue(usd, stage.material)
     _author_mucosa(usd, albedo, detail)
     _author_landmarks(usd, stage)
