@@ -9,7 +9,6 @@ import enum
 import re
 import sys
 import types
-import typing
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, Union, get_args, get_origin
@@ -92,7 +91,7 @@ def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
     if origin is Literal:
         return _check(value in get_args(expected), value, value, expected, path)
     kind = origin or expected
-    if kind in (Callable, typing.Callable, typing.get_origin(Callable[..., Any]), type):
+    if kind in (Callable, type):
         return _coerce_callable(value, expected, path)
     if not isinstance(kind, type):
         return value

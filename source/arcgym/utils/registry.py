@@ -1,0 +1,98 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tasks by name: registration with Gymnasium, discovery, and loading of their configurations.
+
+Entry points are texts, so that listing tasks imports neither torch nor Newton. Packages elsewhere add tasks through the
+entry-point group ``arcgym.tasks`` in their ``pyproject.toml``; the module it names registers them when imported::
+
+    [project.entry-points."arcgym.tasks"]
+    my_tasks = "my_package.tasks"
+"""
+
+from __future__ import annotations
+
+import copy
+import importlib
+import importlib.metadata
+from typing import Any
+
+import gymnasium
+
+from arcgym.utils.string import did_you_mean, resolve_callable
+
+ENTRY_POINT_GROUP = "arcgym.tasks"
+"""Entry-point group that is searched for task packages."""
+
+BUILTIN_PACKAGES = ("arcgym_tasks",)
+"""Packages that are searched whether or not they declare an entry point."""
+
+_loaded: set[str] = set()
+
+
+def register_task(
+    task: str, *, env_cfg_entry_point: str, entry_point: str = "arcgym.envs:ManagerBasedRLEnv", **cfg_entry_points: str
+) -> None:
+    """Registers a task with Gymnasium.
+
+    Args:
+        task: Name, e.g. ``"ARC-Splenic-Proximal"``.
+        env_cfg_entry_point: ``"module:Class"`` of the environment's configuration.
+        entry_point: ``"module:Class"`` of the environment.
+        cfg_entry_points: Further configurations, e.g. ``rsl_rl_cfg_entry_point="module:Class"``.
+
+    Raises:
+        ValueError: If the name is taken.
+    """
+    if task in gymnasium.registry:
+        owner = gymnasium.registry[task].kwargs.get("env_cfg_entry_point")
+        raise ValueError(f"Task '{task}' is registered already, with the configuration {owner}.")
+    kwargs = {"env_cfg_entry_point": env_cfg_entry_point, **cfg_entry_points}
+    gymnasium.register(id=task, entry_point=entry_point, disable_env_checker=True, order_enforce=False, kwargs=kwargs)
+
+
+def load_task_packages() -> None:
+    """Imports every package that registers tasks, each once.
+
+    Raises:
+        ImportError: If a package cannot be imported, with its name and where it was declared.
+    """
+    found = {name: "built in" for name in BUILTIN_PACKAGES}
+    for entry in importlib.metadata.entry_points(group=ENTRY_POINT_GROUP):
+        found.setdefault(entry.value, f"entry point '{entry.name}' of {entry.dist.name if entry.dist else 'unknown'}")
+    for module, origin in found.items():
+        if module in _loaded:
+            continue
+        try:
+            importlib.import_module(module)
+        except ImportError as error:
+            raise ImportError(f"Cannot import the task package '{module}' ({origin}): {error}") from error
+        _loaded.add(module)
+
+
+def list_tasks(prefix: str = "ARC-") -> list[str]:
+    """Returns the names of all registered tasks that start with ``prefix``, sorted; other packages choose their own."""
+    load_task_packages()
+    specs = gymnasium.registry.items()
+    return sorted(name for name, spec in specs if name.startswith(prefix) and "env_cfg_entry_point" in spec.kwargs)
+
+
+def load_cfg_from_registry(task: str, key: str) -> Any:
+    """Returns a fresh configuration of a task.
+
+    Args:
+        task: Registered name.
+        key: Which one: ``"env_cfg_entry_point"``, ``"rsl_rl_cfg_entry_point"``, ...
+
+    Raises:
+        ValueError: If the task or the key is unknown, with what there is.
+    """
+    load_task_packages()
+    if task not in gymnasium.registry:
+        raise ValueError(f"Unknown task '{task}'. {did_you_mean(task, list_tasks(prefix=''))}")
+    kwargs = gymnasium.registry[task].kwargs
+    if key not in kwargs:
+        raise ValueError(f"Task '{task}' has no '{key}'. {did_you_mean(key, kwargs)}")
+    value = kwargs[key]
+    if isinstance(value, str):
+        value = resolve_callable(value)
+    return value() if callable(value) else copy.deepcopy(value)
