@@ -49,7 +49,7 @@ def configclass(cls: type[T]) -> type[T]:
         "__deepcopy__": _deepcopy,
     }
     for name, method in methods.items():
-        if name not in cls.__dict__:
+        if not hasattr(cls, name):
             setattr(cls, name, method)
     if not hasattr(cls, "__post_init__"):
         setattr(cls, "__post_init__", _no_post_init)  # noqa: B010 - unknown to type checkers
