@@ -213,6 +213,9 @@ class RslRlOnPolicyRunnerCfg:
     check_for_nan: bool = True
     """Whether the runner stops at a NaN in observation or reward. The environment resets broken worlds before that."""
 
+    store_git_diff: bool = False
+    """Whether the uncommitted changes of the checkout are stored with the run. Off, as they may hold private work."""
+
     torch_compile_mode: str | None = None
     """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
 

@@ -1,0 +1,84 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Records a clip of the running environment every so many steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+import gymnasium as gym
+import numpy as np
+
+
+class FrameSink(Protocol):
+    """What a video file must offer."""
+
+    def write(self, frame: np.ndarray) -> None:
+        """Append a uint8 frame of shape (H, W, 3)."""
+
+    def close(self) -> None:
+        """Finish the file."""
+
+
+class PeriodicVideo(gym.Wrapper):
+    """Writes ``rl-video-step-<step>.mp4`` from ``env.render()``."""
+
+    def __init__(
+        self,
+        env: gym.Env,
+        folder: str | Path,
+        open_video: Callable[[Path], FrameSink],
+        *,
+        length: int = 200,
+        interval: int = 2000,
+    ):
+        """Wrap ``env``.
+
+        Args:
+            env: Environment whose ``render`` returns a uint8 frame of shape (H, W, 3).
+            folder: Where the clips go.
+            open_video: Opens a video file at a path.
+            length: Control steps of a clip.
+            interval: Control steps between the starts of two clips.
+        """
+        super().__init__(env)
+        self.folder = Path(folder).resolve()
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.length = length
+        self.interval = interval
+        self.paths: list[Path] = []
+        self._open_video = open_video
+        self._video: FrameSink | None = None
+        self._step = 0
+        self._end = 0
+
+    def step(self, action: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """Step the environment and record the frame after it."""
+        result = self.env.step(action)
+        if self._video is None and self._step % self.interval == 0:
+            self._start()
+        if self._video is not None:
+            self._video.write(np.asarray(self.env.render()))
+        self._step += 1
+        if self._step >= self._end:
+            self._finish()
+        return result
+
+    def close(self) -> None:
+        """Finish the clip and close the environment."""
+        self._finish()
+        super().close()
+
+    def _start(self) -> None:
+        path = self.folder / f"rl-video-step-{self._step}.mp4"
+        self._video = self._open_video(path)
+        self._end = self._step + self.length
+        self.paths.append(path)
+
+    def _finish(self) -> None:
+        if self._video is not None:
+            self._video.close()
+            self._video = None

@@ -1,0 +1,99 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Adapter from a manager-based environment to rsl_rl's ``VecEnv``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium as gym
+import torch
+from rsl_rl.env import VecEnv
+from tensordict import TensorDict
+
+
+class RslRlVecEnvWrapper(VecEnv):
+    """Shows a manager-based environment to rsl_rl.
+
+    It resets the environment once, because rsl_rl's runner never does. Observations are copies: rsl_rl keeps a
+    reference to them across :meth:`step`, and the camera draws into the same buffer each time.
+    """
+
+    def __init__(self, env: gym.Env, clip_actions: float | None = None):
+        """Wrap and reset ``env``.
+
+        Args:
+            env: Manager-based RL environment, possibly inside Gymnasium wrappers.
+            clip_actions: Bound on the magnitude of raw actions, or None.
+        """
+        self.env = env
+        self.clip_actions = clip_actions
+        self.num_envs = self.unwrapped.num_envs
+        self.device = self.unwrapped.device
+        self.max_episode_length = self.unwrapped.max_episode_length
+        self.num_actions = self.unwrapped.action_manager.total_action_dim
+        self._obs = self._pack(env.reset()[0])
+
+    @property
+    def unwrapped(self) -> Any:
+        """The environment itself, without Gymnasium's wrappers."""
+        return self.env.unwrapped
+
+    @property
+    def cfg(self) -> object:
+        """Configuration of the environment."""
+        return self.unwrapped.cfg
+
+    @property
+    def episode_length_buf(self) -> torch.Tensor:
+        """Control steps since each world's reset, shape (N,), int64."""
+        return self.unwrapped.episode_length_buf
+
+    @episode_length_buf.setter
+    def episode_length_buf(self, value: torch.Tensor) -> None:
+        self.unwrapped.episode_length_buf = value
+
+    def get_observations(self) -> TensorDict:
+        """Return the latest observations without computing them again, which would advance their histories."""
+        return self._obs
+
+    def reset(self) -> tuple[TensorDict, dict]:
+        """Reset every world and return observations and extras."""
+        obs, extras = self.env.reset()
+        self._obs = self._pack(obs)
+        return self._obs, extras
+
+    def step(self, actions: torch.Tensor) -> tuple[TensorDict, torch.Tensor, torch.Tensor, dict]:
+        """Apply raw actions of shape (N, A) for one control step.
+
+        Returns:
+            Observations, rewards (N,), dones (N,) int64, and extras. ``extras["time_outs"]``, which makes rsl_rl add
+            the value of the state after a truncation, is left out when the task's horizon is finite.
+        """
+        if self.clip_actions is not None:
+            actions = actions.clamp(-self.clip_actions, self.clip_actions)
+        obs, rewards, terminated, truncated, extras = self.env.step(actions)
+        self._obs = self._pack(obs)
+        extras = {key: value for key, value in extras.items() if key != "time_outs"}
+        if not self.unwrapped.cfg.is_finite_horizon:
+            extras["time_outs"] = truncated
+        return self._obs, rewards.clone(), (terminated | truncated).long(), extras
+
+    def seed(self, seed: int) -> int:
+        """Seed the environment."""
+        return self.unwrapped.seed(seed)
+
+    def close(self) -> None:
+        """Close the environment."""
+        self.env.close()
+
+    def _pack(self, obs: dict[str, torch.Tensor]) -> TensorDict:
+        nested = [name for name, value in obs.items() if not isinstance(value, torch.Tensor)]
+        if nested:
+            raise TypeError(
+                f"Observation group '{nested[0]}' is a {type(obs[nested[0]]).__name__}, expected one tensor; rsl_rl "
+                "reads whole groups. Set concatenate_terms=True on it or split it into groups."
+            )
+        copies = {name: value.clone() for name, value in obs.items()}
+        return TensorDict(copies, batch_size=[self.num_envs], device=self.device)

@@ -1,0 +1,37 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from arcgym.rl import PeriodicVideo
+
+
+class FrameList:
+    """Keeps the frames that a video file would hold."""
+
+    def __init__(self):
+        self.frames, self.closed = [], False
+
+    def write(self, frame):
+        self.frames.append(int(frame[0, 0, 0]))
+
+    def close(self):
+        self.closed = True
+
+
+def test_clips_start_at_the_interval(counting_env, tmp_path):
+    videos = {}
+    counting_env.render = lambda: np.full((2, 2, 3), counting_env.common_step_counter, dtype=np.uint8)
+    env = PeriodicVideo(
+        counting_env, tmp_path, lambda path: videos.setdefault(path.name, FrameList()), length=2, interval=5
+    )
+    for _ in range(8):
+        env.step(torch.zeros(2, 2))
+    assert {name: video.frames for name, video in videos.items()} == {
+        "rl-video-step-0.mp4": [1, 2],
+        "rl-video-step-5.mp4": [6, 7],
+    }
+    assert all(video.closed for video in videos.values())

@@ -1,0 +1,50 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+import yaml
+
+from arcgym.rl import create_run_folder, find_checkpoint, write_params
+
+
+@pytest.fixture
+def runs(tmp_path):
+    for name in (
+        "2026-01-01_00-00-00/model_5.pt",
+        "2026-01-02_00-00-00_b/model_2.pt",
+        "2026-01-02_00-00-00_b/model_10.pt",
+    ):
+        path = tmp_path / "splenic" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    return tmp_path
+
+
+def test_latest_is_by_number_in_the_newest_run(runs):
+    assert find_checkpoint("splenic", root=runs).name == "model_10.pt"
+
+
+def test_run_is_chosen_by_pattern(runs):
+    assert find_checkpoint("splenic", "2026-01-01.*", root=runs).name == "model_5.pt"
+
+
+def test_path_is_taken_as_it_is(runs):
+    path = runs / "splenic" / "2026-01-02_00-00-00_b" / "model_2.pt"
+    assert find_checkpoint("other", checkpoint=str(path), root=runs) == path
+
+
+def test_missing_checkpoint_lists_what_is_there(runs):
+    with pytest.raises(FileNotFoundError, match="'best'.*model_10.pt.*model_5.pt"):
+        find_checkpoint("splenic", checkpoint="best", root=runs)
+
+
+def test_params_name_functions(tmp_path):
+    folder = create_run_folder("splenic", "trial", root=tmp_path)
+    write_params(folder, env=SimpleNamespace(to_dict=lambda: {"func": pytest.raises, "range": (1, 2), "off": None}))
+    assert folder.name.endswith("_trial")
+    params = yaml.safe_load((folder / "params" / "env.yaml").read_text())
+    assert params == {"func": "_pytest.raises:raises", "range": [1, 2], "off": None}

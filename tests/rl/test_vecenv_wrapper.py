@@ -1,0 +1,55 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from arcgym.rl import RslRlVecEnvWrapper
+
+
+def test_constructor_resets_and_reads_sizes(counting_env):
+    env = RslRlVecEnvWrapper(counting_env)
+    assert (env.num_envs, env.num_actions, env.max_episode_length) == (2, 2, 4)
+    assert env.get_observations().batch_size == torch.Size([2])
+
+
+def test_observations_are_copies_of_the_camera_buffer(counting_env):
+    env = RslRlVecEnvWrapper(counting_env)
+    before = env.get_observations()
+    after = env.step(torch.zeros(2, 2))[0]
+    assert before["policy"].max() == 0
+    assert after["policy"].min() == 1
+
+
+def test_images_stay_bytes(counting_env):
+    assert RslRlVecEnvWrapper(counting_env).get_observations()["policy"].dtype == torch.uint8
+
+
+def test_actions_are_clipped(counting_env):
+    env = RslRlVecEnvWrapper(counting_env, clip_actions=1.0)
+    _, rewards, _, _ = env.step(torch.tensor([[3.0, 0.0], [-0.5, 0.0]]))
+    assert rewards.tolist() == [1.0, -0.5]
+
+
+def test_truncation_is_a_time_out_and_a_done(counting_env):
+    env = RslRlVecEnvWrapper(counting_env)
+    env.episode_length_buf = torch.tensor([3, 0])
+    _, _, dones, extras = env.step(torch.zeros(2, 2))
+    assert dones.tolist() == [1, 0]
+    assert dones.dtype == torch.long
+    assert extras["time_outs"].tolist() == [True, False]
+
+
+def test_finite_horizon_has_no_time_outs(counting_env):
+    counting_env.cfg.is_finite_horizon = True
+    extras = RslRlVecEnvWrapper(counting_env).step(torch.zeros(2, 2))[3]
+    assert "time_outs" not in extras
+    assert set(extras) == {"log", "cost"}
+
+
+def test_nested_group_is_named(counting_env, monkeypatch):
+    monkeypatch.setattr(counting_env, "reset", lambda: ({"policy": {"rgb": torch.zeros(2, 1)}}, {}))
+    with pytest.raises(TypeError, match="'policy' is a dict.*concatenate_terms"):
+        RslRlVecEnvWrapper(counting_env)
