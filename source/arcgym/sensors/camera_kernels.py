@@ -1,0 +1,114 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Kernels of the endoscope camera: rays to radiance and depth, exposure, and the response curve."""
+
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+from .shading import Lighting, SurfaceView, shade, surface_hit
+
+
+@wp.kernel
+def cast_rays(
+    surface: SurfaceView,
+    lighting: Lighting,
+    albedo: wp.Texture2D,
+    detail: wp.Texture2D,
+    drawn: wp.array[wp.bool],
+    poses: wp.array[wp.transform],
+    rays: wp.array3d[wp.vec3],
+    texture_offset: wp.array[wp.vec2],
+    far: float,
+    radiance: wp.array3d[wp.vec3],
+    depth: wp.array3d[float],
+):
+    """Radiance (mean of the samples) and ray distance (nearest of the samples) of every pixel of every world."""
+    world, row, column = wp.tid()
+    if not drawn[world]:
+        return
+    camera = poses[world]
+    origin = wp.transform_get_translation(camera)
+    total = wp.vec3(0.0)
+    nearest = far
+    for sample in range(rays.shape[2]):
+        direction = wp.transform_vector(camera, rays[row, column, sample])
+        query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+        if query.result:
+            hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
+            total += shade(
+                surface, lighting, albedo, detail, hit, camera, direction, query.t, texture_offset[world]
+            )
+            nearest = wp.min(nearest, query.t)
+    radiance[world, row, column] = total / float(rays.shape[2])
+    depth[world, row, column] = nearest
+
+
+@wp.kernel
+def row_brightness(radiance: wp.array3d[wp.vec3], drawn: wp.array[wp.bool], brightness: wp.array2d[float]):
+    """Sum over each row of the square root of luminance (Rec. 709), in a fixed order and so always the same."""
+    world, row = wp.tid()
+    if not drawn[world]:
+        return
+    total = float(0.0)
+    for column in range(radiance.shape[2]):
+        total += wp.sqrt(wp.dot(radiance[world, row, column], wp.vec3(0.2126, 0.7152, 0.0722)))
+    brightness[world, row] = total
+
+
+@wp.kernel
+def expose(
+    brightness: wp.array2d[float],
+    pixels: float,
+    target: float,
+    gain_min: float,
+    gain_max: float,
+    lag: float,
+    drawn: wp.array[wp.bool],
+    poses: wp.array[wp.transform],
+    gain: wp.array[float],
+    drawn_from: wp.array[wp.transform],
+):
+    """Gain that brings the mean to `target`; a gain of 0 marks a world whose last picture does not count."""
+    world = wp.tid()
+    if not drawn[world]:
+        return
+    drawn_from[world] = poses[world]
+    total = float(0.0)
+    for row in range(brightness.shape[1]):
+        total += brightness[world, row]
+    mean = total / pixels
+    wanted = wp.clamp(target / (mean * mean + 1.0e-9), gain_min, gain_max)
+    last = gain[world]
+    if lag > 0.0 and last > 0.0:
+        wanted = wp.exp(lag * wp.log(last) + (1.0 - lag) * wp.log(wanted))
+    gain[world] = wanted
+
+
+@wp.func
+def response(radiance: float, edge: float) -> wp.uint8:
+    """Camera response: saturating, then gamma 2, as a byte."""
+    return wp.uint8(255.0 * wp.sqrt(1.0 - wp.exp(-radiance)) * edge + 0.5)
+
+
+@wp.kernel
+def develop(
+    radiance: wp.array3d[wp.vec3],
+    gain: wp.array[float],
+    light_gain: wp.array[float],
+    color_gain: wp.array[wp.vec3],
+    rays: wp.array3d[wp.vec3],
+    vignette: float,
+    drawn: wp.array[wp.bool],
+    rgb: wp.array4d[wp.uint8],
+):
+    """Exposed radiance to bytes, with the world's brightness and colour cast and the lens's vignette."""
+    world, row, column = wp.tid()
+    if not drawn[world]:
+        return
+    exposed = wp.cw_mul(radiance[world, row, column], color_gain[world]) * (gain[world] * light_gain[world])
+    cosine = wp.max(-rays[row, column, 0][2], 0.0)
+    edge = 1.0 - vignette * (1.0 - cosine)
+    rgb[world, row, column, 0] = response(exposed[0], edge)
+    rgb[world, row, column, 1] = response(exposed[1], edge)
+    rgb[world, row, column, 2] = response(exposed[2], edge)

@@ -1,0 +1,191 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The camera at the tip of the endoscope, in every world."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+from .mucosa_textures import MucosaTextures
+from .sensor_base import SensorBase
+from .skinned_surface import SkinnedSurface
+from .surface_renderer import Optics, SurfaceRenderer, WorldLooks
+
+if TYPE_CHECKING:
+    from arcgym.anatomy.stage import VisualMesh
+    from arcgym.assets.endoscope_spec import CameraSpec
+    from arcgym.scene import InteractiveScene
+
+    from .endoscope_camera_cfg import EndoscopeCameraCfg
+
+OUTPUTS = ("rgb", "depth")
+"""Data types that the camera can give."""
+
+
+@dataclass
+class EndoscopeCameraData:
+    """Last picture of every world; the tensors are views of the renderer's memory and change with every update."""
+
+    pos_w: torch.Tensor
+    """Position of the camera when the picture was taken [m], shape (N, 3)."""
+    quat_w_opengl: torch.Tensor
+    """Orientation (x, y, z, w) of the frame that looks along −Z with +Y up, shape (N, 4)."""
+    output: dict[str, torch.Tensor] = field(default_factory=dict)
+    """``rgb``: uint8, shape (N, H, W, 3). ``depth``: distance along the ray [m], float32, shape (N, H, W)."""
+
+
+class EndoscopeCamera(SensorBase):
+    """Batched ray-cast camera inside the deforming colon.
+
+    One update skins the visual surface to the wall, refits its ray tree and draws every world: launches only, no
+    transfer to the host, so it can be captured together with the simulation.
+    """
+
+    cfg: EndoscopeCameraCfg
+
+    def __init__(self, cfg: EndoscopeCameraCfg) -> None:
+        """Checks the configuration."""
+        super().__init__(cfg)
+        unknown = [name for name in cfg.data_types if name not in OUTPUTS]
+        if unknown:
+            raise ValueError(f"EndoscopeCameraCfg.data_types: {unknown} unknown. Available: {list(OUTPUTS)}.")
+        if min(cfg.width, cfg.height, cfg.samples) < 1:
+            raise ValueError(
+                "EndoscopeCameraCfg: width, height and samples must be at least 1,"
+                f" got {cfg.width}, {cfg.height}, {cfg.samples}."
+            )
+
+    def initialize(self, scene: InteractiveScene) -> None:
+        """Binds the camera to ``scene["colon"]`` and ``scene["endoscope"]`` and allocates its buffers."""
+        self._colon, self._endoscope = scene["colon"], scene["endoscope"]
+        self._device = str(scene.device)
+        stage = self._colon.stage
+        self._looks = WorldLooks.neutral(scene.num_envs, self._device)
+        self._drawn = wp.full(scene.num_envs, True, dtype=wp.bool, device=self._device)
+        surface = SkinnedSurface(stage.visual_proxy, stage.wall, scene.num_envs, self._device)
+        textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device)
+        size = (self.cfg.width, self.cfg.height)
+        self._renderer = SurfaceRenderer(
+            surface, stage.visual_proxy, textures, self._optics(), size, self.cfg.samples
+        )
+        self._snapshots: dict[tuple[int, int], SurfaceRenderer] = {}
+        self._data = self._make_data()
+
+    @property
+    def data(self) -> EndoscopeCameraData:
+        """Last picture of every world."""
+        return self._data
+
+    @property
+    def surface(self) -> SkinnedSurface:
+        """The surface that the policy's camera sees, also for other views of the scene."""
+        return self._renderer.surface
+
+    @property
+    def field_of_view(self) -> float:
+        """Angle from corner to corner [rad]."""
+        spec = self._endoscope.stage.camera
+        return spec.field_of_view if self.cfg.field_of_view is None else self.cfg.field_of_view
+
+    def update(self, env_mask: torch.Tensor | None = None) -> None:
+        """Draws the worlds of `env_mask`, shape (num_envs,), bool, again; None draws all.
+
+        Pictures of the other worlds stay bit for bit.
+        """
+        if env_mask is None:
+            self._drawn.fill_(True)
+        else:
+            wp.copy(self._drawn, wp.from_torch(env_mask, dtype=wp.bool))
+        self._renderer.surface.update(self._colon.nodal_pos_wp, self._drawn)
+        self._renderer.draw(self._endoscope.camera_pose_wp, self._looks, self._drawn)
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Lets the exposure of the worlds start anew with their next picture."""
+        gain = wp.to_torch(self._renderer.gain)
+        gain[slice(None) if env_ids is None else env_ids] = 0.0
+
+    def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
+        """Sets the brightness of the picture relative to the exposure's aim, shape (n,); 1 is neutral."""
+        wp.to_torch(self._looks.light_gain)[slice(None) if env_ids is None else env_ids] = gain
+
+    def write_color_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
+        """Sets the gain of red, green and blue, shape (n, 3); ones are neutral."""
+        wp.to_torch(self._looks.color_gain)[slice(None) if env_ids is None else env_ids] = gain
+
+    def write_texture_offset(self, offset: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
+        """Shifts the mucosa texture by fractions of its size along u and v, shape (n, 2)."""
+        wp.to_torch(self._looks.texture_offset)[slice(None) if env_ids is None else env_ids] = offset
+
+    def snapshot_view(self, env_id: int = 0, size: int = 512, samples: int = 2) -> tuple[np.ndarray, np.ndarray]:
+        """Draws one world large, from the fine surface, for people to look at.
+
+        The fine surface is made at the first call and kept. Exposure has no lag here.
+
+        Args:
+            env_id: World to draw, as it is now.
+            size: Width and height [px].
+            samples: Rays per pixel.
+
+        Returns:
+            Colour, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
+        """
+        renderer = self._snapshot_renderer(size, samples)
+        first = env_id * renderer.surface.num_nodes
+        renderer.gain.zero_()
+        renderer.surface.update(self._colon.nodal_pos_wp[first : first + renderer.surface.num_nodes])
+        renderer.draw(
+            self._endoscope.camera_pose_wp[env_id : env_id + 1], self._looks.of_world(env_id), self._one_world
+        )
+        return renderer.rgb.numpy()[0], renderer.depth.numpy()[0]
+
+    def _snapshot_renderer(self, size: int, samples: int) -> SurfaceRenderer:
+        """Returns the renderer of one world's fine surface at this size, making it at first use."""
+        key = (size, samples)
+        if key not in self._snapshots:
+            visual, surface, textures = self._fine_surface
+            self._snapshots[key] = SurfaceRenderer(
+                surface, visual, textures, self._optics(), (size, size), samples
+            )
+        return self._snapshots[key]
+
+    @cached_property
+    def _fine_surface(self) -> tuple[VisualMesh, SkinnedSurface, MucosaTextures]:
+        """The fine visual mesh of one world with its textures."""
+        stage = self._colon.stage
+        surface = SkinnedSurface(stage.visual, stage.wall, 1, self._device)
+        textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device, smooth_levels=True)
+        return stage.visual, surface, textures
+
+    @cached_property
+    def _one_world(self) -> wp.array:
+        """Mask that draws the only world of a snapshot."""
+        return wp.full(1, True, dtype=wp.bool, device=self._device)
+
+    def _optics(self) -> Optics:
+        """Gathers what the endoscope's stage and the configuration say about camera and lights."""
+        stage = self._endoscope.stage
+        lights = lights_in_camera(stage.lights, stage.camera)
+        return Optics(self.field_of_view, lights, self.cfg.far, self.cfg.lighting, self.cfg.exposure)
+
+    def _make_data(self) -> EndoscopeCameraData:
+        """Shows the renderer's buffers as tensors."""
+        pose = wp.to_torch(self._renderer.drawn_from)
+        outputs = {"rgb": self._renderer.rgb, "depth": self._renderer.depth}
+        views = {name: wp.to_torch(outputs[name]) for name in self.cfg.data_types}
+        return EndoscopeCameraData(pose[:, :3], pose[:, 3:], views)
+
+
+def lights_in_camera(lights: np.ndarray, camera: CameraSpec) -> np.ndarray:
+    """Returns light positions, given like the camera in the last link's frame, in the camera's frame [m], (2, 3)."""
+    x, y, z, w = (float(c) for c in camera.quaternion)
+    axis, offset = np.array([-x, -y, -z]), np.asarray(lights, dtype=np.float64) - np.asarray(camera.position)
+    twice = 2.0 * np.cross(axis, offset)
+    return offset + w * twice + np.cross(axis, twice)

@@ -1,0 +1,60 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mucosa textures of a stage on the device."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import warp as wp
+from PIL import Image
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+class MucosaTextures:
+    """Albedo and detail texture with their pyramids of ever smaller copies, tiled in both directions."""
+
+    def __init__(self, albedo: Path, detail: Path, device: str, smooth_levels: bool = False) -> None:
+        """Loads both images.
+
+        Args:
+            albedo: Colour image in sRGB.
+            detail: RGBA image: slope along u, slope along v, height, wetness.
+            device: Warp device.
+            smooth_levels: Blend between two levels of the pyramid. Smoother in large pictures, twice the look-ups.
+        """
+        blend = wp.TextureFilterMode.LINEAR if smooth_levels else wp.TextureFilterMode.CLOSEST
+        color = _load_rgba(albedo)
+        color[..., :3] = _square_root_of_linear(color[..., :3])
+        self.albedo = _make_texture(color, blend, device)
+        self.detail = _make_texture(_load_rgba(detail), blend, device)
+        self.width, self.height = color.shape[1], color.shape[0]
+
+
+def _load_rgba(path: Path) -> np.ndarray:
+    """Reads an image, shape (H, W, 4), uint8."""
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"Texture {path} not found. It belongs beside the colon's stage file.")
+    with Image.open(path) as image:
+        return np.array(image.convert("RGBA"))
+
+
+def _square_root_of_linear(srgb: np.ndarray) -> np.ndarray:
+    """Bytes of sRGB (IEC 61966-2-1) to bytes of the square root of linear light, which a kernel decodes by squaring."""
+    value = np.arange(256) / 255.0
+    linear = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    return np.round(255.0 * np.sqrt(linear)).astype(np.uint8)[srgb]
+
+
+def _make_texture(image: np.ndarray, blend: wp.TextureFilterMode, device: str) -> wp.Texture2D:
+    """Uploads an image as a tiled texture with the whole pyramid."""
+    return wp.Texture2D(
+        np.ascontiguousarray(image),
+        filter_mode=wp.TextureFilterMode.LINEAR,
+        mip_filter_mode=blend,
+        address_mode=wp.TextureAddressMode.WRAP,
+        num_mip_levels=0,
+        device=device,
+    )

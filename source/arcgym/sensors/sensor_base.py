@@ -1,0 +1,59 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every sensor of the scene does."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
+
+import torch
+
+from arcgym.utils.configclass import MISSING, configclass
+
+if TYPE_CHECKING:
+    from arcgym.scene import InteractiveScene
+
+
+@configclass
+class SensorBaseCfg:
+    """Common part of every sensor's configuration."""
+
+    class_type: type = MISSING
+    """Sensor class that the scene makes from this configuration."""
+
+    update_period: float = 0.0
+    """Time between two readings [s]; 0 reads after every control step. Raise it for a sensor slower than control."""
+
+
+class SensorBase(ABC):
+    """A sensor of all worlds at once; it is made with its configuration and bound to the scene later."""
+
+    def __init__(self, cfg: SensorBaseCfg) -> None:
+        """Keeps the configuration; nothing is allocated before :meth:`initialize`."""
+        self.cfg = cfg
+        self._since_update = 0.0
+
+    @property
+    @abstractmethod
+    def data(self) -> Any:
+        """Last readings of all worlds."""
+
+    @abstractmethod
+    def initialize(self, scene: InteractiveScene) -> None:
+        """Binds the sensor to the scene's assets and allocates its buffers."""
+
+    @abstractmethod
+    def update(self, env_mask: torch.Tensor | None = None) -> None:
+        """Takes a new reading in the worlds of `env_mask`, shape (num_envs,), bool; None: in all."""
+
+    @abstractmethod
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Forgets what earlier readings left behind in the worlds `env_ids`; None: in all."""
+
+    def advance(self, dt: float) -> None:
+        """Lets `dt` seconds pass and takes a reading of all worlds when the update period is over."""
+        self._since_update += dt
+        if self._since_update >= self.cfg.update_period - 1.0e-9:
+            self._since_update = 0.0
+            self.update()

@@ -1,0 +1,183 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Light on wet mucosa, as Warp functions shared by the policy camera and the video camera."""
+
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+@wp.struct
+class SurfaceView:
+    """What a ray needs of a :class:`SkinnedSurface` and its textures."""
+
+    mesh: wp.uint64
+    roots: wp.array[int]
+    normals: wp.array[wp.vec3]
+    # u, v, tint and texels per metre of every vertex, shared by the worlds
+    attributes: wp.array[wp.vec4]
+    # length of the texture along u and v at its true scale [m]
+    texture_size: wp.vec2
+
+
+@wp.struct
+class Lighting:
+    """The values of :class:`LightingCfg`, with the lights placed in the camera's frame."""
+
+    left: wp.vec3
+    right: wp.vec3
+    wrap: wp.vec3
+    beam: float
+    scatter: float
+    bump: float
+    film: float
+    gloss: float
+    roughness_sq: float
+    min_distance_sq: float
+    pixel_angle: float
+
+
+@wp.struct
+class Hit:
+    """The surface where a ray meets it."""
+
+    position: wp.vec3
+    # geometric smooth normal, turned to the viewer
+    normal: wp.vec3
+    # surface gradients of the texture coordinates [1/m]
+    gradient_u: wp.vec3
+    gradient_v: wp.vec3
+    uv: wp.vec2
+    tint: float
+    # level of the texture pyramid whose texels are as large as the pixel
+    level: float
+
+
+@wp.func
+def surface_hit(surface: SurfaceView, query: wp.MeshQueryRay, world: int, origin: wp.vec3, direction: wp.vec3,
+                pixel_angle: float) -> Hit:
+    """Interpolates the surface at the point that a ray has hit."""
+    corner = query.face * 3
+    i0 = wp.mesh_get_index(surface.mesh, corner)
+    i1 = wp.mesh_get_index(surface.mesh, corner + 1)
+    i2 = wp.mesh_get_index(surface.mesh, corner + 2)
+    w0 = query.u
+    w1 = query.v
+    w2 = 1.0 - w0 - w1
+    first = world * surface.attributes.shape[0]
+    a0 = surface.attributes[i0 - first]
+    a1 = surface.attributes[i1 - first]
+    a2 = surface.attributes[i2 - first]
+    at = a0 * w0 + a1 * w1 + a2 * w2
+
+    p0 = wp.mesh_get_point(surface.mesh, corner)
+    e1 = wp.mesh_get_point(surface.mesh, corner + 1) - p0
+    e2 = wp.mesh_get_point(surface.mesh, corner + 2) - p0
+    area = wp.cross(e1, e2)
+    scale = 1.0 / wp.max(wp.length_sq(area), 1.0e-24)
+    d1 = a1 - a0
+    d2 = a2 - a0
+
+    hit = Hit()
+    hit.position = origin + direction * query.t
+    hit.gradient_u = wp.cross(e2 * d1[0] - e1 * d2[0], area) * scale
+    hit.gradient_v = wp.cross(e2 * d1[1] - e1 * d2[1], area) * scale
+    hit.uv = wp.vec2(at[0], at[1])
+    hit.tint = at[2]
+    normal = wp.normalize(surface.normals[i0] * w0 + surface.normals[i1] * w1 + surface.normals[i2] * w2)
+    hit.normal = facing_normal(normal, area, direction)
+    slant = wp.max(-wp.dot(hit.normal, direction), 0.25)
+    hit.level = wp.log2(wp.max(at[3] * query.t * pixel_angle / slant, 1.0))
+    return hit
+
+
+@wp.func
+def facing_normal(normal: wp.vec3, area: wp.vec3, direction: wp.vec3) -> wp.vec3:
+    """Smooth normal on the viewer's side; at silhouettes, where it would point away, bent back to grazing."""
+    side = normal
+    if wp.dot(area, direction) > 0.0:
+        side = -normal
+    facing = -wp.dot(side, direction)
+    if facing < 0.1:
+        side = wp.normalize(side - direction * (0.1 - facing))
+    return side
+
+
+@wp.func
+def relief_normal(hit: Hit, slope: wp.vec2, texture_size: wp.vec2, height: float) -> wp.vec3:
+    """Normal of the mucosal relief; where the texture is stretched the relief is flatter, as a real one would be."""
+    gradient = (hit.gradient_u * (slope[0] * texture_size[0]) + hit.gradient_v * (slope[1] * texture_size[1])) * height
+    steep = wp.length_sq(gradient)
+    if steep > 0.25:
+        gradient = gradient * (0.5 / wp.sqrt(steep))
+    return wp.normalize(hit.normal - gradient)
+
+
+@wp.func
+def mucosa_color(texel: wp.vec4, tint: float) -> wp.vec3:
+    """Linear albedo from a texel in gamma 2; polyps are redder, the inside of a diverticulum darker."""
+    color = wp.vec3(texel[0] * texel[0], texel[1] * texel[1], texel[2] * texel[2])
+    if tint > 0.0:
+        return wp.cw_mul(color, wp.vec3(1.0 + 0.05 * tint, 1.0 - 0.38 * tint, 1.0 - 0.30 * tint))
+    return color * (1.0 + 0.82 * tint)
+
+
+@wp.func
+def highlight(cosine: float, alpha_sq: float) -> float:
+    """GGX distribution of microfacets (Walter et al. 2007, eq. 33) times the 4 % that water reflects, over 4."""
+    spread = cosine * cosine * (alpha_sq - 1.0) + 1.0
+    return 0.01 * alpha_sq / (spread * spread)
+
+
+@wp.func
+def lit_by(lamp: wp.vec3, hit: Hit, relief: wp.vec3, film: wp.vec3, direction: wp.vec3, axis: wp.vec3,
+           color: wp.vec3, gloss: float, alpha_sq: float, lighting: Lighting) -> wp.vec3:
+    """Radiance towards the camera from one light: wrapped diffuse reflection and the highlight on the film."""
+    way = lamp - hit.position
+    distance_sq = wp.length_sq(way)
+    way = way / wp.sqrt(distance_sq)
+    cosine = wp.max(-wp.dot(way, axis), 0.02)
+    power = 0.5 * cosine * (1.0 - lighting.beam + lighting.beam * cosine)
+    power = power / wp.max(distance_sq, lighting.min_distance_sq)
+    falling = wp.dot(relief, way)
+    diffuse = wp.vec3(
+        wp.max((falling + lighting.wrap[0]) / (1.0 + lighting.wrap[0]), 0.0),
+        wp.max((falling + lighting.wrap[1]) / (1.0 + lighting.wrap[1]), 0.0),
+        wp.max((falling + lighting.wrap[2]) / (1.0 + lighting.wrap[2]), 0.0),
+    )
+    mirror = wp.max(wp.dot(film, wp.normalize(way - direction)), 0.0)
+    glint = gloss * highlight(mirror, alpha_sq)
+    return (wp.cw_mul(color, diffuse) + wp.vec3(glint, glint, glint)) * power
+
+
+@wp.func
+def shade(
+    surface: SurfaceView,
+    lighting: Lighting,
+    albedo: wp.Texture2D,
+    detail: wp.Texture2D,
+    hit: Hit,
+    camera: wp.transform,
+    direction: wp.vec3,
+    distance: float,
+    texture_offset: wp.vec2,
+) -> wp.vec3:
+    """Radiance that a hit sends back along the ray."""
+    uv = hit.uv + texture_offset
+    texel = wp.texture_sample(albedo, uv, dtype=wp.vec4f, lod=hit.level)
+    relief_texel = wp.texture_sample(detail, uv, dtype=wp.vec4f, lod=hit.level)
+    color = mucosa_color(texel, hit.tint)
+    slope = wp.vec2(2.0 * relief_texel[0] - 1.0, 2.0 * relief_texel[1] - 1.0)
+    relief = relief_normal(hit, slope, surface.texture_size, lighting.bump)
+    film = wp.normalize(hit.normal + (relief - hit.normal) * lighting.film)
+    open_sky = wp.clamp(1.0 + 0.85 * hit.tint, 0.15, 1.0)
+    gloss = lighting.gloss * (0.25 + 0.75 * relief_texel[3]) * open_sky
+    alpha_sq = lighting.roughness_sq + 0.25 * lighting.pixel_angle * lighting.pixel_angle
+
+    axis = wp.transform_vector(camera, wp.vec3(0.0, 0.0, -1.0))
+    left = wp.transform_point(camera, lighting.left)
+    right = wp.transform_point(camera, lighting.right)
+    radiance = lit_by(left, hit, relief, film, direction, axis, color, gloss, alpha_sq, lighting)
+    radiance += lit_by(right, hit, relief, film, direction, axis, color, gloss, alpha_sq, lighting)
+    bounce = lighting.scatter / wp.max(distance * distance, lighting.min_distance_sq)
+    return (radiance + wp.cw_mul(color, color) * bounce) * open_sky

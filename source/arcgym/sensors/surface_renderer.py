@@ -1,0 +1,183 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the skinned surface from one camera per world: the launches behind both cameras."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+from .camera_kernels import cast_rays, develop, expose, row_brightness
+from .camera_rays import fisheye_rays, pixel_angle
+from .shading import Lighting, SurfaceView
+from .texture_density import texel_density
+
+if TYPE_CHECKING:
+    from arcgym.anatomy.stage import VisualMesh
+
+    from .lighting_cfg import ExposureCfg, LightingCfg
+    from .mucosa_textures import MucosaTextures
+    from .skinned_surface import SkinnedSurface
+
+TEXTURE_SIZE = (0.123, 0.24)
+"""Length of the mucosa texture along u and v at its true scale [m]; v = s / 0.24 m in every stage."""
+
+
+@dataclass(frozen=True)
+class Optics:
+    """Camera and lights of one endoscope."""
+
+    field_of_view: float
+    """Angle from corner to corner [rad]."""
+    lights: np.ndarray
+    """Positions of the two lights in the camera's frame [m], shape (2, 3)."""
+    far: float
+    """Farthest distance seen [m]."""
+    lighting: LightingCfg
+    """Tip lights and wet mucosa."""
+    exposure: ExposureCfg
+    """Automatic exposure and response curve."""
+
+
+@dataclass(frozen=True)
+class WorldLooks:
+    """What differs between worlds."""
+
+    light_gain: wp.array
+    """Brightness relative to the exposure's aim, shape (num_envs,), float."""
+    color_gain: wp.array
+    """Gain of red, green and blue, shape (num_envs,), vec3."""
+    texture_offset: wp.array
+    """Where the texture starts, in fractions of its size, shape (num_envs,), vec2."""
+
+    @classmethod
+    def neutral(cls, num_envs: int, device: str) -> WorldLooks:
+        """Returns the same plain look for every world."""
+        return cls(
+            wp.full(num_envs, 1.0, dtype=float, device=device),
+            wp.full(num_envs, wp.vec3(1.0), dtype=wp.vec3, device=device),
+            wp.zeros(num_envs, dtype=wp.vec2, device=device),
+        )
+
+    def of_world(self, env_id: int) -> WorldLooks:
+        """Returns the look of one world, sharing memory."""
+        one = slice(env_id, env_id + 1)
+        return WorldLooks(self.light_gain[one], self.color_gain[one], self.texture_offset[one])
+
+
+class SurfaceRenderer:
+    """Rays, buffers and launches for one picture size; :meth:`draw` can be captured in a graph."""
+
+    def __init__(
+        self,
+        surface: SkinnedSurface,
+        visual: VisualMesh,
+        textures: MucosaTextures,
+        optics: Optics,
+        size: tuple[int, int],
+        samples: int,
+    ) -> None:
+        """Allocates everything for pictures of `size` (width, height) [px] with `samples` rays per pixel."""
+        width, height = size
+        self.surface, self.textures, self.optics = surface, textures, optics
+        self.shape = (surface.num_envs, height, width)
+        device = self.device = surface.device
+        rays = fisheye_rays(width, height, optics.field_of_view, samples)
+        self.rays = wp.array(rays, dtype=wp.vec3, device=device)
+        self.rgb = wp.zeros((*self.shape, 3), dtype=wp.uint8, device=device)
+        self.depth = wp.full(self.shape, optics.far, dtype=float, device=device)
+        self.radiance = wp.zeros(self.shape, dtype=wp.vec3, device=device)
+        self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
+        self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
+        self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
+        self._view = _surface_view(surface, visual, textures)
+        self._lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
+
+    def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
+        """Draws the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform."""
+        wp.launch(
+            cast_rays,
+            self.shape,
+            inputs=[
+                self._view,
+                self._lighting,
+                self.textures.albedo,
+                self.textures.detail,
+                drawn,
+                poses,
+                self.rays,
+                looks.texture_offset,
+                self.optics.far,
+            ],
+            outputs=[self.radiance, self.depth],
+            device=self.device,
+        )
+        self._expose(poses, drawn)
+        wp.launch(
+            develop,
+            self.shape,
+            inputs=[
+                self.radiance,
+                self.gain,
+                looks.light_gain,
+                looks.color_gain,
+                self.rays,
+                self.optics.exposure.vignette,
+                drawn,
+            ],
+            outputs=[self.rgb],
+            device=self.device,
+        )
+
+    def _expose(self, poses: wp.array, drawn: wp.array) -> None:
+        """Finds the gain of every world."""
+        num_envs, height, width = self.shape
+        cfg = self.optics.exposure
+        low, high = cfg.gain_range if cfg.automatic else (cfg.gain, cfg.gain)
+        wp.launch(
+            row_brightness,
+            (num_envs, height),
+            inputs=[self.radiance, drawn],
+            outputs=[self._brightness],
+            device=self.device,
+        )
+        wp.launch(
+            expose,
+            num_envs,
+            inputs=[self._brightness, float(height * width), cfg.target, low, high, cfg.lag, drawn, poses],
+            outputs=[self.gain, self.drawn_from],
+            device=self.device,
+        )
+
+
+def _surface_view(surface: SkinnedSurface, visual: VisualMesh, textures: MucosaTextures) -> SurfaceView:
+    """Packs what the kernel needs of the surface."""
+    density = texel_density(visual, textures.width, textures.height)
+    attributes = np.column_stack([visual.uv, visual.tint, density]).astype(np.float32)
+    view = SurfaceView()
+    view.mesh = surface.mesh.id
+    view.roots = surface.roots
+    view.normals = surface.normals
+    view.attributes = wp.array(attributes, dtype=wp.vec4, device=surface.device)
+    view.texture_size = wp.vec2(*TEXTURE_SIZE)
+    return view
+
+
+def _lighting(optics: Optics, angle: float) -> Lighting:
+    """Packs the lighting configuration; `angle` is what one sample spans [rad]."""
+    cfg, lights = optics.lighting, optics.lights
+    lighting = Lighting()
+    lighting.left = wp.vec3(*map(float, lights[0]))
+    lighting.right = wp.vec3(*map(float, lights[1]))
+    lighting.wrap = wp.vec3(*cfg.wrap)
+    for name in ("beam", "scatter", "bump", "film", "gloss"):
+        setattr(lighting, name, getattr(cfg, name))
+    lighting.roughness_sq = cfg.roughness**2
+    lighting.min_distance_sq = cfg.min_distance**2
+    lighting.pixel_angle = angle
+    return lighting
