@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import torch
 from tensordict import TensorDict
 
 _SCALARS = 6
@@ -19,7 +20,8 @@ def rollout_bytes(obs: TensorDict, num_actions: int, num_steps: int) -> int:
         num_actions: Size of the action.
         num_steps: Steps of one rollout.
     """
-    images_and_vectors = sum(value.element_size() * value.numel() for value in obs.values())
+    tensors: list[torch.Tensor] = list(obs.values())
+    images_and_vectors = sum(tensor.element_size() * tensor.numel() for tensor in tensors)
     actions_mean_std = 3 * num_actions
     return num_steps * (images_and_vectors + 4 * obs.batch_size[0] * (actions_mean_std + _SCALARS))
 

@@ -1,7 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Agent configurations for rsl_rl 5.5; :meth:`RslRlOnPolicyRunnerCfg.to_dict` is the only place that knows its format."""
+"""Agent configurations for rsl_rl 5.5.
+
+:meth:`RslRlOnPolicyRunnerCfg.to_dict` is the only place that knows rsl_rl's format.
+"""
 
 from __future__ import annotations
 

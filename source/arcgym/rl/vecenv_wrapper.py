@@ -27,7 +27,7 @@ class RslRlVecEnvWrapper(VecEnv):
             env: Manager-based RL environment, possibly inside Gymnasium wrappers.
             clip_actions: Bound on the magnitude of raw actions, or None.
         """
-        self.env = env
+        self.env: Any = env
         self.clip_actions = clip_actions
         self.num_envs = self.unwrapped.num_envs
         self.device = self.unwrapped.device
