@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
-from pxr import Gf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics
 
-from arcgym.anatomy.stage_types import StageError
+from arcgym.anatomy.stage import StageError
 from arcgym.assets.endoscope_spec import (
     CameraSpec,
     DriveSpec,
@@ -86,9 +86,13 @@ class _Reader:
 
     def __init__(self, path: Path) -> None:
         if not path.is_file():
-            raise StageError(path, "", "", "no such file", "Give the path of an endoscope's .usda file.")
+            near = ", ".join(sorted(file.name for file in path.parent.glob("*.usd*"))) or "no USD file"
+            raise StageError(path, "", "", "no such file", f"The folder {path.parent} has {near}.")
         self.path = path
-        self.usd = Usd.Stage.Open(str(path))
+        try:
+            self.usd = Usd.Stage.Open(str(path))
+        except Tf.ErrorException as error:
+            raise StageError(path, "", "", f"not a USD file ({error})", "Pass a .usda, .usdc or .usd file.") from error
 
     def read(self) -> EndoscopeStage:
         """Check units and layout, then collect the values."""
@@ -111,7 +115,7 @@ class _Reader:
             root="slide_roll" if slide else "free",
             link_length=length,
             link_radius=radius,
-            link_mass=np.array([self._number(prim, "physics:mass") for prim in links]),
+            link_mass=np.array([self._mass(prim) for prim in links]),
             hinge_stiffness=drives[:, 0],
             hinge_damping=drives[:, 1],
             hinge_limit=np.array([self._hinge_limit(hinge) for hinge in hinges]),
@@ -143,6 +147,12 @@ class _Reader:
         if kind not in get_args(EndoscopeKind):
             raise self._error(scope, "arcgym:kind", f"is '{kind}'", f"Use one of {get_args(EndoscopeKind)}.")
         return kind
+
+    def _mass(self, link: Usd.Prim) -> float:
+        mass = self._number(link, "physics:mass")
+        if mass <= 0.0:
+            raise self._error(link, "physics:mass", f"is {mass:g}", "Set the real mass of the link in kilograms.")
+        return mass
 
     def _hinge(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim:
         """The prim of hinge number `hinge`, checked to join its two links end to end about the right axis."""
