@@ -1,4 +1,8 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Navigation tasks."""
+"""Navigation tasks: pass one segment of the colon."""
+
+from __future__ import annotations
+
+from arcgym_tasks.navigation import config  # noqa: F401

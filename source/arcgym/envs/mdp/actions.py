@@ -1,0 +1,164 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Action terms: raw actions in [-1, 1] become velocity commands of the tip or of the base."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import torch
+
+from arcgym.managers import ActionTerm, ActionTermCfg
+from arcgym.utils.configclass import configclass
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+
+class VelocityAction(ActionTerm):
+    """Clips raw actions to [-1, 1] and scales them; a fixed axis takes no action and keeps its value.
+
+    Subclasses name the axes and hand the result to the asset.
+    """
+
+    def __init__(self, cfg: ActionTermCfg, env: ManagerBasedEnv, scale: Sequence[float], fixed: dict[int, float]):
+        """Allocate the action buffers.
+
+        Args:
+            cfg: The term's configuration.
+            env: The environment.
+            scale: Physical value of a raw action of one, for each axis, length D.
+            fixed: Physical value of the axes without action, by index.
+        """
+        super().__init__(cfg, env)
+        free = [axis for axis in range(len(scale)) if axis not in fixed]
+        self._axes = torch.tensor(free, device=self.device)
+        self._scale = torch.tensor([scale[axis] for axis in free], device=self.device)
+        self._raw = torch.zeros(self.num_envs, len(free), device=self.device)
+        self._processed = torch.zeros(self.num_envs, len(scale), device=self.device)
+        self._rest = torch.zeros(len(scale), device=self.device)
+        for axis, value in fixed.items():
+            self._rest[axis] = value
+
+    @property
+    def action_dim(self) -> int:
+        """Number of raw actions A: the axes that are not fixed."""
+        return self._raw.shape[1]
+
+    @property
+    def raw_actions(self) -> torch.Tensor:
+        """Actions as the policy gave them, shape (N, A)."""
+        return self._raw
+
+    @property
+    def processed_actions(self) -> torch.Tensor:
+        """Commanded velocity of every axis [m/s or rad/s], shape (N, D)."""
+        return self._processed
+
+    def process_actions(self, actions: torch.Tensor) -> None:
+        """Clip and scale ``actions``, shape (N, A)."""
+        self._raw.copy_(actions)
+        self._processed.copy_(self._rest.expand_as(self._processed))
+        self._processed[:, self._axes] = self._raw.clamp(-1.0, 1.0) * self._scale
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Set the actions of the given worlds to zero."""
+        worlds = slice(None) if env_ids is None else env_ids
+        self._raw[worlds] = 0.0
+        self._processed[worlds] = 0.0
+
+
+class TipVelocityAction(VelocityAction):
+    """Velocity of the tip in its own frame: X, Y, forward, then rotation about X, Y and the axis; D = 6."""
+
+    cfg: TipVelocityActionCfg
+
+    def __init__(self, cfg: TipVelocityActionCfg, env: ManagerBasedEnv) -> None:
+        """Fix the forward velocity if the configuration does."""
+        scale = [cfg.linear_scale] * 3 + [cfg.angular_scale] * 3
+        super().__init__(cfg, env, scale, {} if cfg.forward_velocity is None else {2: cfg.forward_velocity})
+
+    def apply_actions(self) -> None:
+        """Command the asset."""
+        self._asset.set_tip_velocity_command(self._processed[:, :3], self._processed[:, 3:])
+
+
+class InsertionAction(VelocityAction):
+    """Rates of a pushed scope: insertion and roll at the base, pitch and yaw of the bending section; D = 4.
+
+    The bending rates move the bending target once a control step; the asset follows at its own speed and stops at the
+    limits of its bending section.
+    """
+
+    cfg: InsertionActionCfg
+
+    def __init__(self, cfg: InsertionActionCfg, env: ManagerBasedEnv) -> None:
+        """Fix the insertion velocity if the configuration does."""
+        scale = [cfg.insertion_scale, cfg.roll_scale, cfg.bending_scale, cfg.bending_scale]
+        super().__init__(cfg, env, scale, {} if cfg.insertion_velocity is None else {0: cfg.insertion_velocity})
+        self._bending = torch.zeros(self.num_envs, 2, device=self.device)
+
+    @property
+    def bending_target(self) -> torch.Tensor:
+        """Commanded pitch and yaw [rad], shape (N, 2)."""
+        return self._bending
+
+    def process_actions(self, actions: torch.Tensor) -> None:
+        """Clip and scale ``actions``, shape (N, A), and move the bending target by one control step."""
+        super().process_actions(actions)
+        self._bending = self._asset.data.bending + self._processed[:, 2:] * self._env.step_dt
+
+    def apply_actions(self) -> None:
+        """Command the asset."""
+        self._asset.set_insertion_command(self._processed[:, 0], self._processed[:, 1])
+        self._asset.set_bending_command(self._bending[:, 0], self._bending[:, 1])
+
+
+@configclass
+class TipVelocityActionCfg(ActionTermCfg):
+    """Configuration of :class:`TipVelocityAction`, for a capsule or a tip that a magnet pulls."""
+
+    class_type: type[ActionTerm] | str = TipVelocityAction
+    """The term's class."""
+
+    asset_name: str = "endoscope"
+    """Scene element that is commanded."""
+
+    linear_scale: float = 0.045
+    """Speed along each axis at a raw action of one [m/s]. Insertions pass the colon at 40 to 50 mm/s; slower speeds
+    press less on the wall and need a longer episode."""
+
+    angular_scale: float = 1.5
+    """Turning rate about each axis at a raw action of one [rad/s]: 8.6 degrees a step at 10 Hz. Raise it for tight
+    bends at high speed."""
+
+    forward_velocity: float | None = None
+    """Constant forward velocity [m/s], as in the paper; the forward action is then dropped (A = 5). None leaves it to
+    the policy (A = 6)."""
+
+
+@configclass
+class InsertionActionCfg(ActionTermCfg):
+    """Configuration of :class:`InsertionAction`, for a scope that is pushed and rolled from outside the anus."""
+
+    class_type: type[ActionTerm] | str = InsertionAction
+    """The term's class."""
+
+    asset_name: str = "endoscope"
+    """Scene element that is commanded."""
+
+    insertion_scale: float = 0.05
+    """Insertion speed at a raw action of one [m/s]: 5 mm a step at 10 Hz."""
+
+    roll_scale: float = 1.0
+    """Roll rate of the base at a raw action of one [rad/s]: 0.1 rad a step at 10 Hz."""
+
+    bending_scale: float = 1.3
+    """Rate of pitch and yaw at a raw action of one [rad/s]: 0.13 rad a step at 10 Hz, enough to steer round every bend
+    at 45 mm/s."""
+
+    insertion_velocity: float | None = None
+    """Constant insertion velocity [m/s]; the insertion action is then dropped (A = 3). None leaves it to the policy
+    (A = 4)."""

@@ -1,0 +1,134 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Observation terms ``(env, **params) -> (N, ...)``: images for the policy, privileged state for the critic.
+
+Privileged terms are scaled so that their entries are of order one; each docstring names shape and scale.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import torch
+
+from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
+from arcgym.envs.mdp.segments import segment_progress
+from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
+from arcgym.utils.math import quat_apply_inverse
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+LOOK_AHEAD = (0.01, 0.02, 0.04, 0.08)
+"""Arc lengths ahead of the tip [m] at which :class:`centerline_ahead` looks: half to four scope diameters."""
+
+_CAMERA = SceneEntityCfg("camera")
+
+
+def rgb(env: ManagerBasedEnv, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
+    """Colour image, shape (N, 3, H, W), uint8. A copy: the camera draws into the same buffer each time."""
+    return env.scene[sensor_cfg.name].data.output["rgb"].permute(0, 3, 1, 2).clone(memory_format=torch.contiguous_format)
+
+
+def depth(env: ManagerBasedEnv, far: float = 0.1, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
+    """Depth image over ``far`` [m], in [0, 1], shape (N, 1, H, W), float32."""
+    return (env.scene[sensor_cfg.name].data.output["depth"].unsqueeze(1) / far).clamp(0.0, 1.0)
+
+
+def tip_lumen_direction(env: ManagerBasedEnv) -> torch.Tensor:
+    """Unit direction of the lumen at the tip, in the tip frame (+Z forward), shape (N, 3)."""
+    data = env.scene["endoscope"].data
+    return quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)
+
+
+class centerline_ahead(ManagerTermBase):  # noqa: N801
+    """Points of the deformed centreline ahead of the tip, in the tip frame, each over its distance, shape (N, 3 K).
+
+    Beyond the end of the centreline its last point is taken.
+    """
+
+    def __init__(self, cfg: ObservationTermCfg, env: ManagerBasedEnv) -> None:
+        """Keep the distances on the device."""
+        super().__init__(cfg, env)
+        self._ahead = torch.tensor(cfg.params.get("distances", LOOK_AHEAD), device=env.device)
+
+    def __call__(self, env: ManagerBasedEnv, distances: Sequence[float] = LOOK_AHEAD) -> torch.Tensor:
+        """Return the points at ``distances`` [m] of arc length ahead, read once at construction, shape (K,)."""
+        colon, data = env.scene["colon"].data, env.scene["endoscope"].data
+        points = points_at(colon.centerline_pos_w, colon.centerline_arc, data.tip_arc_length[:, None] + self._ahead)
+        quat = data.tip_quat_w[:, None].expand(-1, len(self._ahead), -1)
+        local = quat_apply_inverse(quat, points - data.tip_pos_w[:, None])
+        return (local / self._ahead[:, None]).flatten(1)
+
+
+def tip_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
+    """Way of the tip through the segment, 0 at its start and 1 at its end, shape (N, 1)."""
+    return segment_progress(env, segment).unsqueeze(1)
+
+
+def tip_axis_distance(env: ManagerBasedEnv, scale: float = 0.02) -> torch.Tensor:
+    """Distance of the tip from the deformed centreline over ``scale`` [m], shape (N, 1)."""
+    return env.scene["endoscope"].data.tip_centerline_distance.unsqueeze(1) / scale
+
+
+def tip_velocity(env: ManagerBasedEnv, linear_scale: float = 0.05, angular_scale: float = 2.0) -> torch.Tensor:
+    """Linear and angular velocity of the tip in its frame, over the scales [m/s] and [rad/s], shape (N, 6)."""
+    data = env.scene["endoscope"].data
+    linear = quat_apply_inverse(data.tip_quat_w, data.tip_lin_vel_w) / linear_scale
+    angular = quat_apply_inverse(data.tip_quat_w, data.tip_ang_vel_w) / angular_scale
+    return torch.cat((linear, angular), dim=1)
+
+
+def tip_bending(env: ManagerBasedEnv) -> torch.Tensor:
+    """Commanded bending in pitch and yaw over pi, shape (N, 2)."""
+    return env.scene["endoscope"].data.bending / math.pi
+
+
+def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
+    """Inserted length [m] and its excess over the tip's arc length over 0.1 m (loops), shape (N, 2)."""
+    data = env.scene["endoscope"].data
+    return torch.stack((data.inserted_length, (data.inserted_length - data.tip_arc_length) / 0.1), dim=1)
+
+
+def wall_forces(env: ManagerBasedEnv) -> torch.Tensor:
+    """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing link and by all, shape (N, 3)."""
+    force = env.scene["endoscope"].data.wall_force_w.norm(dim=-1)
+    return torch.log1p(torch.stack((force[:, -1], force.amax(dim=1), force.sum(dim=1)), dim=1))
+
+
+def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
+    """``log(1 + F / 1 N)`` of the push at the base and of the pull at the tip, shape (N, 2)."""
+    data = env.scene["endoscope"].data
+    return torch.log1p(torch.stack((data.base_force.abs(), data.tip_pull_force_w.norm(dim=-1)), dim=1))
+
+
+def last_action(env: ManagerBasedEnv) -> torch.Tensor:
+    """Raw action of the last step, shape (N, A)."""
+    return env.action_manager.action
+
+
+def lumen_state(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
+    """Parts of the lumen reward ``s_c, s_1, s_2, s_3, s_o``, of order one as they are, shape (N, 5)."""
+    scores = lumen_scores(env, lumen, refresh=True)
+    return torch.stack((scores.s_c, scores.s_1, scores.s_2, scores.s_3, scores.s_o), dim=1)
+
+
+def points_at(points: torch.Tensor, arc: torch.Tensor, at: torch.Tensor) -> torch.Tensor:
+    """Points of each world's polyline at given arc lengths, linear between its vertices.
+
+    Args:
+        points: Vertices [m], shape (N, R, 3).
+        arc: Arc length of each vertex, ascending [m], shape (R,).
+        at: Arc lengths wanted, clamped to the polyline [m], shape (N, K).
+
+    Returns:
+        Points [m], shape (N, K, 3).
+    """
+    at = at.clamp(arc[0], arc[-1])
+    right = torch.searchsorted(arc, at).clamp(1, len(arc) - 1)
+    fraction = ((at - arc[right - 1]) / (arc[right] - arc[right - 1])).unsqueeze(-1)
+    index = right.unsqueeze(-1).expand(-1, -1, 3)
+    return torch.lerp(points.gather(1, index - 1), points.gather(1, index), fraction)

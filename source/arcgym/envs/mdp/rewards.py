@@ -1,0 +1,88 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Reward terms ``(env, **params) -> (N,)``; the manager multiplies each by its weight and the control step [s]."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import torch
+
+from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
+from arcgym.envs.mdp.segments import segment_progress
+from arcgym.managers import ManagerTermBase, RewardTermCfg, SceneEntityCfg
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedRLEnv
+
+_ENDOSCOPE = SceneEntityCfg("endoscope")
+
+
+def lumen_centering(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
+    """Centring ``s_c`` of the lumen in the image, in [0, 1]."""
+    return lumen_scores(env, lumen).s_c
+
+
+def lumen_visibility(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
+    """Visibility ``s_o`` of the lumen, in [-1, 1]."""
+    return lumen_scores(env, lumen).s_o
+
+
+def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
+    """The paper's reward ``R = w_c s_c + w_o s_o``, see :mod:`arcgym.envs.mdp.lumen`."""
+    return lumen_scores(env, lumen).reward
+
+
+class progress(ManagerTermBase):  # noqa: N801
+    """Advance of the tip along the lumen in this control step [m], negative when it slips back.
+
+    The first step of an episode counts as zero: what the tip did before is not known.
+    """
+
+    def __init__(self, cfg: RewardTermCfg, env: ManagerBasedRLEnv) -> None:
+        """Forget every world's previous position."""
+        super().__init__(cfg, env)
+        self._previous = torch.full((env.num_envs,), torch.nan, device=env.device)
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Forget the previous position of the given worlds."""
+        self._previous[slice(None) if env_ids is None else env_ids] = torch.nan
+
+    def __call__(self, env: ManagerBasedRLEnv) -> torch.Tensor:
+        """Return the change of the tip's arc length since the last call [m]."""
+        arc = env.scene["endoscope"].data.tip_arc_length
+        change = torch.nan_to_num(arc - self._previous, nan=0.0)
+        self._previous.copy_(arc)
+        return change
+
+
+def success(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
+    """1 when the tip has passed the end of the segment."""
+    return (segment_progress(env, segment) >= 1.0).float()
+
+
+def excess_wall_force(
+    env: ManagerBasedRLEnv, threshold: float = 2.0, asset_cfg: SceneEntityCfg = _ENDOSCOPE
+) -> torch.Tensor:
+    """Largest force between a link and the wall above the comfort tier ``threshold`` [N], mean over the control step.
+
+    The tier of 2 N is a proposal, well below the 14.1 N at which a tip perforated porcine colon (Johnson et al. 2019).
+    """
+    force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+    return (force.amax(dim=1) - threshold).clamp(min=0.0)
+
+
+def action_rate_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """Squared change of the raw action since the last step."""
+    return (env.action_manager.action - env.action_manager.prev_action).square().sum(dim=1)
+
+
+def action_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """Squared raw action."""
+    return env.action_manager.action.square().sum(dim=1)
+
+
+def is_terminated(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """1 when the episode ends other than by its time limit."""
+    return env.termination_manager.terminated.float()

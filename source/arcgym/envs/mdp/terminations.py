@@ -1,0 +1,89 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Termination terms ``(env, **params) -> (N,) bool``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import torch
+
+from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
+from arcgym.envs.mdp.segments import segment_progress
+from arcgym.managers import ManagerTermBase, SceneEntityCfg, TerminationTermCfg
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedRLEnv
+
+_ENDOSCOPE = SceneEntityCfg("endoscope")
+
+
+def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """The episode has lasted ``env.max_episode_length`` steps. A truncation: set ``time_out=True`` in its config."""
+    return env.episode_length_buf >= env.max_episode_length
+
+
+def segment_passed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
+    """Success: the tip has passed the end of the segment, by arc length along the lumen."""
+    return segment_progress(env, segment) >= 1.0
+
+
+def excess_force(
+    env: ManagerBasedRLEnv, limit: float = 14.0, asset_cfg: SceneEntityCfg = _ENDOSCOPE
+) -> torch.Tensor:
+    """Some link presses on the wall with more than ``limit`` [N], mean over the control step.
+
+    The default is the force at which the straight tip of a colonoscope perforated porcine colon, 14.1 N (Johnson et al.
+    2019). Choose links by ``asset_cfg.body_names``.
+    """
+    force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+    return force.amax(dim=1) > limit
+
+
+class lumen_lost(ManagerTermBase):  # noqa: N801
+    """The visibility ``s_o`` has been below ``threshold`` for ``steps`` control steps in a row."""
+
+    def __init__(self, cfg: TerminationTermCfg, env: ManagerBasedRLEnv) -> None:
+        """Start every world's count at zero."""
+        super().__init__(cfg, env)
+        self._count = torch.zeros(env.num_envs, dtype=torch.long, device=env.device)
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Start the count of the given worlds again."""
+        self._count[slice(None) if env_ids is None else env_ids] = 0
+
+    def __call__(
+        self, env: ManagerBasedRLEnv, threshold: float = -0.4, steps: int = 5, lumen: str | LumenCfg | None = None
+    ) -> torch.Tensor:
+        """Count the steps without lumen. The default threshold is the original code's for its unconstrained agents."""
+        lost = lumen_scores(env, lumen).s_o < threshold
+        self._count = (self._count + 1) * lost
+        return self._count >= steps
+
+
+class stuck(ManagerTermBase):  # noqa: N801
+    """The tip has advanced less than ``min_progress`` [m] over the last ``window_s`` seconds.
+
+    A pull-back to straighten the shaft also looks like this while it lasts, so the window must leave time for one. Use
+    as a truncation (``time_out=True``): it saves time and says nothing about the state's value.
+    """
+
+    def __init__(self, cfg: TerminationTermCfg, env: ManagerBasedRLEnv) -> None:
+        """Allocate the ring buffer of past positions, shape (window, N)."""
+        super().__init__(cfg, env)
+        window = max(1, round(cfg.params["window_s"] / env.step_dt))
+        self._arc = torch.full((window, env.num_envs), -torch.inf, device=env.device)
+        self._next = 0
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Forget the past of the given worlds; they cannot be stuck before a whole window has passed."""
+        self._arc[:, slice(None) if env_ids is None else env_ids] = -torch.inf
+
+    def __call__(self, env: ManagerBasedRLEnv, window_s: float, min_progress: float) -> torch.Tensor:
+        """Compare the tip's arc length with the one of a window ago."""
+        arc = env.scene["endoscope"].data.tip_arc_length
+        advance = arc - self._arc[self._next]
+        self._arc[self._next] = arc
+        self._next = (self._next + 1) % len(self._arc)
+        return advance < min_progress

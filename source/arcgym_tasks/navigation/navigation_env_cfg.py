@@ -1,0 +1,206 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Navigation through one segment of the colon: scene, observations, rewards and the rest that all robots share.
+
+A robot's configuration adds its endoscope and its actions (``config/<robot>/env_cfg.py``).
+"""
+
+from __future__ import annotations
+
+from arcgym.anatomy.segments import SEGMENTS
+from arcgym.assets import ColonCfg, EndoscopeCfg
+from arcgym.envs import ManagerBasedRLEnvCfg, mdp
+from arcgym.managers import CostTermCfg as CostTerm
+from arcgym.managers import EventTermCfg as EventTerm
+from arcgym.managers import MetricsTermCfg as MetricsTerm
+from arcgym.managers import ObservationGroupCfg as ObsGroup
+from arcgym.managers import ObservationTermCfg as ObsTerm
+from arcgym.managers import RewardTermCfg as RewTerm
+from arcgym.managers import TerminationTermCfg as DoneTerm
+from arcgym.scene import InteractiveSceneCfg
+from arcgym.sensors import EndoscopeCameraCfg
+from arcgym.utils.configclass import MISSING, configclass
+
+HORIZON_S = {"rectum": 10.0, "sigmoid": 45.0, "descending": 16.0, "splenic": 27.0}
+"""Time limit of each segment's task [s]: three times what a scripted expert needs that advances at 40 mm/s and steers
+by the deformed centreline (2.1 to 3.4, 11 to 15, 4.5 to 5.5 and 3.6 to 9 s)."""
+
+
+@configclass
+class NavigationSceneCfg(InteractiveSceneCfg):
+    """Colon, endoscope and the camera at its tip."""
+
+    num_envs: int = 64
+    """Number of worlds. On a GPU use 256 and more."""
+
+    colon: ColonCfg = ColonCfg(usd_path="colon_1/colon.usda")
+    """The patient."""
+
+    endoscope: EndoscopeCfg = MISSING
+    """The robot."""
+
+    camera: EndoscopeCameraCfg = EndoscopeCameraCfg(width=84, height=84)
+    """The policy's camera."""
+
+
+@configclass
+class ObservationsCfg:
+    """What the policy and the critic see."""
+
+    @configclass
+    class PolicyCfg(ObsGroup):
+        """Images of the last half second, the only input that a real endoscope has; shape (N, 15, H, W), uint8."""
+
+        rgb = ObsTerm(func=mdp.rgb, history_length=5)
+
+    @configclass
+    class CriticCfg(ObsGroup):
+        """Privileged state for the value function, used in training only."""
+
+        lumen_direction = ObsTerm(func=mdp.tip_lumen_direction)
+        centerline = ObsTerm(func=mdp.centerline_ahead)
+        progress = ObsTerm(func=mdp.tip_progress)
+        axis_distance = ObsTerm(func=mdp.tip_axis_distance)
+        velocity = ObsTerm(func=mdp.tip_velocity)
+        bending = ObsTerm(func=mdp.tip_bending)
+        inserted_length = ObsTerm(func=mdp.inserted_length)
+        wall_forces = ObsTerm(func=mdp.wall_forces)
+        drive_forces = ObsTerm(func=mdp.drive_forces)
+        lumen = ObsTerm(func=mdp.lumen_state)
+        last_action = ObsTerm(func=mdp.last_action)
+
+    policy: PolicyCfg = PolicyCfg()
+    """Group of the actor."""
+
+    critic: CriticCfg = CriticCfg()
+    """Group of the critic."""
+
+
+@configclass
+class RewardsCfg:
+    """The paper's lumen reward, with progress and safety; each is multiplied by its weight and the step of 0.1 s.
+
+    At 40 mm/s, 4 mm a step, progress earns 0.4, as much again as a well centred view. The bonus of the last step, 50
+    times 0.1, is more than a policy could collect by waiting before the end at a discount of 0.97.
+    """
+
+    lumen = RewTerm(func=mdp.lumen_reward, weight=1.0)
+    progress = RewTerm(func=mdp.progress, weight=100.0)
+    success = RewTerm(func=mdp.success, weight=50.0)
+    wall_force = RewTerm(func=mdp.excess_wall_force, weight=-0.02, params={"threshold": 2.0})
+    action_rate = RewTerm(func=mdp.action_rate_l2, weight=-0.01)
+
+
+@configclass
+class TerminationsCfg:
+    """When an episode ends."""
+
+    time_out = DoneTerm(func=mdp.time_out, time_out=True)
+    success = DoneTerm(func=mdp.segment_passed)
+    stuck = DoneTerm(func=mdp.stuck, time_out=True, params={"window_s": 6.0, "min_progress": 0.003})
+    lumen_lost: DoneTerm | None = None
+    """Off. Ends hopeless episodes early, but keeps the policy from learning to find the lumen again:
+    ``DoneTerm(func=mdp.lumen_lost, params={"threshold": -0.4, "steps": 5})``."""
+    excess_force: DoneTerm | None = None
+    """Off. Ends the episode at a force that may perforate: ``DoneTerm(func=mdp.excess_force, params={"limit": 14.0})``.
+    """
+
+
+@configclass
+class EventsCfg:
+    """Where an episode starts and what differs from world to world."""
+
+    reset = EventTerm(func=mdp.reset_to_segment_start, mode="reset")
+    light = EventTerm(func=mdp.randomize_light, mode="reset", params={"gain": (0.7, 1.4)})
+    color = EventTerm(func=mdp.randomize_color, mode="reset", params={"gain": (0.9, 1.1)})
+    texture = EventTerm(func=mdp.randomize_texture, mode="reset")
+    stiffness = EventTerm(func=mdp.randomize_tissue_stiffness, mode="reset", params={"scale": (0.7, 1.4)})
+    friction = EventTerm(func=mdp.randomize_friction, mode="reset", params={"friction": (0.05, 0.15)})
+
+
+@configclass
+class CostsCfg:
+    """What a constrained policy keeps low; plain PPO ignores it."""
+
+    tip_force = CostTerm(func=mdp.tip_force_above, params={"limit": 5.0})
+    view_blocked = CostTerm(func=mdp.view_blocked)
+
+
+@configclass
+class MetricsCfg:
+    """What an episode is judged by."""
+
+    success = MetricsTerm(func=mdp.success, reduce="max")
+    progress = MetricsTerm(func=mdp.progress_fraction, reduce="max")
+    time_to_success = MetricsTerm(func=mdp.time_to_success, reduce="last")
+    s_c = MetricsTerm(func=mdp.lumen_centering, reduce="mean")
+    s_o = MetricsTerm(func=mdp.lumen_visibility, reduce="mean")
+    centered_rate = MetricsTerm(func=mdp.centered_rate, reduce="mean")
+    visible_rate = MetricsTerm(func=mdp.visible_rate, reduce="mean")
+    centerline_distance = MetricsTerm(func=mdp.centerline_distance, reduce="mean")
+    max_wall_force = MetricsTerm(func=mdp.max_wall_force, reduce="max")
+    looping_ratio = MetricsTerm(func=mdp.looping_ratio, reduce="last")
+
+
+@configclass
+class NavigationEnvCfg(ManagerBasedRLEnvCfg):
+    """Drive the tip from the start of a segment past its end, at 10 Hz.
+
+    Subclass a task's configuration to change it::
+
+        @configclass
+        class MyEnvCfg(SplenicProximalEnvCfg):
+            def __post_init__(self):
+                super().__post_init__()
+                self.rewards.progress = None
+    """
+
+    segment: str = MISSING
+    """Segment to pass, one of :data:`arcgym.anatomy.segments.SEGMENTS`; :data:`HORIZON_S` has time limits that fit."""
+
+    lumen: str | mdp.LumenCfg = "paper"
+    """Constants of the lumen reward: ``paper``, ``metric`` or your own :class:`arcgym.envs.mdp.LumenCfg`. ``metric``
+    tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's."""
+
+    scene: NavigationSceneCfg = NavigationSceneCfg()
+    """Colon, endoscope, camera."""
+
+    observations: ObservationsCfg = ObservationsCfg()
+    """Groups ``policy`` and ``critic``."""
+
+    rewards: RewardsCfg = RewardsCfg()
+    """Reward terms."""
+
+    terminations: TerminationsCfg = TerminationsCfg()
+    """Termination terms."""
+
+    events: EventsCfg = EventsCfg()
+    """Event terms."""
+
+    costs: CostsCfg = CostsCfg()
+    """Cost terms."""
+
+    metrics: MetricsCfg = MetricsCfg()
+    """Metrics."""
+
+    decimation: int = 48
+    """Physics steps in a control step: 0.1 s."""
+
+    def validate_config(self) -> None:
+        """Check the names that this class adds.
+
+        Raises:
+            ValueError: If the segment is unknown.
+            KeyError: If the lumen preset is unknown.
+        """
+        if self.segment not in SEGMENTS:
+            raise ValueError(f"env.segment is '{self.segment}', expected one of {', '.join(SEGMENTS)}.")
+        mdp.resolve_lumen(self.lumen)
+
+    def play(self) -> None:
+        """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""
+        self.scene.num_envs = 4
+        self.observations.policy.enable_corruption = False
+        for name in ("light", "color", "texture", "stiffness", "friction"):
+            setattr(self.events, name, None)
