@@ -1,0 +1,72 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Noise that corrupts observations."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import torch
+
+from arcgym.utils import configclass
+
+
+@configclass
+class NoiseCfg:
+    """Base of all noises: how the drawn value meets the observation."""
+
+    operation: Literal["add", "scale", "abs"] = "add"
+    """Whether the noise is added, multiplied, or put in place of the value."""
+
+    def sample(self, value: torch.Tensor) -> torch.Tensor:
+        """Draws noise of the shape of ``value``."""
+        raise NotImplementedError(f"{type(self).__name__} does not define sample.")
+
+    def apply(self, value: torch.Tensor) -> torch.Tensor:
+        """Returns the corrupted value, in new memory."""
+        noise = self.sample(value)
+        if self.operation == "add":
+            return value + noise
+        return value * noise if self.operation == "scale" else noise
+
+
+@configclass
+class ConstantNoiseCfg(NoiseCfg):
+    """The same offset everywhere, as from a miscalibrated sensor."""
+
+    bias: float = 0.0
+    """Offset, in the unit of the observation."""
+
+    def sample(self, value: torch.Tensor) -> torch.Tensor:
+        """Returns the offset in the shape of ``value``."""
+        return torch.full_like(value, self.bias)
+
+
+@configclass
+class UniformNoiseCfg(NoiseCfg):
+    """Noise spread evenly between two bounds."""
+
+    n_min: float = -1.0
+    """Lower bound, in the unit of the observation."""
+
+    n_max: float = 1.0
+    """Upper bound, in the unit of the observation."""
+
+    def sample(self, value: torch.Tensor) -> torch.Tensor:
+        """Draws noise of the shape of ``value``."""
+        return self.n_min + (self.n_max - self.n_min) * torch.rand_like(value)
+
+
+@configclass
+class GaussianNoiseCfg(NoiseCfg):
+    """Normally distributed noise."""
+
+    mean: float = 0.0
+    """Mean, in the unit of the observation."""
+
+    std: float = 1.0
+    """Standard deviation, in the unit of the observation."""
+
+    def sample(self, value: torch.Tensor) -> torch.Tensor:
+        """Draws noise of the shape of ``value``."""
+        return self.mean + self.std * torch.randn_like(value)
