@@ -1,4 +1,49 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+"""Colons and endoscopes: their USD stages, their parameters and their state."""
 
-"""ARCGym assets."""
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from arcgym.assets.colon_cfg import ColonCfg
+from arcgym.assets.endoscope_cfg import (
+    CAPSULE_CFG,
+    MAGNETIC_CFG,
+    PROXIMAL_CFG,
+    EndoscopeCfg,
+    IntroducerCfg,
+    TipPullCfg,
+)
+
+if TYPE_CHECKING:
+    from arcgym.assets.colon import Colon, ColonData
+    from arcgym.assets.endoscope import Endoscope
+    from arcgym.assets.endoscope_data import EndoscopeData
+
+_LAZY = {
+    "Colon": "arcgym.assets.colon",
+    "ColonData": "arcgym.assets.colon",
+    "Endoscope": "arcgym.assets.endoscope",
+    "EndoscopeData": "arcgym.assets.endoscope_data",
+}
+
+__all__ = [
+    "CAPSULE_CFG",
+    "Colon",
+    "ColonCfg",
+    "ColonData",
+    "Endoscope",
+    "EndoscopeCfg",
+    "EndoscopeData",
+    "IntroducerCfg",
+    "MAGNETIC_CFG",
+    "PROXIMAL_CFG",
+    "TipPullCfg",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import torch and Newton only when a runtime class is asked for."""
+    if name in _LAZY:
+        return getattr(importlib.import_module(_LAZY[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

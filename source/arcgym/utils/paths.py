@@ -33,6 +33,12 @@ def assets_dir() -> Path:
     raise FileNotFoundError(f"No assets folder. Tried: {tried}. Set {ASSETS_ENV} to the folder that has 'endoscopes/'.")
 
 
+def resolve_asset(path: str | Path) -> Path:
+    """Absolute path of an asset: `path` itself where it exists or is absolute, else inside :func:`assets_dir`."""
+    given = Path(path).expanduser()
+    return given if given.is_absolute() or given.exists() else assets_dir() / given
+
+
 def logs_dir() -> Path:
     """Folder ``logs`` of the working directory, where training runs go (not created here)."""
     return Path.cwd() / "logs"

@@ -1,0 +1,31 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration of a colon."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class ColonCfg:
+    """A colon and the tissue it is made of."""
+
+    class_type: Any = "arcgym.assets.colon:Colon"
+    """Class built from this configuration; change it to add behaviour to the asset."""
+    usd_path: str = "colon_1/colon.usda"
+    """Stage of the colon: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`)."""
+    material: str = "paper"
+    """Tissue preset: ``paper`` (5 MPa) or ``in_situ`` (0.7 MPa, moves visibly), see :mod:`arcgym.assets.materials`."""
+    youngs_modulus: float | None = None
+    """Young's modulus [Pa], over the preset's."""
+    poissons_ratio: float | None = None
+    """Poisson's ratio, over the preset's."""
+    density: float | None = None
+    """Mass density [kg/m^3], over the preset's."""
+    anchor_stiffness: dict[str, float] = {}
+    """Attachment stiffness per length of colon [N/m^2] for some segments, over the preset's. 0 sets a segment free."""
+    mobile_until: float | None = None
+    """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""

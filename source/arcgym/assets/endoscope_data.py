@@ -1,0 +1,95 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""State of an endoscope as tensors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import torch
+import warp as wp
+
+from arcgym.anatomy.segments import SEGMENTS
+
+if TYPE_CHECKING:
+    from arcgym.assets.endoscope import Endoscope
+    from arcgym.sim.simulation import Simulation
+
+
+class EndoscopeData:
+    """Views on the simulation's arrays: they change with every step, so clone what you keep.
+
+    N worlds, L links, J joint coordinates, D joint velocities. Quaternions are (x, y, z, w).
+    """
+
+    def __init__(self, endoscope: Endoscope, sim: Simulation):
+        """Make views on the simulation's arrays."""
+        n, links = sim.num_envs, endoscope.num_bodies
+        state, actuation = sim.state, sim.actuation
+        pose = wp.to_torch(state.body_q).view(n, links, 7)
+        twist = wp.to_torch(state.body_qd).view(n, links, 6)
+        tip = wp.to_torch(sim.tip_pose)
+        tip_twist = wp.to_torch(sim.tip_velocity)
+        self.joint_pos: torch.Tensor = wp.to_torch(state.joint_q).view(n, -1)
+        """Joint coordinates [m or rad], shape (N, J), in the order of ``Endoscope.joint_names``."""
+        self.joint_vel: torch.Tensor = wp.to_torch(state.joint_qd).view(n, -1)
+        """Joint velocities [m/s or rad/s], shape (N, D); D = J but for a free root, which has 6 instead of 7."""
+        self.joint_pos_target: torch.Tensor = wp.to_torch(sim.control.joint_target_q).view(n, -1)
+        """Joint targets [m or rad], shape (N, J)."""
+        self.body_pos_w = pose[..., :3]
+        """Centres of the links [m], shape (N, L, 3)."""
+        self.body_quat_w = pose[..., 3:]
+        """Orientations of the links, +Z towards the tip, shape (N, L, 4)."""
+        self.body_lin_vel_w = twist[..., :3]
+        """Velocities of the links' centres [m/s], shape (N, L, 3)."""
+        self.body_ang_vel_w = twist[..., 3:]
+        """Angular velocities of the links [rad/s], shape (N, L, 3)."""
+        self.root_pos_w = self.body_pos_w[:, 0]
+        """Centre of the base link [m], shape (N, 3)."""
+        self.root_quat_w = self.body_quat_w[:, 0]
+        """Orientation of the base link, shape (N, 4)."""
+        self.tip_pos_w = tip[:, :3]
+        """Front of the tip [m], shape (N, 3)."""
+        self.tip_quat_w = tip[:, 3:]
+        """Orientation of the tip, +Z forward, shape (N, 4)."""
+        self.tip_lin_vel_w = tip_twist[:, :3]
+        """Velocity of the front of the tip [m/s], shape (N, 3)."""
+        self.tip_ang_vel_w = tip_twist[:, 3:]
+        """Angular velocity of the tip [rad/s], shape (N, 3)."""
+        self.tip_arc_length: torch.Tensor = wp.to_torch(sim.tip_arc)
+        """Arc length of the tip along the deformed centreline, in rest arc length from the anal verge [m], (N,)."""
+        self.tip_centerline_distance: torch.Tensor = wp.to_torch(sim.tip_distance)
+        """Distance of the tip from the deformed centreline [m], shape (N,)."""
+        self.tip_lumen_direction_w: torch.Tensor = wp.to_torch(sim.tip_direction)
+        """Direction of the deformed centreline beside the tip, away from the anus, shape (N, 3)."""
+        self.wall_force_w: torch.Tensor = wp.to_torch(sim.wall_force).view(n, links, 3)
+        """Force of the wall on each link, mean over the control step [N], shape (N, L, 3)."""
+        self.wall_force_peak: torch.Tensor = wp.to_torch(sim.wall_force_peak).view(n, links)
+        """Largest force of the wall on each link within the control step (mean over one physics step) [N], (N, L)."""
+        self.base_force: torch.Tensor = wp.to_torch(actuation.base_force)
+        """Push on the base, mean over the control step [N], shape (N,)."""
+        self.tip_pull_force_w: torch.Tensor = wp.to_torch(actuation.tip_force)
+        """Pull on the tip, mean over the control step [N], shape (N, 3)."""
+        self.bending: torch.Tensor = wp.to_torch(actuation.bending)
+        """Angles the bending section is driven to (pitch, yaw) [rad], shape (N, 2)."""
+        self._rest_insertion = endoscope.rest_insertion
+        self._has_shaft = endoscope.stage.root == "slide_roll"
+        bounds = endoscope_segments(sim)
+        self._segment_ends = torch.tensor([end for _, end in bounds], device=sim.device)
+        self._segment_codes = torch.tensor([code for code, _ in bounds], device=sim.device)
+
+    @property
+    def inserted_length(self) -> torch.Tensor:
+        """Length of scope inside the anus [m], shape (N,); for a free capsule its arc length."""
+        return self.joint_pos[:, 0] + self._rest_insertion if self._has_shaft else self.tip_arc_length
+
+    @property
+    def tip_segment(self) -> torch.Tensor:
+        """Segment that the tip is in, index into ``SEGMENTS``, shape (N,), int64."""
+        place = torch.searchsorted(self._segment_ends, self.tip_arc_length.contiguous(), right=True)
+        return self._segment_codes[place.clamp(max=len(self._segment_codes) - 1)]
+
+
+def endoscope_segments(sim: Simulation) -> list[tuple[int, float]]:
+    """(index into SEGMENTS, arc length of its end [m]) of each segment of the colon, in order."""
+    return [(SEGMENTS.index(name), end) for name, (_, end) in sim.colon.stage.segment_bounds().items()]

@@ -1,0 +1,314 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Narrow phase between capsule links and the inner wall, binned along the centreline, and the contact force law.
+
+Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candidate faces a link, V wall vertices.
+"""
+
+import warp as wp
+
+from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, triangle_point
+from arcgym.utils import warp_setup  # noqa: F401
+
+FAR = wp.constant(1.0e9)
+
+
+@wp.struct
+class LinkShapes:
+    """Capsules of one world's links, axis along the link's local Z."""
+
+    half_length: wp.array(dtype=float)  # [m], shape (L,)
+    radius: wp.array(dtype=float)  # [m], shape (L,)
+
+
+@wp.struct
+class LumenSurface:
+    """Inner faces of one world's wall, sorted by ring; normals point from the lumen into the wall."""
+
+    rings: wp.array2d(dtype=int)  # inner vertices of each ring, padded with the first, shape (R, S)
+    faces: wp.array2d(dtype=int)  # shape (F, 3)
+    neighbors: wp.array2d(dtype=int)  # face across the edge opposite to each corner or -1, shape (F, 3)
+    vertex_owner: wp.array(dtype=int)  # lowest face around each wall vertex, shape (V,)
+    ring_start: wp.array(dtype=int)  # first face of each ring, shape (R + 1,)
+    reach: int  # rings searched on either side of a link's own
+    vertices: int  # V
+
+
+@wp.struct
+class ContactRecords:
+    """Contacts of every link: up to ``capacity`` slots a link, in ascending face order."""
+
+    capacity: int
+    count: wp.array(dtype=int)  # shape (W*L,)
+    face: wp.array(dtype=wp.vec3i)  # the three wall vertices, global, shape (W*L*capacity,)
+    bary: wp.array(dtype=wp.vec3)
+    normal: wp.array(dtype=wp.vec3)  # wall's outward face normal at detection
+    vertex_head: wp.array(dtype=int)  # first entry of each vertex's list, shape (W*V,); entry e = 3 * record + corner
+    vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
+    ring_head: wp.array(dtype=int)  # first record whose lowest ring is this one, shape (W*R,)
+    ring_next: wp.array(dtype=int)  # shape (W*L*capacity,)
+
+
+@wp.struct
+class ContactLaw:
+    """Penalty contact with regularised Coulomb friction."""
+
+    stiffness: float  # [N/m]
+    damping: float  # [N s/m], approach only
+    slip_velocity: float  # speed under which friction is viscous [m/s]
+    friction_cap: float  # largest friction coefficient c in f = c v, as a fraction of link mass / substep
+    wall_radius: float  # half the skin that the wall adds to each link [m]
+    search_gap: float  # distance up to which records are kept [m]
+
+
+@wp.kernel
+def ring_centres(x: wp.array(dtype=wp.vec3), surface: LumenSurface, centres: wp.array2d(dtype=wp.vec3)):
+    """Mean of each ring's inner vertices. Launch (W, R)."""
+    w, r = wp.tid()
+    n = surface.rings.shape[1]
+    total = wp.vec3(0.0)
+    for k in range(n):
+        total += x[w * surface.vertices + surface.rings[r, k]]
+    centres[w, r] = total / float(n)
+
+
+@wp.kernel
+def track_rings(
+    centres: wp.array2d(dtype=wp.vec3), body_q: wp.array(dtype=wp.transform), span: int, ring: wp.array2d(dtype=int)
+):
+    """Ring nearest to each link among ``span`` on either side of the last one; all of them where it is -1."""
+    w, link = wp.tid()
+    p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
+    last = ring[w, link]
+    lo = int(0)
+    hi = centres.shape[1]
+    if last >= 0:
+        lo = wp.max(0, last - span)
+        hi = wp.min(hi, last + span + 1)
+    best = float(FAR)
+    found = last
+    for r in range(lo, hi):
+        d = wp.length_sq(p - centres[w, r])
+        if d < best:
+            best = d
+            found = r
+    ring[w, link] = found
+
+
+@wp.kernel
+def face_distances(
+    x: wp.array(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    links: LinkShapes,
+    surface: LumenSurface,
+    law: ContactLaw,
+    ring: wp.array2d(dtype=int),
+    distance: wp.array3d(dtype=float),
+):
+    """Distance from each link's axis to each candidate face, or FAR. Launch (W, L, M)."""
+    w, link, m = wp.tid()
+    nr = surface.ring_start.shape[0] - 1
+    face = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)] + m
+    d = float(FAR)
+    if face < surface.ring_start[wp.min(nr, ring[w, link] + surface.reach + 1)]:
+        base = w * surface.vertices
+        a = x[base + surface.faces[face, 0]]
+        b = x[base + surface.faces[face, 1]]
+        c = x[base + surface.faces[face, 2]]
+        pose = body_q[w * ring.shape[1] + link]
+        centre = wp.transform_get_translation(pose)
+        axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+        limit = links.radius[link] + law.wall_radius + law.search_gap
+        g = (a + b + c) / 3.0
+        size = wp.sqrt(wp.max(wp.length_sq(a - g), wp.max(wp.length_sq(b - g), wp.length_sq(c - g))))
+        t = segment_parameter(g, centre - axis, centre + axis)
+        if wp.length(g - centre - (2.0 * t - 1.0) * axis) < limit + size:
+            u = segment_triangle(centre - axis, centre + axis, a, b, c)
+            if u[3] < limit:
+                d = u[3]
+    distance[w, link, m] = d
+
+
+@wp.func
+def owns_contact(surface: LumenSurface, face: int, u: wp.vec3) -> bool:
+    """Whether ``face`` reports a touch at barycentric ``u``; shared vertices and edges belong to the lowest face."""
+    eps = float(1.0e-4)
+    zeros = int(0)
+    for k in range(3):
+        if u[k] < eps:
+            zeros += 1
+    if zeros == 2:
+        corner = int(0)
+        if u[1] > 0.5:
+            corner = 1
+        if u[2] > 0.5:
+            corner = 2
+        return surface.vertex_owner[surface.faces[face, corner]] == face
+    if zeros == 1:
+        opposite = int(0)
+        if u[1] < eps:
+            opposite = 1
+        if u[2] < eps:
+            opposite = 2
+        other = surface.neighbors[face, opposite]
+        return other < 0 or other > face
+    return True
+
+
+@wp.kernel
+def select_contacts(
+    x: wp.array(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    links: LinkShapes,
+    surface: LumenSurface,
+    ring: wp.array2d(dtype=int),
+    distance: wp.array3d(dtype=float),
+    records: ContactRecords,
+):
+    """Keep one record for each local minimum of the distance over neighbouring faces. Launch (W, L)."""
+    w, link = wp.tid()
+    row = w * ring.shape[1] + link
+    first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
+    base = w * surface.vertices
+    n = int(0)
+    for m in range(distance.shape[2]):
+        d = distance[w, link, m]
+        if d < FAR and n < records.capacity:
+            face = first + m
+            keep = int(1)
+            for k in range(3):
+                other = surface.neighbors[face, k] - first
+                if surface.neighbors[face, k] >= 0 and other >= 0 and other < distance.shape[2]:
+                    if distance[w, link, other] < d - 1.0e-6:
+                        keep = 0
+            if keep == 1:
+                i = base + surface.faces[face, 0]
+                j = base + surface.faces[face, 1]
+                k2 = base + surface.faces[face, 2]
+                pose = body_q[row]
+                centre = wp.transform_get_translation(pose)
+                axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+                c4 = segment_triangle(centre - axis, centre + axis, x[i], x[j], x[k2])
+                u = wp.vec3(c4[0], c4[1], c4[2])
+                if owns_contact(surface, face, u):
+                    slot = row * records.capacity + n
+                    records.face[slot] = wp.vec3i(i, j, k2)
+                    records.bary[slot] = u
+                    records.normal[slot] = wp.normalize(wp.cross(x[j] - x[i], x[k2] - x[i]))
+                    n += 1
+    records.count[row] = n
+
+
+@wp.kernel
+def build_lists(vertex_ring: wp.array(dtype=int), vertices: int, ring_count: int, links: int, records: ContactRecords):
+    """Thread each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
+
+    One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
+    """
+    w = wp.tid()
+    for step in range(links):
+        row = (w + 1) * links - 1 - step
+        n = records.count[row]
+        for back in range(n):
+            slot = row * records.capacity + n - 1 - back
+            face = records.face[slot]
+            lowest = ring_count
+            for k in range(3):
+                entry = 3 * slot + k
+                v = face[k]
+                records.vertex_next[entry] = records.vertex_head[v]
+                records.vertex_head[v] = entry
+                lowest = wp.min(lowest, vertex_ring[v - w * vertices])
+            records.ring_next[slot] = records.ring_head[w * ring_count + lowest]
+            records.ring_head[w * ring_count + lowest] = slot
+
+
+@wp.struct
+class Touch:
+    """Gap [m] (negative inside), unit normal from the scope into the wall, and axis point of one contact."""
+
+    gap: float
+    normal: wp.vec3
+
+
+@wp.func
+def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: float, radius: float) -> Touch:
+    """Signed gap of wall point ``p`` to a capsule.
+
+    A point on the lumen side of the axis, judged by the wall's own normal, counts as behind it: the gap is then
+    negative however far the link has gone through, so that a link is always pushed back inside.
+    """
+    centre = wp.transform_get_translation(pose)
+    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, half_length))
+    t = segment_parameter(p, centre - axis, centre + axis)
+    r = p - centre - (2.0 * t - 1.0) * axis
+    d = wp.length(r)
+    out = Touch()
+    out.normal = wall_normal
+    if d > 1.0e-6:
+        out.normal = r / d
+    if wp.dot(out.normal, wall_normal) < 0.0:
+        out.normal = -out.normal
+        d = -d
+    out.gap = d - radius
+    return out
+
+
+@wp.func
+def slip_scale(speed: float, limit: float) -> float:
+    """1/speed above ``limit``, smoothly bounded below it, so that friction = mu N * scale * slip (Li et al. 2020, IPC)."""
+    if speed > limit:
+        return 1.0 / speed
+    return (2.0 - speed / limit) / limit
+
+
+@wp.kernel
+def link_forces(
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    body_mass: wp.array(dtype=float),
+    x: wp.array(dtype=wp.vec3),
+    v: wp.array(dtype=wp.vec3),
+    links: LinkShapes,
+    records: ContactRecords,
+    law: ContactLaw,
+    friction: wp.array(dtype=float),
+    elapsed: float,
+    substep_dt: float,
+    weight: float,
+    link_count: int,
+    body_f: wp.array(dtype=wp.spatial_vector),
+    wall_force: wp.array(dtype=wp.vec3),
+):
+    """Contact wrench on each link, the wall moving on at its velocity for ``elapsed``. Launch (W*L,).
+
+    Writes ``body_f`` and adds ``weight`` times the force to ``wall_force``.
+    """
+    row = wp.tid()
+    w = row // link_count
+    link = row - w * link_count
+    pose = body_q[row]
+    centre = wp.transform_get_translation(pose)
+    lin = wp.spatial_top(body_qd[row])
+    ang = wp.spatial_bottom(body_qd[row])
+    cap = law.friction_cap * body_mass[row] / substep_dt
+    force = wp.vec3(0.0)
+    torque = wp.vec3(0.0)
+    for k in range(records.count[row]):
+        slot = row * records.capacity + k
+        f = records.face[slot]
+        u = records.bary[slot]
+        wall_v = triangle_point(v[f[0]], v[f[1]], v[f[2]], u)
+        p = triangle_point(x[f[0]], x[f[1]], x[f[2]], u) + elapsed * wall_v
+        c = touch(p, records.normal[slot], pose, links.half_length[link], links.radius[link] + law.wall_radius)
+        if c.gap < 0.0:
+            relative = lin + wp.cross(ang, p - centre) - wall_v
+            approach = wp.dot(c.normal, relative)
+            normal_force = -law.stiffness * c.gap + law.damping * wp.max(approach, 0.0)
+            slip = relative - c.normal * approach
+            drag = wp.min(friction[w] * normal_force * slip_scale(wp.length(slip), law.slip_velocity), cap)
+            contact = -normal_force * c.normal - drag * slip
+            force += contact
+            torque += wp.cross(p - centre, contact)
+    body_f[row] = wp.spatial_vector(force, torque)
+    wall_force[row] = wall_force[row] + weight * force

@@ -1,0 +1,100 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Settings of the simulation: clocks, solvers, contact."""
+
+from __future__ import annotations
+
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class ContactCfg:
+    """Contact between the links and the inner wall."""
+
+    stiffness: float = 2000.0
+    """Penalty stiffness of one contact [N/m]. 2000 keeps penetration under a tenth of a millimetre at 10 N a link;
+    lower it only together with the forces, for a soft contact lets links tunnel."""
+    damping: float = 0.0
+    """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
+    friction: float = 0.1
+    """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
+    the event :func:`arcgym.envs.mdp.randomize_friction`."""
+    slip_velocity: float = 0.01
+    """Speed under which friction is viscous [m/s]. Lower it to hold a parked scope more firmly."""
+    friction_cap: float = 1.0
+    """Largest explicit friction coefficient, in link masses per substep. 1 is exact up to friction 0.2; above,
+    use more ``SimulationCfg.scope_substeps``."""
+    wall_radius: float = 0.0005
+    """Thickness that the wall's surface adds to every link [m]."""
+    search_gap: float = 0.003
+    """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
+    that link and wall close in one physics step."""
+    search_reach: int = 3
+    """Rings searched on either side of a link's own. Must span half a link; 3 rings of 12.5 mm suit 20 mm links."""
+    capacity: int = 16
+    """Contacts kept per link. A 20 mm link in a bend has two to four."""
+
+
+@configclass
+class WallSolverCfg:
+    """Solver of the deformable wall."""
+
+    iterations: int = 1
+    """Vertex block descent sweeps a physics step. With the coarse correction one sweep suffices; without, the wall
+    needs 20 and still moves too little."""
+    coarse_correction: bool = True
+    """Solve the rings' affine motion once before the sweeps. Switch it off only to compare."""
+    repeats: int = 1
+    """Times (coarse correction + sweeps) is repeated. 10 gives a reference for the inner solve."""
+    drag: float = 20.0
+    """Velocity decay of the wall [1/s], standing for the surrounding fat and fluid."""
+    largest_move: float = 0.01
+    """Largest displacement that one coarse correction may make [m]."""
+
+
+@configclass
+class SimulationCfg:
+    """Physics of the scope in the colon."""
+
+    dt: float = 1.0 / 480.0
+    """Physics step: one wall solve [s]. The frozen wall damps contact by stiffness * dt; 1/240 softens fast pushes
+    visibly, smaller steps cost in proportion."""
+    device: str = "cpu"
+    """Device of physics, camera and tensors: ``cpu`` or ``cuda:0``."""
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Acceleration on the scope [m/s^2]. Zero by default: the colon's own weight is part of its rest shape, and
+    the scope's is carried by the wall and small against contact forces."""
+    solver: str = "two_level"
+    """Wall solver and coupling: ``two_level`` (ring correction + vertex block descent, own coupling loop) or ``newton``
+    (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
+    scope_substeps: int = 2
+    """Scope substeps a physics step; even. Raise it for lighter links or friction above 0.2."""
+    scope_iterations: int = 10
+    """Constraint iterations of MuJoCo a substep."""
+    mass_scaling: float = 3.0
+    """Factor on the scope's real link masses. Inertia hardly matters at 50 mm/s, and heavier links damp contact
+    noise; 1 is real and needs ``scope_substeps=4``."""
+    contact: ContactCfg = ContactCfg()
+    """Contact law and search."""
+    wall: WallSolverCfg = WallSolverCfg()
+    """Wall solver."""
+    newton_iterations: int = 5
+    """Sweeps of plain ``SolverVBD`` a physics step, with ``solver="newton"``. Use it with ``dt=1/960``."""
+    use_graph: bool = True
+    """Capture the physics step in a graph and replay it: 4 to 10 times faster on both CPU and CUDA. Switch it off
+    to step through kernels in a debugger."""
+
+    def __post_init__(self) -> None:
+        """Refuse settings that no solver can run.
+
+        Raises:
+            ValueError: If a value is out of its range.
+        """
+        if self.solver not in ("two_level", "newton"):
+            raise ValueError(f"SimulationCfg.solver is {self.solver!r}; choose 'two_level' or 'newton'.")
+        if self.scope_substeps < 2 or self.scope_substeps % 2:
+            raise ValueError(f"SimulationCfg.scope_substeps is {self.scope_substeps}; it must be even and at least 2.")
+        if not 0.0 < self.dt <= 1.0 / 60.0:
+            raise ValueError(f"SimulationCfg.dt is {self.dt} s; it must be positive and at most 1/60 s.")
+        if self.mass_scaling <= 0.0:
+            raise ValueError(f"SimulationCfg.mass_scaling is {self.mass_scaling}; it must be positive.")

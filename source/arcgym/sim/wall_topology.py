@@ -1,0 +1,90 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Connectivity of one world's wall, in numpy: lumen faces sorted along the centreline, tets around each vertex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class LumenTopology:
+    """Faces of the lumen side, sorted by ring (the lowest ring of their vertices)."""
+
+    rings: np.ndarray
+    """Inner vertices of each ring, padded with the ring's first, shape (R, S), int32."""
+    faces: np.ndarray
+    """Vertices, wound so that normals point into the wall, shape (F, 3), int32."""
+    neighbors: np.ndarray
+    """Face across the edge opposite to each corner, or -1, shape (F, 3), int32."""
+    vertex_owner: np.ndarray
+    """Lowest face around each wall vertex (F where there is none), shape (V,), int32."""
+    ring_start: np.ndarray
+    """First face of each ring, shape (R + 1,), int32."""
+
+    def candidates(self, reach: int) -> int:
+        """Largest number of faces within ``reach`` rings on either side of one ring."""
+        count = len(self.ring_start) - 1
+        ring = np.arange(count)
+        last = self.ring_start[np.minimum(count, ring + reach + 1)]
+        return int((last - self.ring_start[np.maximum(0, ring - reach)]).max())
+
+
+def lumen_topology(faces: np.ndarray, ring: np.ndarray, layer: np.ndarray) -> LumenTopology:
+    """Sort the lumen faces by ring and connect them.
+
+    Args:
+        faces: Faces of the lumen side, normals into the wall, shape (F, 3).
+        ring: Ring of each wall vertex, shape (V,).
+        layer: Layer of each wall vertex, 0 = inner, shape (V,).
+    """
+    lowest = ring[faces].min(axis=1)
+    order = np.argsort(lowest, kind="stable")
+    faces = faces[order].astype(np.int32)
+    count = int(ring.max()) + 1
+    ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
+    owner = np.full(len(ring), len(faces), np.int32)
+    np.minimum.at(owner, faces.ravel(), np.repeat(np.arange(len(faces), dtype=np.int32), 3))
+    return LumenTopology(
+        members(np.where(layer == 0)[0], ring, count, pad_first=True), faces, face_neighbors(faces), owner, ring_start
+    )
+
+
+def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool) -> np.ndarray:
+    """Vertices of each ring as a rectangular array, padded with the ring's first vertex or with -1.
+
+    Raises:
+        ValueError: If a ring has no vertices.
+    """
+    groups = [vertices[ring[vertices] == r] for r in range(count)]
+    empty = [r for r, group in enumerate(groups) if len(group) == 0]
+    if empty:
+        raise ValueError(f"Wall rings {empty[:5]} have no vertices; every ring from 0 to {count - 1} needs some.")
+    out = np.full((count, max(map(len, groups))), -1, np.int32)
+    for r, group in enumerate(groups):
+        out[r, : len(group)] = group
+        if pad_first:
+            out[r, len(group) :] = group[0]
+    return out
+
+
+def face_neighbors(faces: np.ndarray) -> np.ndarray:
+    """Face across the edge opposite to each corner, or -1 at a border, shape (F, 3), int32."""
+    edges = np.sort(np.stack([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]], axis=1), axis=2).reshape(-1, 2)
+    key = edges[:, 0].astype(np.int64) * (int(faces.max()) + 1) + edges[:, 1]
+    order = np.argsort(key, kind="stable")
+    same = np.flatnonzero(key[order][1:] == key[order][:-1])
+    a, b = order[same], order[same + 1]
+    out = np.full(3 * len(faces), -1, np.int32)
+    out[a], out[b] = b // 3, a // 3
+    return out.reshape(-1, 3)
+
+
+def vertex_entries(tets: np.ndarray, vertices: int) -> tuple[np.ndarray, np.ndarray]:
+    """Tets around each vertex as (start, shape (V + 1,); entry = 4 * tet + corner, shape (4*T,)), both int32."""
+    flat = tets.ravel()
+    entry = np.argsort(flat, kind="stable").astype(np.int32)
+    start = np.searchsorted(flat[entry], np.arange(vertices + 1)).astype(np.int32)
+    return start, entry
