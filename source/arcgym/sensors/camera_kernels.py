@@ -36,9 +36,7 @@ def cast_rays(
         query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
         if query.result:
             hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
-            total += shade(
-                surface, lighting, albedo, detail, hit, camera, direction, query.t, texture_offset[world]
-            )
+            total += shade(surface, lighting, albedo, detail, hit, camera, direction, query.t, texture_offset[world])
             nearest = wp.min(nearest, query.t)
     radiance[world, row, column] = total / float(rays.shape[2])
     depth[world, row, column] = nearest
@@ -50,7 +48,7 @@ def row_brightness(radiance: wp.array3d[wp.vec3], drawn: wp.array[wp.bool], brig
     world, row = wp.tid()
     if not drawn[world]:
         return
-    total = float(0.0)
+    total = wp.float32(0.0)
     for column in range(radiance.shape[2]):
         total += wp.sqrt(wp.dot(radiance[world, row, column], wp.vec3(0.2126, 0.7152, 0.0722)))
     brightness[world, row] = total
@@ -74,7 +72,7 @@ def expose(
     if not drawn[world]:
         return
     drawn_from[world] = poses[world]
-    total = float(0.0)
+    total = wp.float32(0.0)
     for row in range(brightness.shape[1]):
         total += brightness[world, row]
     mean = total / pixels

@@ -46,7 +46,7 @@ class EndoscopeCamera(SensorBase):
     """Batched ray-cast camera inside the deforming colon.
 
     One update skins the visual surface to the wall, refits its ray tree and draws every world: launches only, no
-    transfer to the host, so it can be captured together with the simulation.
+    transfer to the host, so that on CUDA it can be captured in a graph (see :class:`SkinnedSurface` for the CPU).
     """
 
     cfg: EndoscopeCameraCfg
@@ -73,9 +73,7 @@ class EndoscopeCamera(SensorBase):
         surface = SkinnedSurface(stage.visual_proxy, stage.wall, scene.num_envs, self._device)
         textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device)
         size = (self.cfg.width, self.cfg.height)
-        self._renderer = SurfaceRenderer(
-            surface, stage.visual_proxy, textures, self._optics(), size, self.cfg.samples
-        )
+        self._renderer = SurfaceRenderer(surface, stage.visual_proxy, textures, self._optics(), size, self.cfg.samples)
         self._snapshots: dict[tuple[int, int], SurfaceRenderer] = {}
         self._data = self._make_data()
 
@@ -88,6 +86,16 @@ class EndoscopeCamera(SensorBase):
     def surface(self) -> SkinnedSurface:
         """The surface that the policy's camera sees, also for other views of the scene."""
         return self._renderer.surface
+
+    @property
+    def radiance(self) -> torch.Tensor:
+        """Linear radiance before exposure, in arbitrary units, shape (N, H, W, 3)."""
+        return wp.to_torch(self._renderer.radiance)
+
+    @property
+    def exposure_gain(self) -> torch.Tensor:
+        """Gain of the last picture, shape (N,); 0 in worlds that were reset since."""
+        return wp.to_torch(self._renderer.gain)
 
     @property
     def field_of_view(self) -> float:
@@ -105,6 +113,10 @@ class EndoscopeCamera(SensorBase):
         else:
             wp.copy(self._drawn, wp.from_torch(env_mask, dtype=wp.bool))
         self._renderer.surface.update(self._colon.nodal_pos_wp, self._drawn)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draws the worlds of the last update again from the present camera poses, without moving the wall."""
         self._renderer.draw(self._endoscope.camera_pose_wp, self._looks, self._drawn)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
@@ -144,16 +156,14 @@ class EndoscopeCamera(SensorBase):
         renderer.draw(
             self._endoscope.camera_pose_wp[env_id : env_id + 1], self._looks.of_world(env_id), self._one_world
         )
-        return renderer.rgb.numpy()[0], renderer.depth.numpy()[0]
+        return renderer.rgb.numpy()[0].copy(), renderer.depth.numpy()[0].copy()
 
     def _snapshot_renderer(self, size: int, samples: int) -> SurfaceRenderer:
         """Returns the renderer of one world's fine surface at this size, making it at first use."""
         key = (size, samples)
         if key not in self._snapshots:
             visual, surface, textures = self._fine_surface
-            self._snapshots[key] = SurfaceRenderer(
-                surface, visual, textures, self._optics(), (size, size), samples
-            )
+            self._snapshots[key] = SurfaceRenderer(surface, visual, textures, self._optics(), (size, size), samples)
         return self._snapshots[key]
 
     @cached_property

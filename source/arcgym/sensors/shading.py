@@ -54,8 +54,9 @@ class Hit:
 
 
 @wp.func
-def surface_hit(surface: SurfaceView, query: wp.MeshQueryRay, world: int, origin: wp.vec3, direction: wp.vec3,
-                pixel_angle: float) -> Hit:
+def surface_hit(
+    surface: SurfaceView, query: wp.MeshQueryRay, world: int, origin: wp.vec3, direction: wp.vec3, pixel_angle: float
+) -> Hit:
     """Interpolates the surface at the point that a ray has hit."""
     corner = query.face * 3
     i0 = wp.mesh_get_index(surface.mesh, corner)
@@ -130,8 +131,18 @@ def highlight(cosine: float, alpha_sq: float) -> float:
 
 
 @wp.func
-def lit_by(lamp: wp.vec3, hit: Hit, relief: wp.vec3, film: wp.vec3, direction: wp.vec3, axis: wp.vec3,
-           color: wp.vec3, gloss: float, alpha_sq: float, lighting: Lighting) -> wp.vec3:
+def lit_by(
+    lamp: wp.vec3,
+    hit: Hit,
+    relief: wp.vec3,
+    film: wp.vec3,
+    direction: wp.vec3,
+    axis: wp.vec3,
+    color: wp.vec3,
+    gloss: float,
+    alpha_sq: float,
+    lighting: Lighting,
+) -> wp.vec3:
     """Radiance towards the camera from one light: wrapped diffuse reflection and the highlight on the film."""
     way = lamp - hit.position
     distance_sq = wp.length_sq(way)

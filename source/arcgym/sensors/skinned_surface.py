@@ -22,7 +22,8 @@ class SkinnedSurface:
 
     Every frame is built from the vertex's neighbours along and around the colon, so folds turn with the wall instead
     of being sheared. All worlds share one mesh whose triangles are grouped by world: a ray that starts at a world's
-    root meets no other world. :meth:`update` only launches kernels and can be captured in a graph.
+    root meets no other world. :meth:`update` only launches kernels and can be captured in a CUDA graph; CPU graphs of
+    Warp 1.19 do not record the refit of a mesh, so there it has to run beside the graph.
     """
 
     points: wp.array
@@ -41,6 +42,7 @@ class SkinnedSurface:
         self.num_nodes = len(wall.points)
         self.num_vertices = len(visual.points)
         self.device = device
+        self._device = wp.get_device(device)
         self._everywhere = wp.full(num_envs, True, dtype=wp.bool, device=device)
         self._neighbors = wp.array(wall.frame_neighbors, dtype=wp.vec4i, device=device)
         self._frames = wp.zeros(num_envs * self.num_nodes, dtype=wp.mat33, device=device)
@@ -60,7 +62,15 @@ class SkinnedSurface:
         Args:
             nodal_pos: Wall vertices of all worlds [m], shape (num_envs * V,), vec3.
             drawn: Worlds to move, shape (num_envs,), bool; the others keep their vertices bit for bit. None: all.
+
+        Raises:
+            RuntimeError: While a CPU graph is being captured, which would silently leave out the refit.
         """
+        if self._device.is_cpu and self._device.is_capturing:
+            raise RuntimeError(
+                "SkinnedSurface.update() inside a CPU graph capture: Warp does not record wp.Mesh.refit() there, and a"
+                " replay would trace rays through a stale tree. Update the camera outside the capture, or use CUDA."
+            )
         self._skin(nodal_pos, self._everywhere if drawn is None else drawn)
         self.mesh.refit()
 
