@@ -34,7 +34,7 @@ class NavigationSceneCfg(InteractiveSceneCfg):
     num_envs: int = 64
     """Number of worlds. On a GPU use 256 and more."""
 
-    colon: ColonCfg = ColonCfg(usd_path="colon_1/colon.usda")
+    colon: ColonCfg = ColonCfg()
     """The patient."""
 
     endoscope: EndoscopeCfg = MISSING
@@ -52,6 +52,7 @@ class ObservationsCfg:
     class PolicyCfg(ObsGroup):
         """Images of the last half second, the only input that a real endoscope has; shape (N, 15, H, W), uint8."""
 
+        concatenate_dim: int = 0
         rgb = ObsTerm(func=mdp.rgb, history_length=5)
 
     @configclass
@@ -112,6 +113,7 @@ class EventsCfg:
     """Where an episode starts and what differs from world to world."""
 
     reset = EventTerm(func=mdp.reset_to_segment_start, mode="reset")
+    aim = EventTerm(func=mdp.perturb_tip, mode="reset", params={"std": 0.15})
     light = EventTerm(func=mdp.randomize_light, mode="reset", params={"gain": (0.7, 1.4)})
     color = EventTerm(func=mdp.randomize_color, mode="reset", params={"gain": (0.9, 1.1)})
     texture = EventTerm(func=mdp.randomize_texture, mode="reset")
@@ -202,5 +204,5 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""
         self.scene.num_envs = 4
         self.observations.policy.enable_corruption = False
-        for name in ("light", "color", "texture", "stiffness", "friction"):
+        for name in ("aim", "light", "color", "texture", "stiffness", "friction"):
             setattr(self.events, name, None)

@@ -9,6 +9,7 @@ from arcgym.envs.mdp.actions import InsertionAction, InsertionActionCfg, TipVelo
 from arcgym.envs.mdp.costs import tip_force_above, view_blocked
 from arcgym.envs.mdp.curriculums import widen_reset
 from arcgym.envs.mdp.events import (
+    perturb_tip,
     randomize_color,
     randomize_friction,
     randomize_light,
@@ -96,6 +97,7 @@ __all__ = [
     "lumen_visibility",
     "max_wall_force",
     "mean_speed",
+    "perturb_tip",
     "progress",
     "progress_fraction",
     "randomize_color",

@@ -10,8 +10,78 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.envs.mdp.segments import segment_span
+from arcgym.managers import EventTermCfg, ManagerTermBase
+from arcgym.sim.snapshot import SnapshotSet, snapshot_path
+from arcgym.utils.math import quat_mul
+
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
+
+REST_POSE = -1
+"""Snapshot index of the scope straight in the anal canal."""
+
+
+class reset_to_segment_start(ManagerTermBase):  # noqa: N801
+    """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
+
+    The first segment of the colon starts from the rest pose. The others come from the file of snapshots that belongs to
+    this colon and this endoscope, loaded once.
+    """
+
+    def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
+        """Find the state.
+
+        Raises:
+            KeyError: If the colon or the file of snapshots does not have the segment.
+            FileNotFoundError: If there is no such file.
+        """
+        super().__init__(cfg, env)
+        segment = cfg.params.get("segment") or env.cfg.segment
+        self._index = torch.tensor(self._find(env, segment), device=env.device)
+
+    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, segment: str | None = None) -> None:
+        """Write the state of ``segment``, read once at construction; None is the task's, ``env.cfg.segment``."""
+        env.sim.write_snapshot(self._index, env_ids)
+
+    @staticmethod
+    def _find(env: ManagerBasedEnv, segment: str) -> int:
+        start, _ = segment_span(env, segment)
+        if start <= 0.0:
+            return REST_POSE
+        if env.sim.snapshots is None:
+            path = snapshot_path(env.scene["colon"].path, env.scene["endoscope"].path)
+            env.sim.load_snapshots(SnapshotSet.load(path))
+        return env.sim.snapshots.index(segment)
+
+
+class perturb_tip(ManagerTermBase):  # noqa: N801
+    """Turn the tip by normally distributed pitch and yaw; follows a reset in the same mode.
+
+    A scope with a shaft bends in its last hinges, odd ones about X and even ones about Y; a free capsule turns whole.
+    """
+
+    def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
+        """Share pitch and yaw among the last hinges: ``hinge_share``, shape (2, K)."""
+        super().__init__(cfg, env)
+        names = env.scene["endoscope"].joint_names
+        hinges = [i for i, name in enumerate(names) if name.startswith("hinge")][-cfg.params.get("hinges", 10) :]
+        number = torch.tensor([int(names[i].rpartition("_")[2]) for i in hinges], dtype=torch.long)
+        axis = torch.stack((number % 2 == 1, number % 2 == 0)).float()
+        self._share = (axis / axis.sum(1, keepdim=True).clamp(min=1.0)).to(env.device)
+        self._columns = torch.tensor(hinges, dtype=torch.long, device=env.device)
+
+    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.15, hinges: int = 10) -> None:
+        """Turn by ``std`` [rad] over the last ``hinges``, whose number is read once at construction."""
+        endoscope = env.scene["endoscope"]
+        angle = std * torch.randn(len(env_ids), 2, device=env.device)
+        joint_pos = endoscope.data.joint_pos
+        if len(self._columns) == 0:
+            joint_pos[env_ids, 3:7] = _turned(joint_pos[env_ids, 3:7], angle)
+            return
+        joint_pos[env_ids[:, None], self._columns] += angle @ self._share
+        if endoscope.stage.bending_links > 0:
+            endoscope.data.bending[env_ids] += angle
 
 
 def randomize_light(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[float, float] = (0.7, 1.4)) -> None:
@@ -45,3 +115,9 @@ def _log_uniform(env: ManagerBasedEnv, bounds: tuple[float, float], *shape: int)
     """Random numbers whose logarithm is uniform between the logarithms of ``bounds``, which must be positive."""
     low, high = (math.log(bound) for bound in bounds)
     return torch.exp(low + (high - low) * torch.rand(shape, device=env.device))
+
+
+def _turned(quat: torch.Tensor, angle: torch.Tensor) -> torch.Tensor:
+    """Orientations (n, 4) turned by small angles (n, 2) [rad] about their own X and Y."""
+    turn = torch.cat((0.5 * angle, torch.zeros_like(angle[:, :1]), torch.ones_like(angle[:, :1])), dim=1)
+    return quat_mul(quat, turn / turn.norm(dim=1, keepdim=True))

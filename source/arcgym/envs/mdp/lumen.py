@@ -161,7 +161,7 @@ def score_depth(depth: torch.Tensor, cfg: LumenCfg) -> LumenScores:
 
     half_height, half_width = (height - 1) / 2, (width - 1) / 2
     radius = torch.hypot(center[:, 0] - half_height, center[:, 1] - half_width)
-    s_c = 1.0 - radius / max(math.hypot(half_height, half_width), 1.0)
+    s_c = 1.0 - radius / math.hypot(half_height, half_width)
     s_1 = _ramp(depth_max, cfg.tau_wall, cfg.tau_lumen)
     s_2 = _ramp(area / (height * width), cfg.rho_min, 1.0)
     s_3 = _ramp(depth_max - depth_min, cfg.delta_min, cfg.delta_good)

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from arcgym.assets import EndoscopeCfg
+from arcgym.assets import CAPSULE_CFG, EndoscopeCfg
 from arcgym.envs import mdp
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.navigation_env_cfg import HORIZON_S, NavigationEnvCfg, NavigationSceneCfg
@@ -15,7 +15,7 @@ from arcgym_tasks.navigation.navigation_env_cfg import HORIZON_S, NavigationEnvC
 class CapsuleSceneCfg(NavigationSceneCfg):
     """Colon 1 with the magnetically moved capsule."""
 
-    endoscope: EndoscopeCfg = EndoscopeCfg(usd_path="endoscopes/capsule.usda")
+    endoscope: EndoscopeCfg = CAPSULE_CFG
     """The robot."""
 
 

@@ -1,0 +1,109 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""A stand-in for the environment: tensors that a test sets by hand, no physics."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import torch
+
+IDENTITY = [0.0, 0.0, 0.0, 1.0]
+
+
+class FakeEndoscope:
+    """Records commands; its data are plain tensors of two worlds with three links."""
+
+    def __init__(self, num_envs: int, num_links: int) -> None:
+        zeros = torch.zeros
+        self.kind = "proximal"
+        self.commands: dict[str, Any] = {}
+        self.data = SimpleNamespace(
+            tip_arc_length=zeros(num_envs),
+            tip_centerline_distance=zeros(num_envs),
+            tip_pos_w=zeros(num_envs, 3),
+            tip_quat_w=torch.tensor([IDENTITY] * num_envs),
+            tip_lin_vel_w=zeros(num_envs, 3),
+            tip_ang_vel_w=zeros(num_envs, 3),
+            tip_lumen_direction_w=torch.tensor([[0.0, 0.0, 1.0]] * num_envs),
+            tip_pull_force_w=zeros(num_envs, 3),
+            base_force=zeros(num_envs),
+            bending=zeros(num_envs, 2),
+            inserted_length=zeros(num_envs),
+            wall_force_w=zeros(num_envs, num_links, 3),
+            joint_pos=zeros(num_envs, 2 + num_links - 1),
+        )
+
+    def set_tip_velocity_command(self, lin_vel: torch.Tensor, ang_vel: torch.Tensor) -> None:
+        self.commands["tip"] = (lin_vel.clone(), ang_vel.clone())
+
+    def set_insertion_command(self, velocity: torch.Tensor, roll_rate: torch.Tensor) -> None:
+        self.commands["insertion"] = (velocity.clone(), roll_rate.clone())
+
+    def set_bending_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
+        self.commands["bending"] = (pitch.clone(), yaw.clone())
+
+    def write_friction_to_sim(self, mu: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["friction"] = (mu.clone(), env_ids)
+
+
+class FakeColon:
+    """A straight colon along +Z: rectum 0 to 0.1 m, sigmoid 0.1 to 0.5 m."""
+
+    def __init__(self, num_envs: int) -> None:
+        arc = torch.linspace(0.0, 0.5, 6)
+        points = torch.stack([torch.zeros(6), torch.zeros(6), arc], dim=1)
+        self.data = SimpleNamespace(centerline_arc=arc, centerline_pos_w=points.expand(num_envs, 6, 3))
+        self.stage = SimpleNamespace(segment_bounds=lambda: {"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.5)})
+        self.commands: dict[str, Any] = {}
+
+    def write_stiffness_scale_to_sim(self, scale: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["stiffness"] = (scale.clone(), env_ids)
+
+
+class FakeCamera:
+    """Images that a test sets."""
+
+    def __init__(self, num_envs: int) -> None:
+        image = torch.arange(num_envs * 4 * 6 * 3).reshape(num_envs, 4, 6, 3).to(torch.uint8)
+        self.data = SimpleNamespace(output={"rgb": image, "depth": torch.full((num_envs, 4, 6), 0.05)})
+        self.commands: dict[str, Any] = {}
+
+    def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["light"] = (gain.clone(), env_ids)
+
+    def write_color_gain(self, gain: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["color"] = (gain.clone(), env_ids)
+
+    def write_texture_offset(self, offset: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["texture"] = (offset.clone(), env_ids)
+
+
+class FakeEnv:
+    """What terms read of an environment: two worlds, three links, 10 Hz."""
+
+    def __init__(self, num_envs: int = 2, num_links: int = 3) -> None:
+        self.num_envs, self.device, self.step_dt = num_envs, "cpu", 0.1
+        self.common_step_counter, self.max_episode_length = 0, 100
+        self.episode_length_buf = torch.zeros(num_envs, dtype=torch.long)
+        self.cfg = SimpleNamespace(segment="sigmoid", lumen="paper")
+        self.scene = {
+            "endoscope": FakeEndoscope(num_envs, num_links),
+            "colon": FakeColon(num_envs),
+            "camera": FakeCamera(num_envs),
+        }
+        self.action_manager = SimpleNamespace(action=torch.zeros(num_envs, 2), prev_action=torch.zeros(num_envs, 2))
+
+    @property
+    def scope(self) -> SimpleNamespace:
+        """Data of the endoscope."""
+        return self.scene["endoscope"].data
+
+
+@pytest.fixture
+def env() -> FakeEnv:
+    """A fresh fake environment."""
+    return FakeEnv()

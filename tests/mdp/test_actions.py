@@ -1,0 +1,56 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Actions: scale, clip, constant forward velocity, reset."""
+
+from __future__ import annotations
+
+import torch
+
+from arcgym.envs import mdp
+
+
+def test_tip_velocity_is_scaled_and_clipped(env) -> None:
+    term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(linear_scale=0.05, angular_scale=2.0), env)
+    assert term.action_dim == 6
+    term.process_actions(torch.tensor([[1.0, -3.0, 0.5, 0.0, 0.0, -0.5]] * 2))
+    term.apply_actions()
+    linear, angular = env.scene["endoscope"].commands["tip"]
+    torch.testing.assert_close(linear[0], torch.tensor([0.05, -0.05, 0.025]))
+    torch.testing.assert_close(angular[0], torch.tensor([0.0, 0.0, -1.0]))
+    assert term.raw_actions[0, 1] == -3.0
+
+
+def test_constant_forward_velocity_drops_the_forward_action(env) -> None:
+    term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(linear_scale=0.05, forward_velocity=0.02), env)
+    assert term.action_dim == 5
+    term.process_actions(torch.tensor([[1.0, 0.0, 0.0, 0.0, 0.0]] * 2))
+    torch.testing.assert_close(term.processed_actions[1, :3], torch.tensor([0.05, 0.0, 0.02]))
+
+
+def test_insertion_moves_base_and_bending(env) -> None:
+    cfg = mdp.InsertionActionCfg(insertion_scale=0.05, roll_scale=1.0, bending_scale=1.3)
+    term = mdp.InsertionAction(cfg, env)
+    env.scope.bending[:] = torch.tensor([0.5, -0.5])
+    term.process_actions(torch.tensor([[1.0, -0.5, 1.0, -2.0]] * 2))
+    term.apply_actions()
+    commands = env.scene["endoscope"].commands
+    torch.testing.assert_close(commands["insertion"][0], torch.full((2,), 0.05))
+    torch.testing.assert_close(commands["insertion"][1], torch.full((2,), -0.5))
+    # One step of 0.1 s at 1.3 rad/s turns by 0.13 rad.
+    torch.testing.assert_close(commands["bending"][0], torch.full((2,), 0.63))
+    torch.testing.assert_close(commands["bending"][1], torch.full((2,), -0.63))
+
+
+def test_constant_insertion_drops_the_insertion_action(env) -> None:
+    term = mdp.InsertionAction(mdp.InsertionActionCfg(insertion_velocity=0.03), env)
+    assert term.action_dim == 3
+    term.process_actions(torch.zeros(2, 3))
+    torch.testing.assert_close(term.processed_actions[:, 0], torch.full((2,), 0.03))
+
+
+def test_reset_touches_only_its_worlds(env) -> None:
+    term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(), env)
+    term.process_actions(torch.ones(2, 6))
+    term.reset(torch.tensor([1]))
+    assert term.raw_actions[0].all() and not term.raw_actions[1].any() and not term.processed_actions[1].any()

@@ -1,0 +1,83 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Observations: shapes, frames and scales."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+import torch
+
+from arcgym.envs import mdp
+from arcgym.managers import ObservationTermCfg
+
+SHAPES = {
+    "tip_lumen_direction": 3,
+    "tip_progress": 1,
+    "tip_axis_distance": 1,
+    "tip_velocity": 6,
+    "tip_bending": 2,
+    "inserted_length": 2,
+    "wall_forces": 3,
+    "drive_forces": 2,
+    "lumen_state": 5,
+    "last_action": 2,
+}
+
+
+@pytest.mark.parametrize(("name", "size"), SHAPES.items())
+def test_vector_terms_have_the_documented_shape(env, name: str, size: int) -> None:
+    value = getattr(mdp, name)(env)
+    assert value.shape == (2, size) and value.dtype == torch.float32
+
+
+def test_rgb_is_a_channel_first_copy(env) -> None:
+    source = env.scene["camera"].data.output["rgb"]
+    image = mdp.rgb(env)
+    assert image.shape == (2, 3, 4, 6) and image.dtype == torch.uint8 and image.is_contiguous()
+    assert image[1, 2, 3, 4] == source[1, 3, 4, 2]
+    before = image.clone()
+    source.zero_()
+    assert torch.equal(image, before)
+
+
+def test_depth_is_scaled_and_clipped(env) -> None:
+    env.scene["camera"].data.output["depth"][1] = 0.3
+    image = mdp.depth(env, far=0.1)
+    assert image.shape == (2, 1, 4, 6)
+    assert image[0].unique().tolist() == [0.5] and image[1].unique().tolist() == [1.0]
+
+
+def test_lumen_direction_is_in_the_tip_frame(env) -> None:
+    # The tip is turned by 90 degrees about X: its forward axis is -Y of the world, the lumen's +Z is its +Y.
+    half = math.sqrt(0.5)
+    env.scope.tip_quat_w[0] = torch.tensor([half, 0.0, 0.0, half])
+    torch.testing.assert_close(mdp.tip_lumen_direction(env)[0], torch.tensor([0.0, 1.0, 0.0]))
+
+
+def test_centerline_ahead_of_a_tip_beside_the_axis(env) -> None:
+    term = mdp.centerline_ahead(ObservationTermCfg(func=mdp.centerline_ahead, params={"distances": (0.02, 0.05)}), env)
+    env.scope.tip_arc_length[:] = 0.15
+    env.scope.tip_pos_w[:] = torch.tensor([0.01, 0.0, 0.15])
+    value = term(env, distances=(0.02, 0.05))
+    torch.testing.assert_close(value[0], torch.tensor([-0.5, 0.0, 1.0, -0.2, 0.0, 1.0]))
+
+
+def test_centerline_ends_at_its_last_point(env) -> None:
+    term = mdp.centerline_ahead(ObservationTermCfg(func=mdp.centerline_ahead, params={"distances": (0.1,)}), env)
+    env.scope.tip_arc_length[:] = 0.5
+    env.scope.tip_pos_w[:] = torch.tensor([0.0, 0.0, 0.45])
+    torch.testing.assert_close(term(env, distances=(0.1,))[0], torch.tensor([0.0, 0.0, 0.5]))
+
+
+def test_forces_are_logarithmic(env) -> None:
+    env.scope.wall_force_w[0, 0, 0] = math.e - 1.0
+    torch.testing.assert_close(mdp.wall_forces(env)[0], torch.tensor([0.0, 1.0, 1.0]))
+
+
+def test_lumen_state_sees_the_image_after_a_reset(env) -> None:
+    mdp.lumen_reward(env)
+    env.scene["camera"].data.output["depth"][0] = 0.003
+    assert mdp.lumen_state(env)[0, 4] == -1.0

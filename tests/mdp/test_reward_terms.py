@@ -1,0 +1,94 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Reward, cost and metric terms on numbers set by hand."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from arcgym.envs import mdp
+from arcgym.managers import CostTermCfg, RewardTermCfg, SceneEntityCfg
+
+
+def test_progress_is_the_advance_since_the_last_step(env) -> None:
+    term = mdp.progress(RewardTermCfg(func=mdp.progress), env)
+    env.scope.tip_arc_length[:] = torch.tensor([0.20, 0.30])
+    torch.testing.assert_close(term(env), torch.zeros(2))
+    env.scope.tip_arc_length[:] = torch.tensor([0.204, 0.299])
+    torch.testing.assert_close(term(env), torch.tensor([0.004, -0.001]))
+
+
+def test_progress_does_not_count_a_reset(env) -> None:
+    term = mdp.progress(RewardTermCfg(func=mdp.progress), env)
+    term(env)
+    term.reset(torch.tensor([1]))
+    env.scope.tip_arc_length[:] = 0.2
+    torch.testing.assert_close(term(env), torch.tensor([0.2, 0.0]))
+
+
+def test_success_is_by_arc_length(env) -> None:
+    env.scope.tip_arc_length[:] = torch.tensor([0.499, 0.5])
+    assert mdp.success(env).tolist() == [0.0, 1.0]
+    assert mdp.success(env, segment="rectum").tolist() == [1.0, 1.0]
+
+
+def test_unknown_segment_lists_the_known(env) -> None:
+    with pytest.raises(KeyError, match="'colon' is not in this colon.*rectum.*sigmoid"):
+        mdp.success(env, segment="colon")
+
+
+def test_wall_force_counts_above_the_tier(env) -> None:
+    env.scope.wall_force_w[0, 1] = torch.tensor([3.0, 0.0, 4.0])
+    env.scope.wall_force_w[1, 1] = torch.tensor([1.0, 0.0, 0.0])
+    torch.testing.assert_close(mdp.excess_wall_force(env, threshold=2.0), torch.tensor([3.0, 0.0]))
+
+
+def test_wall_force_of_chosen_links(env) -> None:
+    env.scope.wall_force_w[0, 1] = torch.tensor([3.0, 0.0, 4.0])
+    tip = SceneEntityCfg("endoscope", body_ids=[2])
+    torch.testing.assert_close(mdp.max_wall_force(env, asset_cfg=tip), torch.zeros(2))
+    torch.testing.assert_close(mdp.max_wall_force(env), torch.tensor([5.0, 0.0]))
+
+
+def test_action_rate_is_squared_and_summed(env) -> None:
+    env.action_manager.action = torch.tensor([[1.0, 0.5], [0.0, 0.0]])
+    env.action_manager.prev_action = torch.tensor([[0.0, 0.0], [0.0, 0.0]])
+    torch.testing.assert_close(mdp.action_rate_l2(env), torch.tensor([1.25, 0.0]))
+
+
+def test_lumen_terms_agree_with_the_scores(env) -> None:
+    env.scene["camera"].data.output["depth"][0, 1:3, 2:4] = 0.1
+    scores = mdp.lumen_scores(env)
+    assert torch.equal(mdp.lumen_centering(env), scores.s_c)
+    assert torch.equal(mdp.lumen_visibility(env), scores.s_o)
+    torch.testing.assert_close(mdp.lumen_reward(env), 0.5 * scores.s_c + 0.5 * scores.s_o)
+
+
+def test_costs_are_indicators(env) -> None:
+    env.scope.wall_force_w[0, -1, 2] = 6.0
+    env.scope.wall_force_w[1, 0, 2] = 6.0
+    assert mdp.tip_force_above(env, limit=5.0).tolist() == [1.0, 0.0]
+    env.scene["camera"].data.output["depth"][0] = 0.004
+    assert mdp.view_blocked(env).tolist() == [1.0, 0.0]
+    assert CostTermCfg(func=mdp.view_blocked).params == {}
+
+
+def test_progress_fraction_is_clamped(env) -> None:
+    env.scope.tip_arc_length[:] = torch.tensor([0.2, 0.7])
+    torch.testing.assert_close(mdp.progress_fraction(env), torch.tensor([0.25, 1.0]))
+
+
+def test_time_to_success_is_the_limit_for_failures(env) -> None:
+    env.episode_length_buf[:] = 40
+    env.scope.tip_arc_length[:] = torch.tensor([0.2, 0.5])
+    torch.testing.assert_close(mdp.time_to_success(env), torch.tensor([10.0, 4.0]))
+
+
+def test_looping_ratio_and_speed(env) -> None:
+    env.episode_length_buf[:] = 20
+    env.scope.tip_arc_length[:] = 0.2
+    env.scope.inserted_length[:] = 0.25
+    torch.testing.assert_close(mdp.looping_ratio(env), torch.full((2,), 1.25))
+    torch.testing.assert_close(mdp.mean_speed(env), torch.full((2,), 0.05))
