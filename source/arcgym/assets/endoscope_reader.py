@@ -50,6 +50,10 @@ class EndoscopeStage:
     """Damping of each hinge [N m s/rad], shape (L - 1,)."""
     hinge_limit: np.ndarray
     """Largest angle of each hinge to either side [rad], shape (L - 1,)."""
+    hinge_armature: np.ndarray
+    """Armature inertia of each hinge [kg m^2], shape (L - 1,)."""
+    stop_stiffness: np.ndarray
+    """Stiffness of each hinge beyond its limit [N m/rad], shape (L - 1,)."""
     slide_drive: DriveSpec | None
     """Drive of the root along Z; None for a free root."""
     roll_drive: DriveSpec | None
@@ -119,6 +123,8 @@ class _Reader:
             hinge_stiffness=drives[:, 0],
             hinge_damping=drives[:, 1],
             hinge_limit=np.array([self._hinge_limit(hinge) for hinge in hinges]),
+            hinge_armature=np.array([self._number(hinge, "newton:armature") for hinge in hinges]),
+            stop_stiffness=np.degrees([self._number(hinge, "newton:limitStiffness") for hinge in hinges]),
             slide_drive=slide,
             roll_drive=roll,
             bending_links=int(self._value(scope, "arcgym:bendingLinks")),

@@ -86,6 +86,13 @@ class EndoscopeSpec:
     """Number of distal links whose hinges the control wheels bend."""
     damping_time: float = 0.1
     """Damping of a hinge divided by its stiffness [s]. Larger values calm a lightly loaded shaft."""
+    armature_time: float = 3.0e-4
+    """Armature inertia of a hinge divided by its damping [s]. Shorter than a solver substep, it is hidden by the
+    damping; without it the inertia about a hinge is so small that MuJoCo's joint limits give way."""
+    stop_ratio: float = 20.0
+    """Stiffness of a hinge beyond its limit, in multiples of its own stiffness."""
+    stop_damping_time: float = 0.011
+    """Damping beyond the limit divided by the stiffness there [s]: critical in MuJoCo with the armature above."""
     slide_drive: DriveSpec | None = None
     """Drive of the root along Z; None for a free root."""
     roll_drive: DriveSpec | None = None
@@ -108,6 +115,16 @@ class EndoscopeSpec:
     def hinge_damping(self) -> np.ndarray:
         """Damping of each hinge [N m s/rad], shape (L - 1,)."""
         return self.damping_time * self.hinge_stiffness
+
+    @property
+    def hinge_armature(self) -> np.ndarray:
+        """Armature inertia of each hinge [kg m^2], shape (L - 1,)."""
+        return self.armature_time * self.hinge_damping
+
+    @property
+    def stop_stiffness(self) -> np.ndarray:
+        """Stiffness of each hinge beyond its limit [N m/rad], shape (L - 1,)."""
+        return self.stop_ratio * self.hinge_stiffness
 
 
 def hinge_axis(hinge: int) -> Literal["X", "Y"]:

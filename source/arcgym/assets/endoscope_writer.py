@@ -160,6 +160,14 @@ def _write_hinge(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int) -> None:
     joint.CreateUpperLimitAttr(limit)
     spring = DriveSpec(float(spec.hinge_stiffness[hinge - 1]), float(spec.hinge_damping[hinge - 1]))
     _write_drive(joint.GetPrim(), "angular", spring, math.radians(1.0))
+    stop = math.radians(1.0) * float(spec.stop_stiffness[hinge - 1])
+    joint.GetPrim().AddAppliedSchema("NewtonJointAPI")
+    for name, value in (
+        ("newton:armature", float(spec.hinge_armature[hinge - 1])),
+        ("newton:limitStiffness", stop),
+        ("newton:limitDamping", spec.stop_damping_time * stop),
+    ):
+        _set(joint.GetPrim(), name, Sdf.ValueTypeNames.Float, value)
 
 
 def _write_frames(joint: UsdPhysics.Joint, height0: float, height1: float) -> None:

@@ -244,6 +244,9 @@ def _check_joints(check: _Check, builder: ModelBuilder, indices: EndoscopeIndice
     lower, upper = builder.joint_limit_lower[first:], builder.joint_limit_upper[first:]
     check.close(hinges, "physics:lowerLimit", lower, -stage.hinge_limit, "Author both limits, in degrees.")
     check.close(hinges, "physics:upperLimit", upper, stage.hinge_limit, "Author both limits, in degrees.")
+    stops, mend = builder.joint_limit_ke[first:], "Apply NewtonJointAPI; its limit gains are per degree."
+    check.close(hinges, "newton:limitStiffness", stops, stage.stop_stiffness, mend)
+    check.close(hinges, "newton:armature", builder.joint_armature[first:], stage.hinge_armature, mend)
 
 
 def _check_drives(check: _Check, builder: ModelBuilder, indices: EndoscopeIndices, stage: EndoscopeStage) -> None:
