@@ -1,0 +1,215 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Picture of colon and scope from outside the patient, without GPU or display."""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import numpy as np
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.configclass import configclass
+
+from . import outside_view_kernels as kernels
+from .compositing import compose
+from .palette import deformation_colors
+from .scope_colors import scope_color_table
+from .scope_tube import ScopeTube
+from .view_camera import ViewCamera, frame_points
+
+_COLOR_TABLE_SIZE = 64
+_KEY_LIGHT = np.array([-0.5, 0.75, 0.75])
+_FILL_LIGHT = np.array([0.9, 0.1, 0.6])
+
+
+@configclass
+class OutsideViewCfg:
+    """Camera and look of the outside view."""
+
+    width: int = 560
+    """Width of the picture [px]."""
+    height: int = 512
+    """Height of the picture [px]."""
+    azimuth: float = 0.0
+    """Turn of the camera around the body axis [rad]: 0 looks from anterior, +pi/2 from the patient's left. Change it
+    to see the sigmoid loop, which rises towards the front, from the side."""
+    elevation: float = math.radians(8.0)
+    """Height of the camera above the transverse plane [rad], within ±85°."""
+    distance: float = 1.6
+    """From the camera to the middle of the colon [m]. Smaller values exaggerate the perspective."""
+    outside_length: float = 0.07
+    """Part of the scope below the anus that is kept in the picture [m]."""
+    deformation_scale: float = 0.05
+    """Displacement of the wall that gets the last colour of the heat map [m]. Lower it for gentle robots."""
+    near_alpha: float = 0.16
+    """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
+    rim_alpha: float = 0.70
+    """Opacity added towards silhouettes, 0..1."""
+    far_alpha: float = 0.86
+    """Opacity of the wall that is seen through the lumen, 0..1."""
+    ghost_alpha: float = 0.42
+    """The same where the scope lies behind it, 0..1, so that no loop of the colon hides the scope."""
+    edge_threshold: float = 0.035
+    """Difference of neighbouring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
+    """
+    depth_contrast: float = 0.7
+    """Strength of the shade behind loops that lie in front of others, 0..1."""
+
+
+class WallSurface(Protocol):
+    """What is needed of :class:`arcgym.sensors.SkinnedSurface`; it holds one world."""
+
+    points: wp.array
+    """Vertices [m], shape (M,), vec3."""
+    normals: wp.array
+    """Unit normals towards the lumen, shape (M,), vec3."""
+    mesh: wp.Mesh
+    """Triangles with groups."""
+    roots: wp.array
+    """Start of ray queries, shape (1,), int32."""
+
+
+class OutsideView:
+    """Draws the translucent colon of one world and the scope in it.
+
+    The ray marcher is a Warp kernel and runs on the surface's device; shadows and background are added in numpy.
+    """
+
+    def __init__(
+        self,
+        cfg: OutsideViewCfg,
+        surface: WallSurface,
+        rest_points: np.ndarray,
+        link_length: np.ndarray,
+        link_radius: np.ndarray,
+        bending_links: int = 0,
+    ) -> None:
+        """Places the camera and allocates what every frame needs.
+
+        Args:
+            cfg: Camera and look.
+            surface: Visual surface of one world; read at every frame.
+            rest_points: Undeformed vertices of the surface [m], shape (M, 3).
+            link_length: Length of each link of the scope [m], shape (L,).
+            link_radius: Radius of each link [m], shape (L,).
+            bending_links: Number of distal links that form the bending section.
+        """
+        self.cfg = cfg
+        self.surface = surface
+        self.device = surface.points.device
+        below = np.array([[0.0, 0.0, -cfg.outside_length]])
+        self.camera: ViewCamera = frame_points(
+            np.concatenate([np.asarray(rest_points), below]),
+            (cfg.width, cfg.height),
+            cfg.azimuth,
+            cfg.elevation,
+            cfg.distance,
+        )
+        self._rest = self._array(rest_points, wp.vec3)
+        self._heat = self._array(deformation_colors(np.linspace(0.0, 1.0, _COLOR_TABLE_SIZE)), wp.vec3)
+        self._wall_colors = wp.zeros(len(rest_points), dtype=wp.vec3, device=self.device)
+        self._link_length = np.asarray(link_length, float)
+        self._bending_links = bending_links
+        self._tube = ScopeTube(link_length, link_radius)
+        self._add_scope()
+        self._params = self._view_params()
+        size = (cfg.height, cfg.width)
+        self._color = wp.zeros(size, dtype=wp.vec4, device=self.device)
+        self._refined = wp.zeros(size, dtype=wp.vec4, device=self.device)
+        self._depth = wp.zeros(size, dtype=float, device=self.device)
+
+    def render(self, link_pos: np.ndarray, link_quat: np.ndarray, link_force: np.ndarray) -> np.ndarray:
+        """Draws the surface as it is now, and the scope.
+
+        Args:
+            link_pos: Middle of each link [m], shape (L, 3).
+            link_quat: Orientation of each link (x, y, z, w), +Z towards the tip, shape (L, 4).
+            link_force: Wall force on each link [N], shape (L,).
+
+        Returns:
+            Picture, uint8, shape (height, width, 3).
+        """
+        self._update_scope(link_pos, link_quat, link_force)
+        self._color_wall()
+        self._trace()
+        return compose(self._refined.numpy(), self._depth.numpy(), kernels.FAR, self.cfg.depth_contrast)
+
+    def _color_wall(self) -> None:
+        wp.launch(
+            kernels.color_wall,
+            len(self._wall_colors),
+            inputs=[self.surface.points, self._rest, self._heat, self.cfg.deformation_scale],
+            outputs=[self._wall_colors],
+            device=self.device,
+        )
+
+    def _trace(self) -> None:
+        inputs = [self._geometry(), self._params]
+        wp.launch(
+            kernels.trace_pixels,
+            self._color.shape,
+            inputs=inputs,
+            outputs=[self._color, self._depth],
+            device=self.device,
+        )
+        wp.launch(
+            kernels.refine_edges,
+            self._color.shape,
+            inputs=[*inputs, self.cfg.edge_threshold, self._color],
+            outputs=[self._refined],
+            device=self.device,
+        )
+
+    def _add_scope(self) -> None:
+        """Builds the scope's mesh around a straight scope: its ray tree then follows the shaft, however it bends."""
+        straight = np.zeros((len(self._link_length), 3))
+        straight[:, 2] = np.cumsum(self._link_length) - 0.5 * self._link_length
+        vertices, normals = self._tube.sweep(straight, np.tile([0.0, 0.0, 0.0, 1.0], (len(straight), 1)))
+        self._scope_points = self._array(vertices, wp.vec3)
+        self._scope_normals = self._array(normals, wp.vec3)
+        self._scope_arcs = self._array(self._tube.arc, float)
+        self._scope_mesh = wp.Mesh(self._scope_points, self._array(self._tube.faces.ravel(), int))
+        self._scope_table = self._array(self._table(np.zeros(len(straight))), wp.vec3)
+
+    def _update_scope(self, link_pos: np.ndarray, link_quat: np.ndarray, link_force: np.ndarray) -> None:
+        vertices, normals = self._tube.sweep(link_pos, link_quat)
+        self._scope_points.assign(vertices)
+        self._scope_normals.assign(normals)
+        self._scope_mesh.refit()
+        self._scope_table.assign(self._table(link_force).astype(np.float32))
+
+    def _table(self, link_force: np.ndarray) -> np.ndarray:
+        return scope_color_table(self._link_length, self._bending_links, link_force)
+
+    def _geometry(self) -> kernels.ViewGeometry:
+        geometry = kernels.ViewGeometry()
+        geometry.wall = self.surface.mesh.id
+        geometry.root = self.surface.roots
+        geometry.wall_normals = self.surface.normals
+        geometry.wall_colors = self._wall_colors
+        geometry.scope = self._scope_mesh.id
+        geometry.scope_normals = self._scope_normals
+        geometry.scope_arcs = self._scope_arcs
+        geometry.scope_table = self._scope_table
+        return geometry
+
+    def _view_params(self) -> kernels.ViewParams:
+        camera, params = self.camera, kernels.ViewParams()
+        params.eye = wp.vec3(*camera.eye)
+        params.right = wp.vec3(*(camera.right * camera.tan_half[0]))
+        params.up = wp.vec3(*(camera.up * camera.tan_half[1]))
+        params.forward = wp.vec3(*camera.forward)
+        axes = np.stack([camera.right, camera.up, -camera.forward])
+        params.key_light = wp.normalize(wp.vec3(*(_KEY_LIGHT @ axes)))
+        params.fill_light = wp.normalize(wp.vec3(*(_FILL_LIGHT @ axes)))
+        params.width, params.height = camera.size
+        params.near_alpha, params.rim_alpha = self.cfg.near_alpha, self.cfg.rim_alpha
+        params.far_alpha, params.ghost_alpha = self.cfg.far_alpha, self.cfg.ghost_alpha
+        params.table_step = float(self._link_length.sum()) / len(self._scope_table)
+        return params
+
+    def _array(self, values: np.ndarray, dtype: type) -> wp.array:
+        return wp.array(np.asarray(values), dtype=dtype, device=self.device)

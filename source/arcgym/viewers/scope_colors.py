@@ -1,0 +1,52 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Colour along the scope: material, depth marks and wall force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .palette import VISIBLE_FORCE, force_colors, to_linear
+
+TABLE_STEP = 0.001
+"""Wanted distance between two entries of the colour table [m]."""
+
+_SHAFT = to_linear(np.array([44, 48, 58]))
+_BENDING = to_linear(np.array([86, 92, 106]))
+_TIP = to_linear(np.array([236, 238, 242]))
+_MARK = to_linear(np.array([225, 228, 232]))
+_TIP_LENGTH = 0.012
+_MARK_SPACING = 0.10
+_MARK_LENGTH = 0.002
+
+
+def scope_color_table(link_length: np.ndarray, bending_links: int, link_force: np.ndarray) -> np.ndarray:
+    """Returns the colour of the scope at even steps from its proximal end to its tip.
+
+    Dark shaft with a light ring every 10 cm from the tip (as real colonoscopes carry), a lighter bending section and
+    a light tip. The tier colour of the wall force covers shaft and bending section where there is any.
+
+    Args:
+        link_length: Length of each link [m], shape (L,).
+        bending_links: Number of distal links that form the bending section.
+        link_force: Wall force on each link [N], shape (L,).
+
+    Returns:
+        Linear RGB, shape (K, 3), where K steps of about 1 mm make up the scope's length.
+    """
+    ends = np.cumsum(np.asarray(link_length, float))
+    count = max(int(round(ends[-1] / TABLE_STEP)), 2)
+    arc = (np.arange(count) + 0.5) * ends[-1] / count
+    from_tip = ends[-1] - arc
+    color = np.where((arc > ends[-1] - np.sum(link_length[len(ends) - bending_links :]))[:, None], _BENDING, _SHAFT)
+    color = _tinted(color, np.interp(arc, ends - 0.5 * np.asarray(link_length), np.asarray(link_force, float)))
+    is_mark = (from_tip % _MARK_SPACING < _MARK_LENGTH) & (from_tip > 0.5 * _MARK_SPACING)
+    color[is_mark] = _MARK
+    color[from_tip < min(_TIP_LENGTH, 0.4 * ends[-1])] = _TIP
+    return color
+
+
+def _tinted(color: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Blends the tier colour in, fully from twenty times the smallest visible force."""
+    share = np.clip((force - VISIBLE_FORCE) / (19.0 * VISIBLE_FORCE), 0.0, 1.0)[:, None]
+    return color * (1.0 - 0.9 * share) + 0.9 * share * force_colors(force)
