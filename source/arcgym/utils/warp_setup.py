@@ -9,4 +9,4 @@ seconds instead of minutes. The setting is read when a kernel module is defined,
 import warp as wp
 
 wp.config.enable_backward = False
-wp.config.quiet = True
+wp.config.log_level = wp.LOG_WARNING
