@@ -92,3 +92,10 @@ def test_looping_ratio_and_speed(env) -> None:
     env.scope.inserted_length[:] = 0.25
     torch.testing.assert_close(mdp.looping_ratio(env), torch.full((2,), 1.25))
     torch.testing.assert_close(mdp.mean_speed(env), torch.full((2,), 0.05))
+
+
+def test_a_task_without_the_setting_is_told_what_to_add(env) -> None:
+    del env.cfg.segment
+    with pytest.raises(ValueError, match="needs 'segment', but SimpleNamespace has no such field"):
+        mdp.success(env)
+    assert mdp.success(env, segment="rectum").tolist() == [0.0, 0.0]

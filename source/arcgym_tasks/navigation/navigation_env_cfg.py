@@ -189,13 +189,17 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     decimation: int = 48
     """Physics steps in a control step: 0.1 s."""
 
+    def __post_init__(self) -> None:
+        """Nothing is derived from other fields; here for subclasses to call."""
+
     def validate_config(self) -> None:
-        """Check the names that this class adds.
+        """Check numbers and names.
 
         Raises:
-            ValueError: If the segment is unknown.
+            ValueError: If a number is out of range or the segment is unknown.
             KeyError: If the lumen preset is unknown.
         """
+        super().validate_config()
         if self.segment not in SEGMENTS:
             raise ValueError(f"env.segment is '{self.segment}', expected one of {', '.join(SEGMENTS)}.")
         mdp.resolve_lumen(self.lumen)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores, resolve_lumen
+from arcgym.envs.mdp.settings import task_setting
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 def tip_force_above(env: ManagerBasedRLEnv, limit: float = 5.0) -> torch.Tensor:
     """1 when the tip presses on the wall with more than ``limit`` [N], mean over the control step.
 
-    The unsafe tier of 5 N is a proposal: about a third of the perforation force of a straight tip (Johnson et al. 2019).
+    The unsafe tier of 5 N is a proposal: a third of the perforation force of a straight tip (Johnson et al. 2019).
     """
     return (env.scene["endoscope"].data.wall_force_w[:, -1].norm(dim=-1) > limit).float()
 
@@ -27,6 +28,6 @@ def view_blocked(
     env: ManagerBasedRLEnv, distance: float | None = None, lumen: str | LumenCfg | None = None
 ) -> torch.Tensor:
     """1 when nothing in view is farther than ``distance`` [m]: a red-out. None takes ``tau_wall`` of the reward."""
-    cfg = resolve_lumen(env.cfg.lumen if lumen is None else lumen)
+    cfg = resolve_lumen(task_setting(env, "lumen", lumen))
     limit = cfg.tau_wall if distance is None else distance
     return (lumen_scores(env, cfg).depth_max < limit).float()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.envs.mdp.segments import segment_span
+from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
 from arcgym.sim.snapshot import SnapshotSet, snapshot_path
 from arcgym.utils.math import quat_mul
@@ -22,7 +23,7 @@ REST_POSE = -1
 """Snapshot index of the scope straight in the anal canal."""
 
 
-class reset_to_segment_start(ManagerTermBase):  # noqa: N801
+class reset_to_segment_start(ManagerTermBase):
     """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
 
     The first segment of the colon starts from the rest pose. The others come from the file of snapshots that belongs to
@@ -37,7 +38,7 @@ class reset_to_segment_start(ManagerTermBase):  # noqa: N801
             FileNotFoundError: If there is no such file.
         """
         super().__init__(cfg, env)
-        segment = cfg.params.get("segment") or env.cfg.segment
+        segment = task_setting(env, "segment", cfg.params.get("segment"))
         self._index = torch.tensor(self._find(env, segment), device=env.device)
 
     def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, segment: str | None = None) -> None:
@@ -55,7 +56,7 @@ class reset_to_segment_start(ManagerTermBase):  # noqa: N801
         return env.sim.snapshots.index(segment)
 
 
-class perturb_tip(ManagerTermBase):  # noqa: N801
+class perturb_tip(ManagerTermBase):
     """Turn the tip by normally distributed pitch and yaw; follows a reset in the same mode.
 
     A scope with a shaft bends in its last hinges, odd ones about X and even ones about Y; a free capsule turns whole.
@@ -106,7 +107,9 @@ def randomize_tissue_stiffness(
     env.scene["colon"].write_stiffness_scale_to_sim(_log_uniform(env, scale, len(env_ids)), env_ids)
 
 
-def randomize_friction(env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.05, 0.2)) -> None:
+def randomize_friction(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.05, 0.2)
+) -> None:
     """Set the friction coefficient between scope and wall, log-uniform within ``friction``."""
     env.scene["endoscope"].write_friction_to_sim(_log_uniform(env, friction, len(env_ids)), env_ids)
 

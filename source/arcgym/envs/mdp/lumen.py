@@ -41,6 +41,8 @@ from weakref import WeakKeyDictionary
 
 import torch
 
+from arcgym.envs.mdp.settings import task_setting
+
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
@@ -93,8 +95,8 @@ class LumenCfg:
 PAPER = LumenCfg()
 """The constants of the original code, in metres (0.01 of its stage units is 1 mm of colon).
 
-In a metric colon ``s_1`` and ``s_3`` reach one a few centimetres from the wall and ``s_2`` stays zero in the open lumen,
-so that there ``s_o`` is 0.2 and ``R`` follows the centring; ``s_o`` drops only close to the wall."""
+In a metric colon ``s_1`` and ``s_3`` reach one a few centimetres from the wall and ``s_2`` stays zero in the open
+lumen, so that there ``s_o`` is 0.2 and ``R`` follows the centring; ``s_o`` drops only close to the wall."""
 
 METRIC = LumenCfg(
     depth_threshold=0.9,
@@ -181,7 +183,7 @@ def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None, refr
         lumen: A preset's name or the constants. None takes the task's, ``env.cfg.lumen``.
         refresh: Compute again even when this step has a result.
     """
-    cfg = resolve_lumen(env.cfg.lumen if lumen is None else lumen)
+    cfg = resolve_lumen(task_setting(env, "lumen", lumen))
     step = env.common_step_counter
     cached_step, scores = _CACHE.get(env, (None, {}))
     if refresh or cached_step != step:

@@ -34,16 +34,12 @@ def progress_fraction(env: ManagerBasedRLEnv, segment: str | None = None) -> tor
     return segment_progress(env, segment).clamp(0.0, 1.0)
 
 
-def centered_rate(
-    env: ManagerBasedRLEnv, threshold: float = 0.8, lumen: str | LumenCfg | None = None
-) -> torch.Tensor:
+def centered_rate(env: ManagerBasedRLEnv, threshold: float = 0.8, lumen: str | LumenCfg | None = None) -> torch.Tensor:
     """1 while the lumen is in the middle of the image, ``s_c > 0.8`` as in the original evaluation (reduce: mean)."""
     return (lumen_scores(env, lumen).s_c > threshold).float()
 
 
-def visible_rate(
-    env: ManagerBasedRLEnv, threshold: float = -0.15, lumen: str | LumenCfg | None = None
-) -> torch.Tensor:
+def visible_rate(env: ManagerBasedRLEnv, threshold: float = -0.15, lumen: str | LumenCfg | None = None) -> torch.Tensor:
     """1 while the lumen is in view, ``s_o > -0.15`` as in the original evaluation (reduce: mean)."""
     return (lumen_scores(env, lumen).s_o > threshold).float()
 

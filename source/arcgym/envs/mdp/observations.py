@@ -30,7 +30,8 @@ _CAMERA = SceneEntityCfg("camera")
 
 def rgb(env: ManagerBasedEnv, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
     """Colour image, shape (N, 3, H, W), uint8. A copy: the camera draws into the same buffer each time."""
-    return env.scene[sensor_cfg.name].data.output["rgb"].permute(0, 3, 1, 2).clone(memory_format=torch.contiguous_format)
+    image = env.scene[sensor_cfg.name].data.output["rgb"].permute(0, 3, 1, 2)
+    return image.clone(memory_format=torch.contiguous_format)
 
 
 def depth(env: ManagerBasedEnv, far: float = 0.1, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
@@ -44,7 +45,7 @@ def tip_lumen_direction(env: ManagerBasedEnv) -> torch.Tensor:
     return quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)
 
 
-class centerline_ahead(ManagerTermBase):  # noqa: N801
+class centerline_ahead(ManagerTermBase):
     """Points of the deformed centreline ahead of the tip, in the tip frame, each over its distance, shape (N, 3 K).
 
     Beyond the end of the centreline its last point is taken.
@@ -94,7 +95,7 @@ def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
 
 
 def wall_forces(env: ManagerBasedEnv) -> torch.Tensor:
-    """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing link and by all, shape (N, 3)."""
+    """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing link, by all, shape (N, 3)."""
     force = env.scene["endoscope"].data.wall_force_w.norm(dim=-1)
     return torch.log1p(torch.stack((force[:, -1], force.amax(dim=1), force.sum(dim=1)), dim=1))
 

@@ -34,7 +34,7 @@ def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) ->
     return lumen_scores(env, lumen).reward
 
 
-class progress(ManagerTermBase):  # noqa: N801
+class progress(ManagerTermBase):
     """Advance of the tip along the lumen in this control step [m], negative when it slips back.
 
     The first step of an episode counts as zero: what the tip did before is not known.

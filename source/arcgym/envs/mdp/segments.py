@@ -10,6 +10,8 @@ from weakref import WeakKeyDictionary
 
 import torch
 
+from arcgym.envs.mdp.settings import task_setting
+
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
@@ -21,7 +23,7 @@ def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[floa
         env: The environment; its scene holds ``colon``.
         segment: A name of :data:`arcgym.anatomy.segments.SEGMENTS`. None takes the task's, ``env.cfg.segment``.
     """
-    name = env.cfg.segment if segment is None else segment
+    name = task_setting(env, "segment", segment)
     if env not in _BOUNDS:
         _BOUNDS[env] = env.scene["colon"].stage.segment_bounds()
     bounds = _BOUNDS[env]

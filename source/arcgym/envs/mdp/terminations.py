@@ -29,9 +29,7 @@ def segment_passed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.
     return segment_progress(env, segment) >= 1.0
 
 
-def excess_force(
-    env: ManagerBasedRLEnv, limit: float = 14.0, asset_cfg: SceneEntityCfg = _ENDOSCOPE
-) -> torch.Tensor:
+def excess_force(env: ManagerBasedRLEnv, limit: float = 14.0, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
     """Some link presses on the wall with more than ``limit`` [N], mean over the control step.
 
     The default is the force at which the straight tip of a colonoscope perforated porcine colon, 14.1 N (Johnson et al.
@@ -41,7 +39,7 @@ def excess_force(
     return force.amax(dim=1) > limit
 
 
-class lumen_lost(ManagerTermBase):  # noqa: N801
+class lumen_lost(ManagerTermBase):
     """The visibility ``s_o`` has been below ``threshold`` for ``steps`` control steps in a row."""
 
     def __init__(self, cfg: TerminationTermCfg, env: ManagerBasedRLEnv) -> None:
@@ -62,7 +60,7 @@ class lumen_lost(ManagerTermBase):  # noqa: N801
         return self._count >= steps
 
 
-class stuck(ManagerTermBase):  # noqa: N801
+class stuck(ManagerTermBase):
     """The tip has advanced less than ``min_progress`` [m] over the last ``window_s`` seconds.
 
     A pull-back to straighten the shaft also looks like this while it lasts, so the window must leave time for one. Use

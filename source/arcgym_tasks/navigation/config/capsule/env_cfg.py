@@ -46,7 +46,7 @@ class RectumCapsuleEnvCfg(CapsuleEnvCfg):
 
 
 @configclass
-class RectumCapsuleEnvCfg_PLAY(RectumCapsuleEnvCfg):  # noqa: N801
+class RectumCapsuleEnvCfg_PLAY(RectumCapsuleEnvCfg):
     """``ARC-Rectum-Capsule-Play``."""
 
     def __post_init__(self) -> None:
@@ -64,7 +64,7 @@ class SigmoidCapsuleEnvCfg(CapsuleEnvCfg):
 
 
 @configclass
-class SigmoidCapsuleEnvCfg_PLAY(SigmoidCapsuleEnvCfg):  # noqa: N801
+class SigmoidCapsuleEnvCfg_PLAY(SigmoidCapsuleEnvCfg):
     """``ARC-Sigmoid-Capsule-Play``."""
 
     def __post_init__(self) -> None:
@@ -82,7 +82,7 @@ class DescendingCapsuleEnvCfg(CapsuleEnvCfg):
 
 
 @configclass
-class DescendingCapsuleEnvCfg_PLAY(DescendingCapsuleEnvCfg):  # noqa: N801
+class DescendingCapsuleEnvCfg_PLAY(DescendingCapsuleEnvCfg):
     """``ARC-Descending-Capsule-Play``."""
 
     def __post_init__(self) -> None:
@@ -100,7 +100,7 @@ class SplenicCapsuleEnvCfg(CapsuleEnvCfg):
 
 
 @configclass
-class SplenicCapsuleEnvCfg_PLAY(SplenicCapsuleEnvCfg):  # noqa: N801
+class SplenicCapsuleEnvCfg_PLAY(SplenicCapsuleEnvCfg):
     """``ARC-Splenic-Capsule-Play``."""
 
     def __post_init__(self) -> None:

@@ -46,7 +46,7 @@ class RectumMagneticEnvCfg(MagneticEnvCfg):
 
 
 @configclass
-class RectumMagneticEnvCfg_PLAY(RectumMagneticEnvCfg):  # noqa: N801
+class RectumMagneticEnvCfg_PLAY(RectumMagneticEnvCfg):
     """``ARC-Rectum-Magnetic-Play``."""
 
     def __post_init__(self) -> None:
@@ -64,7 +64,7 @@ class SigmoidMagneticEnvCfg(MagneticEnvCfg):
 
 
 @configclass
-class SigmoidMagneticEnvCfg_PLAY(SigmoidMagneticEnvCfg):  # noqa: N801
+class SigmoidMagneticEnvCfg_PLAY(SigmoidMagneticEnvCfg):
     """``ARC-Sigmoid-Magnetic-Play``."""
 
     def __post_init__(self) -> None:
@@ -82,7 +82,7 @@ class DescendingMagneticEnvCfg(MagneticEnvCfg):
 
 
 @configclass
-class DescendingMagneticEnvCfg_PLAY(DescendingMagneticEnvCfg):  # noqa: N801
+class DescendingMagneticEnvCfg_PLAY(DescendingMagneticEnvCfg):
     """``ARC-Descending-Magnetic-Play``."""
 
     def __post_init__(self) -> None:
@@ -100,7 +100,7 @@ class SplenicMagneticEnvCfg(MagneticEnvCfg):
 
 
 @configclass
-class SplenicMagneticEnvCfg_PLAY(SplenicMagneticEnvCfg):  # noqa: N801
+class SplenicMagneticEnvCfg_PLAY(SplenicMagneticEnvCfg):
     """``ARC-Splenic-Magnetic-Play``."""
 
     def __post_init__(self) -> None:

@@ -46,7 +46,7 @@ class RectumProximalEnvCfg(ProximalEnvCfg):
 
 
 @configclass
-class RectumProximalEnvCfg_PLAY(RectumProximalEnvCfg):  # noqa: N801
+class RectumProximalEnvCfg_PLAY(RectumProximalEnvCfg):
     """``ARC-Rectum-Proximal-Play``."""
 
     def __post_init__(self) -> None:
@@ -64,7 +64,7 @@ class SigmoidProximalEnvCfg(ProximalEnvCfg):
 
 
 @configclass
-class SigmoidProximalEnvCfg_PLAY(SigmoidProximalEnvCfg):  # noqa: N801
+class SigmoidProximalEnvCfg_PLAY(SigmoidProximalEnvCfg):
     """``ARC-Sigmoid-Proximal-Play``."""
 
     def __post_init__(self) -> None:
@@ -82,7 +82,7 @@ class DescendingProximalEnvCfg(ProximalEnvCfg):
 
 
 @configclass
-class DescendingProximalEnvCfg_PLAY(DescendingProximalEnvCfg):  # noqa: N801
+class DescendingProximalEnvCfg_PLAY(DescendingProximalEnvCfg):
     """``ARC-Descending-Proximal-Play``."""
 
     def __post_init__(self) -> None:
@@ -100,7 +100,7 @@ class SplenicProximalEnvCfg(ProximalEnvCfg):
 
 
 @configclass
-class SplenicProximalEnvCfg_PLAY(SplenicProximalEnvCfg):  # noqa: N801
+class SplenicProximalEnvCfg_PLAY(SplenicProximalEnvCfg):
     """``ARC-Splenic-Proximal-Play``."""
 
     def __post_init__(self) -> None:

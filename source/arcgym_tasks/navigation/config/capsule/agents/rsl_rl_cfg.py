@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Learning settings for a capsule of 10 x 20 mm that a magnet moves; each task logs to its own folder."""
+"""Learning settings for the capsule; each task logs to its own folder."""
 
 from __future__ import annotations
 

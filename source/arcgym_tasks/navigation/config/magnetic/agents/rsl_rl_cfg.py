@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Learning settings for a magnetic flexible endoscope, whose tip a magnet pulls on a soft tether; each task logs to its own folder."""
+"""Learning settings for the magnetic flexible endoscope; each task logs to its own folder."""
 
 from __future__ import annotations
 

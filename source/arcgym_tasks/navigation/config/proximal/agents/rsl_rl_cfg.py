@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Learning settings for a colonoscope that is pushed and rolled from outside, with a bending section; each task logs to its own folder."""
+"""Learning settings for the colonoscope pushed from outside; each task logs to its own folder."""
 
 from __future__ import annotations
 
