@@ -1,4 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+"""Environments: scene and managers under Gymnasium's interface."""
 
-"""ARCGym envs."""
+from arcgym.envs.manager_based_env import ManagerBasedEnv
+from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg, ViewerCfg
+from arcgym.envs.manager_based_rl_env import ManagerBasedRLEnv
+from arcgym.envs.manager_based_rl_env_cfg import ManagerBasedRLEnvCfg
+
+__all__ = ["ManagerBasedEnv", "ManagerBasedEnvCfg", "ManagerBasedRLEnv", "ManagerBasedRLEnvCfg", "ViewerCfg"]

@@ -92,7 +92,14 @@ def load_cfg_from_registry(task: str, key: str) -> Any:
     kwargs = gymnasium.registry[task].kwargs
     if key not in kwargs:
         raise ValueError(f"Task '{task}' has no '{key}'. {did_you_mean(key, kwargs)}")
-    value = kwargs[key]
-    if isinstance(value, str):
-        value = resolve_callable(value)
+    return load_cfg(kwargs[key])
+
+
+def load_cfg(entry_point: Any) -> Any:
+    """Returns a fresh configuration.
+
+    Args:
+        entry_point: Text ``"module:Class"``, a class, or an instance to copy.
+    """
+    value = resolve_callable(entry_point) if isinstance(entry_point, str) else entry_point
     return value() if callable(value) else copy.deepcopy(value)

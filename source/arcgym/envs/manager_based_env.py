@@ -1,0 +1,205 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""An environment made of managers that observes and acts."""
+
+from __future__ import annotations
+
+import logging
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import gymnasium as gym
+import numpy as np
+import torch
+
+from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
+from arcgym.envs.spaces import batched, observation_space
+from arcgym.managers import ActionManager, EventManager, ObservationManager
+from arcgym.managers.observation_manager import Observation
+from arcgym.utils.seed import set_seed
+
+if TYPE_CHECKING:
+    from arcgym.scene import InteractiveScene
+
+logger = logging.getLogger(__name__)
+
+
+class ManagerBasedEnv(gym.Env):
+    """Steps a scene under actions and returns observations, for all worlds at once.
+
+    Observations, rewards and flags are torch tensors on :attr:`device`, in memory of their own: they may be kept.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"]}
+
+    def __init__(self, cfg: ManagerBasedEnvCfg, render_mode: str | None = None) -> None:
+        """Builds scene and managers.
+
+        Args:
+            cfg: Configuration; checked before anything is allocated.
+            render_mode: ``"rgb_array"`` for :meth:`render`, or None.
+
+        Raises:
+            ValueError: If fields of the configuration are missing or wrong.
+        """
+        cfg.validate()
+        self.cfg = cfg
+        self.render_mode = render_mode
+        self.common_step_counter = 0
+        self.extras: dict[str, Any] = {"log": {}}
+        self._view: Any = None
+        if cfg.seed is None:
+            logger.warning("No seed is set: runs will differ. Set env.seed for runs that can be repeated.")
+        else:
+            cfg.seed = self.seed(cfg.seed)
+        self.scene = _build_scene(cfg)
+        self.sim = self.scene.sim
+        self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
+        self._refresh_all()
+        self._init_buffers()
+        self.load_managers()
+        self.event_manager.apply("startup")
+        self._refresh_all()
+        self._configure_spaces()
+        self.obs_buf: dict[str, Observation] = {}
+        logger.info("%s", self)
+
+    def __str__(self) -> str:
+        """Lists clocks and managers."""
+        clocks = (
+            f"{type(self).__name__}: {self.num_envs} worlds, physics {self.physics_dt:.6f} s, step {self.step_dt:.4f} s"
+        )
+        return "\n".join([clocks, *(str(manager) for manager in self._managers())])
+
+    @property
+    def num_envs(self) -> int:
+        """Number of worlds N."""
+        return self.scene.num_envs
+
+    @property
+    def device(self) -> str:
+        """Device of all tensors."""
+        return self.scene.device
+
+    @property
+    def physics_dt(self) -> float:
+        """Physics step [s]."""
+        return self.cfg.sim.dt
+
+    @property
+    def step_dt(self) -> float:
+        """Control step [s]."""
+        return self.cfg.sim.dt * self.cfg.decimation
+
+    @property
+    def unwrapped(self) -> ManagerBasedEnv:
+        """The environment itself."""
+        return self
+
+    def load_managers(self) -> None:
+        """Builds the managers; terms may look at the managers built before them."""
+        self.event_manager = EventManager(self.cfg.events, self)
+        self.action_manager = ActionManager(self.cfg.actions, self)
+        self.observation_manager = ObservationManager(self.cfg.observations, self)
+
+    def seed(self, seed: int = -1) -> int:
+        """Seeds every random number generator and returns the seed; a negative one draws one."""
+        return set_seed(seed)
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Observation], dict[str, Any]]:
+        """Starts a new episode in every world.
+
+        Args:
+            seed: Seed to set first; None for none.
+            options: Unused; part of Gymnasium's interface.
+
+        Returns:
+            Observation of each group, and extras with the logs of the episodes cut off.
+        """
+        if seed is not None:
+            self.seed(seed)
+        self.extras = {"log": {}}
+        self._reset_idx(torch.arange(self.num_envs, device=self.device))
+        self._refresh_all()
+        self.obs_buf = self.observation_manager.compute()
+        return self.obs_buf, self.extras
+
+    def step(self, action: torch.Tensor) -> tuple[Any, ...]:
+        """Advances every world by one control step.
+
+        Args:
+            action: Action of every world, shape (N, A).
+
+        Returns:
+            Observation of each group, and extras.
+        """
+        self.extras = {"log": {}}
+        self._advance(action)
+        self.event_manager.apply("interval", dt=self.step_dt)
+        self.obs_buf = self.observation_manager.compute()
+        return self.obs_buf, self.extras
+
+    def render(self) -> np.ndarray | None:
+        """Returns the picture of world ``cfg.viewer.env_id``: scope's view and outside view, uint8, shape (H, W, 3)."""
+        if self.render_mode is None:
+            return None
+        if self._view is None:
+            from arcgym.viewers import TwoPaneView
+
+            self._view = TwoPaneView(self)
+        return self._view.frame(env_id=self.cfg.viewer.env_id)
+
+    def close(self) -> None:
+        """Lets go of the view. The simulation is freed with the environment."""
+        self._view = None
+
+    def _init_buffers(self) -> None:
+        """Makes what terms may read while the managers are built."""
+
+    def _managers(self) -> list[Any]:
+        return [self.event_manager, self.action_manager, self.observation_manager]
+
+    def _advance(self, action: torch.Tensor) -> None:
+        """Applies an action for a control step of physics and updates the sensors.
+
+        One call makes all physics steps: the simulation replays captured graphs and averages the forces over them.
+        """
+        self.action_manager.process_action(action.to(self.device))
+        self.action_manager.apply_action()
+        self.sim.step(self.cfg.decimation)
+        self.scene.update(self.step_dt)
+        self.common_step_counter += 1
+
+    def _reset_idx(self, env_ids: torch.Tensor) -> None:
+        """Puts worlds back to the start of an episode and collects the logs.
+
+        Args:
+            env_ids: World indices, int64, shape (n,).
+        """
+        self.scene.reset(env_ids)
+        self.event_manager.apply("reset", env_ids, global_env_step_count=self.common_step_counter)
+        for manager in self._managers():
+            self.extras["log"].update(manager.reset(env_ids))
+
+    def _refresh_all(self) -> None:
+        """Recomputes what follows from positions, and draws every world again."""
+        self.sim.forward()
+        self.scene.update(0.0)
+
+    def _configure_spaces(self) -> None:
+        actions = gym.spaces.Box(-np.inf, np.inf, (self.action_manager.total_action_dim,), np.float32)
+        self.single_observation_space = observation_space(self.observation_manager)
+        self.single_action_space = actions
+        self.observation_space = batched(self.single_observation_space, self.num_envs)
+        self.action_space = batched(actions, self.num_envs)
+
+
+def _build_scene(cfg: ManagerBasedEnvCfg) -> InteractiveScene:
+    """Builds the scene by its configuration's ``class_type``, if it has one."""
+    scene_class = getattr(cfg.scene, "class_type", None)
+    if scene_class is None:
+        from arcgym.scene import InteractiveScene
+
+        scene_class = InteractiveScene
+    return scene_class(cfg.scene, cfg.sim)

@@ -1,0 +1,68 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration of environments made of managers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from arcgym.sim.simulation_cfg import SimulationCfg
+from arcgym.utils import MISSING, configclass
+
+if TYPE_CHECKING:
+    from arcgym.scene import InteractiveSceneCfg
+
+
+@configclass
+class ViewerCfg:
+    """What videos show."""
+
+    env_id: int = 0
+    """World to look at."""
+
+    pane_size: int = 512
+    """Height and width of each of the two panes [pixels]. Halve it for faster videos on the CPU."""
+
+
+@configclass
+class ManagerBasedEnvCfg:
+    """An environment that observes and acts, without a reward."""
+
+    scene: InteractiveSceneCfg = MISSING
+    """Worlds, colon, endoscope and camera."""
+
+    sim: SimulationCfg = SimulationCfg()
+    """Physics."""
+
+    observations: Any = MISSING
+    """Observation groups: a configuration class, or a dict, of :class:`ObservationGroupCfg`."""
+
+    actions: Any = MISSING
+    """Action terms: a configuration class, or a dict, of :class:`ActionTermCfg`."""
+
+    events: Any = None
+    """Event terms: a configuration class, or a dict, of :class:`EventTermCfg`; None for none."""
+
+    viewer: ViewerCfg = ViewerCfg()
+    """What videos show."""
+
+    decimation: int = 48
+    """Physics steps in a control step. With ``sim.dt`` = 1/480 s, 48 gives control at 10 Hz."""
+
+    seed: int | None = None
+    """Seed of all random numbers, set before the scene is built. None leaves the generators as they are, -1 draws
+    one."""
+
+    log_dir: str | None = None
+    """Folder for files that terms write; set by the training script."""
+
+    def validate_config(self) -> None:
+        """Checks numbers.
+
+        Raises:
+            ValueError: If the decimation is below one.
+        """
+        if self.decimation < 1:
+            raise ValueError(
+                f"decimation is the number of physics steps in a control step: >= 1, got {self.decimation}."
+            )

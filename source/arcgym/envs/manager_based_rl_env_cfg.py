@@ -1,0 +1,54 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration of environments for reinforcement learning."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
+from arcgym.utils import MISSING, configclass
+
+
+@configclass
+class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
+    """An environment with rewards, costs and episodes."""
+
+    episode_length_s: float = MISSING
+    """Longest episode [s]; rounded up to whole control steps."""
+
+    is_finite_horizon: bool = False
+    """Whether the time limit is part of the task. Otherwise learners bootstrap the value at time-outs."""
+
+    rewards: Any = MISSING
+    """Reward terms: a configuration class, or a dict, of :class:`RewardTermCfg`."""
+
+    terminations: Any = MISSING
+    """Termination terms: a configuration class, or a dict, of :class:`TerminationTermCfg`."""
+
+    curriculum: Any = None
+    """Curriculum terms: a configuration class, or a dict, of :class:`CurriculumTermCfg`; None for none."""
+
+    costs: Any = None
+    """Cost terms: a configuration class, or a dict, of :class:`CostTermCfg`; None for none."""
+
+    metrics: Any = None
+    """Metrics terms: a configuration class, or a dict, of :class:`MetricsTermCfg`; None for none."""
+
+    scale_rewards_by_dt: bool = True
+    """Whether rewards and costs are rates, multiplied by the control step, so that their episode sums do not depend on
+    the control frequency. Set it to False to reproduce work that adds up one value a step."""
+
+    compute_final_obs: bool = False
+    """Whether ``extras["final_obs"]`` holds the observations before the reset in steps where a world is done.
+    Off-policy algorithms need it; it evaluates all observations a second time in those steps."""
+
+    def validate_config(self) -> None:
+        """Checks numbers.
+
+        Raises:
+            ValueError: If the decimation is below one or the episode has no length.
+        """
+        super().validate_config()
+        if self.episode_length_s <= 0.0:
+            raise ValueError(f"episode_length_s must be positive, got {self.episode_length_s}.")
