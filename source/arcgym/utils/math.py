@@ -1,33 +1,76 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Quaternions (x, y, z, w) on torch tensors; leading dimensions broadcast."""
+"""Batched vectors and rotations in torch. Quaternions are (x, y, z, w), as in Newton; `...` is any batch shape."""
 
 from __future__ import annotations
 
 import torch
 
 
-def quat_mul(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
-    """Product of quaternions, shape (..., 4): the rotation by ``b``, then by ``a``."""
-    av, aw, bv, bw = a[..., :3], a[..., 3:], b[..., :3], b[..., 3:]
-    av, bv = torch.broadcast_tensors(av, bv)
-    vector = aw * bv + bw * av + torch.linalg.cross(av, bv)
-    return torch.cat((vector, aw * bw - (av * bv).sum(-1, keepdim=True)), dim=-1)
+def normalize(vectors: torch.Tensor, eps: float = 1.0e-9) -> torch.Tensor:
+    """Scale vectors to unit length; those shorter than `eps` become (nearly) zero. Shape (..., D) to (..., D)."""
+    return vectors / vectors.norm(dim=-1, keepdim=True).clamp(min=eps)
+
+
+def quat_mul(first: torch.Tensor, second: torch.Tensor) -> torch.Tensor:
+    """Hamilton product: the rotation by `second` followed by that by `first`. Both (..., 4), result (..., 4)."""
+    xyz1, w1 = first[..., :3], first[..., 3:]
+    xyz2, w2 = second[..., :3], second[..., 3:]
+    xyz = w1 * xyz2 + w2 * xyz1 + torch.linalg.cross(xyz1, xyz2)
+    w = w1 * w2 - (xyz1 * xyz2).sum(-1, keepdim=True)
+    return torch.cat((xyz, w), dim=-1)
 
 
 def quat_conjugate(quat: torch.Tensor) -> torch.Tensor:
-    """Inverse of unit quaternions, shape (..., 4)."""
+    """Inverse of unit quaternions. Shape (..., 4) to (..., 4)."""
     return torch.cat((-quat[..., :3], quat[..., 3:]), dim=-1)
 
 
-def quat_apply(quat: torch.Tensor, vector: torch.Tensor) -> torch.Tensor:
-    """Vectors, shape (..., 3), rotated by unit quaternions, shape (..., 4)."""
-    axis, vector = torch.broadcast_tensors(quat[..., :3], vector)
-    twice = 2.0 * torch.linalg.cross(axis, vector)
-    return vector + quat[..., 3:] * twice + torch.linalg.cross(axis, twice)
+def quat_apply(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:
+    """Rotate `vectors`, shape (..., 3), by unit quaternions, shape (..., 4)."""
+    xyz, w = quat[..., :3], quat[..., 3:]
+    across = 2.0 * torch.linalg.cross(xyz, vectors)
+    return vectors + w * across + torch.linalg.cross(xyz, across)
 
 
-def quat_apply_inverse(quat: torch.Tensor, vector: torch.Tensor) -> torch.Tensor:
-    """Vectors, shape (..., 3), rotated back: from the world into the frame of ``quat``, shape (..., 4)."""
-    return quat_apply(quat_conjugate(quat), vector)
+def quat_apply_inverse(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:
+    """Rotate `vectors`, shape (..., 3), by the inverse of unit quaternions, shape (..., 4)."""
+    return quat_apply(quat_conjugate(quat), vectors)
+
+
+def quat_from_axis_angle(axis: torch.Tensor, angle: torch.Tensor) -> torch.Tensor:
+    """Quaternions that rotate by `angle` [rad], shape (...), about the unit vectors `axis`, shape (..., 3)."""
+    half = 0.5 * angle.unsqueeze(-1)
+    return torch.cat((axis * torch.sin(half), torch.cos(half).expand(*axis.shape[:-1], 1)), dim=-1)
+
+
+def matrix_from_quat(quat: torch.Tensor) -> torch.Tensor:
+    """Rotation matrices, shape (..., 3, 3), of unit quaternions, shape (..., 4)."""
+    axes = torch.eye(3, dtype=quat.dtype, device=quat.device).expand(*quat.shape[:-1], 3, 3)
+    return quat_apply(quat.unsqueeze(-2), axes).transpose(-1, -2)
+
+
+def quat_from_matrix(matrix: torch.Tensor) -> torch.Tensor:
+    """Unit quaternions with w >= 0, shape (..., 4), of rotation matrices, shape (..., 3, 3).
+
+    Of the four equivalent formulas (one for each component to divide by) each rotation takes the one that divides by
+    its largest component (Shepperd 1978, "Quaternion from rotation matrix").
+    """
+    m = matrix
+    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    xy, xz, yz = m[..., 0, 1] + m[..., 1, 0], m[..., 0, 2] + m[..., 2, 0], m[..., 1, 2] + m[..., 2, 1]
+    x, y, z = m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]
+    # Row k holds 4 q_k q: every row is parallel to the quaternion, the one with the largest diagonal is best.
+    rows = torch.stack(
+        [
+            torch.stack([1.0 + xx - yy - zz, xy, xz, x], -1),
+            torch.stack([xy, 1.0 - xx + yy - zz, yz, y], -1),
+            torch.stack([xz, yz, 1.0 - xx - yy + zz, z], -1),
+            torch.stack([x, y, z, 1.0 + xx + yy + zz], -1),
+        ],
+        -2,
+    )
+    best = rows.diagonal(dim1=-2, dim2=-1).argmax(-1)
+    quat = normalize(rows.gather(-2, best[..., None, None].expand(*best.shape, 1, 4)).squeeze(-2))
+    return torch.where(quat[..., 3:] < 0.0, -quat, quat)
