@@ -1,15 +1,58 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Building blocks of the visual surface: triangulated parameter grids, smooth normals, analytic skin weights."""
+"""The visual surface: a parameter grid with lesions, texture coordinates, normals and analytic skin weights."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from .lesions import Lesion, distance_to, shape_lesion
 from .measures import face_normals
+from .refine import refine
+from .stage_types import VisualMesh, WallMesh
+from .surface import DOME_LENGTH, Surface
 
 TEXTURE_LENGTH = 0.24
 """Length of colon that one repeat of the texture covers [m]."""
+
+_MIN_ROW_WIDTH = 0.0012
+
+
+def sample_visual(
+    surface: Surface, wall: WallMesh, lesions: list[Lesion], rows: int, columns: int, refinements: int
+) -> VisualMesh:
+    """Samples a surface finely and skins it to the wall's inner layer.
+
+    Args:
+        surface: The colon.
+        wall: Its wall, sampled from the same surface.
+        lesions: Diverticula and polyps to shape.
+        rows: Cross sections, closer together where there are folds.
+        columns: Points around the lumen.
+        refinements: How often triangles on lesions are split into four.
+    """
+    s, theta, faces, dome = _parameter_grid(surface, rows, columns)
+    grid = np.stack([s, theta, dome], 1)
+    for _ in range(refinements):
+        near = np.zeros(len(grid), bool)
+        for lesion in lesions:
+            near |= distance_to(surface, lesion, grid[:, 0], grid[:, 1]) < 1.15 * lesion.patch
+        grid, faces = refine(grid, faces, near[faces].any(1))
+    s, theta, dome = grid.T
+    width = 0.0 if refinements > 1 else 0.8 * surface.curve.length / rows
+    points, tint = _shaped_points(surface, lesions, s, theta, width)
+    points = points.astype(np.float32)
+    faces = faces[np.linalg.norm(face_normals(points, faces), axis=1) > 1e-12]
+    skin_indices, skin_weights = skin_to_rings(s, theta, wall.ring_arc, wall.num_sectors)
+    return VisualMesh(
+        points=points,
+        faces=faces.astype(np.int32),
+        normals=smooth_normals(points, faces),
+        uv=_texture_coordinates(surface, s, theta, dome > 0.5).astype(np.float32),
+        tint=tint.astype(np.float32),
+        skin_indices=skin_indices,
+        skin_weights=skin_weights,
+    )
 
 
 def grid_triangles(rows: int, columns: int) -> np.ndarray:
@@ -30,10 +73,9 @@ def smooth_normals(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """
     _, place = np.unique(np.round(points * 1e6).astype(np.int64), axis=0, return_inverse=True)
     place = place.ravel()
-    sums = np.zeros((place.max() + 1, 3))
     area = face_normals(points, faces)
-    for corner in range(3):
-        np.add.at(sums, place[faces[:, corner]], area)
+    corner, weight = place[faces.T.ravel()], np.tile(area, (3, 1))
+    sums = np.stack([np.bincount(corner, weight[:, k], place.max() + 1) for k in range(3)], 1)
     normals = sums[place]
     return (normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-15)).astype(np.float32)
 
@@ -52,7 +94,7 @@ def skin_to_rings(
     Returns:
         Wall vertex indices, shape (M, 4), int32, and weights that sum to 1, shape (M, 4), float32.
     """
-    rows = np.clip(np.interp(s, ring_arc, np.arange(len(ring_arc))), 0, len(ring_arc) - 1)
+    rows = np.interp(s, ring_arc, np.arange(len(ring_arc)))
     row = np.minimum(np.floor(rows).astype(int), len(ring_arc) - 2)
     along = rows - row
     columns = np.mod(theta, 2 * np.pi) * sectors / (2 * np.pi)
@@ -62,3 +104,66 @@ def skin_to_rings(
     corners = [row * sectors + column, (row + 1) * sectors + column, (row + 1) * sectors + after, row * sectors + after]
     weights = [(1 - along) * (1 - around), along * (1 - around), along * around, (1 - along) * around]
     return np.stack(corners, 1).astype(np.int32), np.stack(weights, 1).astype(np.float32)
+
+
+def _parameter_grid(surface: Surface, rows: int, columns: int) -> tuple[np.ndarray, ...]:
+    """Returns arc length, angle, triangles and a dome mark; the dome of the caecum has vertices of its own.
+
+    The seam of the texture at angle 0 and the edge of the dome have their vertices twice, once for each chart.
+    """
+    arc = _row_positions(surface, rows)
+    edge = int(np.searchsorted(arc, surface.curve.length - DOME_LENGTH))
+    theta = np.linspace(0, 2 * np.pi, columns + 1)
+    parts, faces, offset = [], [], 0
+    for part, mark in ((arc[: edge + 1], 0.0), (arc[edge:], 1.0)):
+        s, angle = (x.ravel() for x in np.meshgrid(part, theta, indexing="ij"))
+        parts.append(np.stack([s, angle, np.full_like(s, mark)], 1))
+        faces.append(grid_triangles(len(part), columns + 1) + offset)
+        offset += len(s)
+    s, angle, dome = np.concatenate(parts).T
+    return s, angle, np.concatenate(faces), dome
+
+
+def _row_positions(surface: Surface, rows: int) -> np.ndarray:
+    """Returns arc lengths of the cross sections [m]: about three times as dense on folds as between them."""
+    length = surface.curve.length
+    fine = np.linspace(0, length, 8000)
+    density = np.full_like(fine, 0.45)
+    crests = [(row.s, row.width) for row in surface.rows]
+    crests += [(np.array([valve.s for valve in surface.valves]), np.array([valve.width for valve in surface.valves]))]
+    for s, width in crests:
+        near = np.abs(fine[:, None] - s) / (width + _MIN_ROW_WIDTH)
+        density += np.exp(-0.5 * near**2).sum(1)
+    density[fine > length - DOME_LENGTH] += 1.0
+    count = np.r_[0.0, np.cumsum(0.5 * (density[1:] + density[:-1]))]
+    return np.interp(np.linspace(0, count[-1], rows), count, fine)
+
+
+def _shaped_points(
+    surface: Surface, lesions: list[Lesion], s: np.ndarray, theta: np.ndarray, min_width: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Returns positions [m] and tint of all vertices."""
+    around = np.where(theta > 2 * np.pi - 1e-9, 0.0, theta)
+    points = surface.points(s, around, 1.0, min_width)
+    tint = np.zeros(len(s))
+    for lesion in lesions:
+        near = np.flatnonzero(distance_to(surface, lesion, s, theta) < lesion.patch)
+        if len(near):
+            points[near], tint[near] = shape_lesion(surface, lesion, s[near], theta[near], points[near])
+    return points, tint
+
+
+def _texture_coordinates(surface: Surface, s: np.ndarray, theta: np.ndarray, dome: np.ndarray) -> np.ndarray:
+    """Returns u round the lumen and v along it; on the dome, equal distances from the pole in every direction.
+
+    A polar chart would squeeze the texture into streaks at the pole.
+    """
+    uv = np.stack([theta / (2 * np.pi), s / TEXTURE_LENGTH], 1)
+    edge = surface.curve.length - DOME_LENGTH
+    rim = float(surface.lumen_radius(np.array(edge)))
+    close = np.clip((surface.curve.length - s[dome]) / DOME_LENGTH, 0.0, 1.0)
+    meridian = np.arccos(1.0 - close) * 0.5 * (rim + DOME_LENGTH)
+    u = 0.5 + meridian * np.cos(theta[dome]) / (2 * np.pi * rim)
+    v = edge / TEXTURE_LENGTH + meridian * np.sin(theta[dome]) / TEXTURE_LENGTH
+    uv[dome] = np.stack([u, v], 1)
+    return uv

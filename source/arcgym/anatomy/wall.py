@@ -9,12 +9,16 @@ import numpy as np
 from .measures import tet_volumes
 from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from .stage_types import WallMesh
+from .surface import Surface
 
 FIXED_RINGS_START = 3
 """Rings held still at the anus, where the pelvic floor surrounds the canal."""
 
 FIXED_RINGS_END = 2
 """Rings held still at the blind end, so that the simulated piece is held at both ends."""
+
+LAST_RING_GAP = 0.003
+"""Distance of the last ring from the caecal pole [m]."""
 
 
 def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarray, capped: bool = True) -> WallMesh:
@@ -121,3 +125,22 @@ def _frame_neighbors(layers: int, rings: int, sectors: int) -> np.ndarray:
     back = np.concatenate([index[:, :1], index[:, :-1]], 1)
     neighbors = [forward, back, np.roll(index, -1, 2), np.roll(index, 1, 2)]
     return np.stack([x.ravel() for x in neighbors], 1)
+
+
+def sample_wall(surface: Surface) -> WallMesh:
+    """Samples a surface on the ring grid of its spec and gives it thickness.
+
+    The last ring stands a few millimetres short of the caecal pole, where the dome is still wide, and is closed.
+    """
+    spec, curve = surface.spec, surface.curve
+    end = curve.length - LAST_RING_GAP
+    arc = np.linspace(0.0, end, round(end / spec.ring_spacing) + 1)
+    theta = np.arange(spec.sectors) * 2 * np.pi / spec.sectors
+    s, angle = np.meshgrid(arc, theta, indexing="ij")
+    radius = surface.radius(s, angle, spec.wall_fold_depth, spec.wall_fold_width)
+    radius = np.maximum(radius, spec.min_lumen_radius)[..., None]
+    center, outwards = curve.position(s), surface.outwards(s, angle)
+    outer = center + (radius + spec.wall_thickness) * outwards
+    tangent, _, _ = curve.frame(s[-2:])
+    outer[-2:] += spec.wall_thickness * np.array([0.5, 1.0])[:, None, None] * tangent
+    return build_wall(np.stack([center + radius * outwards, outer]), curve.segment(arc), arc)

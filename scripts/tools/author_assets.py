@@ -1,0 +1,60 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Remakes the USD assets: the patients' colons and the endoscopes. The same code always writes the same assets."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+DEFAULT_OUT = Path(__file__).resolve().parents[2] / "assets" / "usd"
+
+
+def author_colon(name: str, out: Path) -> None:
+    """Generates one patient's colon into ``out/<name>/colon.usda``."""
+    from arcgym.anatomy import write_colon
+    from arcgym.anatomy.generate import make_colon
+    from arcgym.anatomy.patients import PATIENTS
+
+    folder = out / name
+    stage = make_colon(PATIENTS[name](), folder)
+    write_colon(stage, folder / "colon.usda")
+    wall, visual, proxy = len(stage.wall.points), len(stage.visual.points), len(stage.visual_proxy.points)
+    print(f"  length {stage.length:.3f} m, wall {wall} vertices, render {visual}, proxy {proxy}")
+
+
+def asset_authors() -> dict[str, Callable[[Path], None]]:
+    """Returns the function that writes each asset below a folder, by asset name."""
+    from arcgym.anatomy.patients import PATIENTS
+    from arcgym.assets.endoscope_spec import endoscope_specs
+    from arcgym.assets.endoscope_stage import write_endoscope
+
+    authors: dict[str, Callable[[Path], None]] = {}
+    for name in PATIENTS:
+        authors[name] = lambda out, name=name: author_colon(name, out)
+    for spec in endoscope_specs():
+        authors[spec.name] = lambda out, spec=spec: write_endoscope(spec, out / "endoscopes" / f"{spec.name}.usda")
+    return authors
+
+
+def main() -> None:
+    """Parses the command line and writes the assets."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=DEFAULT_OUT, help="folder for the assets (default: assets/usd)")
+    parser.add_argument("--only", nargs="+", metavar="ASSET", help="names of the assets to make (default: all)")
+    args = parser.parse_args()
+    authors = asset_authors()
+    unknown = set(args.only or []) - set(authors)
+    if unknown:
+        parser.error(f"unknown asset {', '.join(sorted(unknown))}; choose from {', '.join(authors)}")
+    for name in args.only or authors:
+        started = time.perf_counter()
+        print(f"{name} ...", flush=True)
+        authors[name](args.out)
+        print(f"  {time.perf_counter() - started:.1f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()

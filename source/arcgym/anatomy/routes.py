@@ -1,0 +1,134 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Anatomical control points of the centreline: the frame that the colon makes round the abdomen, supine.
+
+Positions in metres from the anal verge, +X patient's right, +Y anterior, +Z cranial. Typical positions against the
+skeleton: the sacral promontory at z = 0.13, the iliac crests at 0.20, the left flexure at 0.42, higher than the right.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from .segments import SEGMENTS
+from .spec import ColonSpec
+
+SIGMOID_SHAPES: dict[str, list[tuple[float, float, float]]] = {
+    "plain": [
+        (0.000, -0.036, 0.142),
+        (0.030, 0.004, 0.160),
+        (0.052, 0.045, 0.190),
+        (0.028, 0.080, 0.212),
+        (-0.025, 0.085, 0.200),
+        (-0.055, 0.065, 0.150),
+        (-0.075, 0.045, 0.105),
+        (-0.110, 0.025, 0.090),
+        (-0.138, -0.008, 0.120),
+    ],
+    "angulated": [
+        (0.000, -0.036, 0.142),
+        (0.034, -0.006, 0.150),
+        (0.060, 0.032, 0.175),
+        (0.050, 0.072, 0.215),
+        (0.005, 0.088, 0.225),
+        (-0.030, 0.082, 0.190),
+        (-0.028, 0.060, 0.130),
+        (-0.060, 0.048, 0.085),
+        (-0.098, 0.040, 0.100),
+        (-0.108, 0.030, 0.150),
+        (-0.132, 0.004, 0.160),
+    ],
+}
+"""Courses of the sigmoid from the rectosigmoid junction to the left iliac fossa."""
+
+_ROUTE_SLACK = 1.15
+"""Length of the mesenteric courses before relaxation, relative to the wanted one; relaxation rounds the corners."""
+
+_FIXED_ROUTES: dict[str, list[tuple[float, float, float]]] = {
+    "rectum": [(0.0, 0.0, 0.0), (0.0, -0.006, 0.030), (-0.004, -0.036, 0.066), (0.004, -0.050, 0.105)],
+    "descending": [(-0.145, -0.035, 0.170), (-0.142, -0.045, 0.235), (-0.143, -0.050, 0.300), (-0.145, -0.052, 0.350)],
+    "splenic": [(-0.140, -0.046, 0.395), (-0.115, -0.014, 0.425), (-0.088, 0.020, 0.405)],
+    "hepatic": [(0.110, 0.018, 0.362), (0.140, -0.014, 0.352), (0.150, -0.030, 0.310)],
+    "ascending": [(0.146, -0.030, 0.255), (0.142, -0.022, 0.200), (0.138, -0.010, 0.155)],
+    "cecum": [(0.130, 0.006, 0.112), (0.118, 0.018, 0.077)],
+}
+
+
+def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    """Returns jittered control points of each segment [m], shape (n, 3).
+
+    Raises:
+        ValueError: The spec names an unknown course of the sigmoid.
+    """
+    if spec.sigmoid_shape not in SIGMOID_SHAPES:
+        known = ", ".join(SIGMOID_SHAPES)
+        raise ValueError(f"ColonSpec.sigmoid_shape = '{spec.sigmoid_shape}' is unknown; expected one of {known}.")
+    routes = {
+        **_FIXED_ROUTES,
+        "sigmoid": SIGMOID_SHAPES[spec.sigmoid_shape],
+        "transverse": _transverse_route(spec.transverse_sag),
+    }
+    points = {}
+    for name in SEGMENTS:
+        route = np.array(routes[name])
+        shift = rng.normal(0.0, spec.jitter, route.shape)
+        points[name] = route if name == "rectum" else route + shift
+    return points
+
+
+def _transverse_route(sag: float) -> list[tuple[float, float, float]]:
+    return [
+        (-0.074, 0.053, 0.355),
+        (-0.048, 0.076, 0.352 - 0.55 * sag),
+        (0.000, 0.088, 0.362 - sag),
+        (0.050, 0.078, 0.347 - 0.55 * sag),
+        (0.086, 0.050, 0.340),
+    ]
+
+
+def sample_route(points: dict[str, np.ndarray], lengths: dict[str, float], spacing: float) -> np.ndarray:
+    """Samples the course, loops widened or narrowed until each segment has about its length.
+
+    Args:
+        points: Control points of each segment [m].
+        lengths: Length of each segment [m].
+        spacing: Distance of the samples [m].
+
+    Returns:
+        Positions [m], shape (n, 3), ``round(length / spacing)`` intervals for each segment.
+    """
+    points = dict(points)
+    for _ in range(12):
+        curve, bounds = _spline(points)
+        for name in ("sigmoid", "transverse"):
+            ratio = _ROUTE_SLACK * lengths[name] / _arc_length(curve, *bounds[name])
+            points[name] = _widen(points[name], ratio**0.7)
+    curve, bounds = _spline(points)
+    parts = [curve(np.zeros(1))]
+    for name in SEGMENTS:
+        fine = np.linspace(*bounds[name], 400)
+        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(curve(fine), axis=0), axis=1))]
+        count = round(lengths[name] / spacing)
+        parts.append(curve(np.interp(np.linspace(0, arc[-1], count + 1)[1:], arc, fine)))
+    return np.concatenate(parts)
+
+
+def _spline(points: dict[str, np.ndarray]) -> tuple[CubicSpline, dict[str, tuple[float, float]]]:
+    """Returns a centripetal spline through all control points and the parameter range of each segment."""
+    knots = np.concatenate([points[name] for name in SEGMENTS])
+    parameter = np.r_[0.0, np.cumsum(np.sqrt(np.linalg.norm(np.diff(knots, axis=0), axis=1)))]
+    firsts = np.minimum(np.cumsum([0, *(len(points[name]) for name in SEGMENTS)]), len(knots) - 1)
+    bounds = {name: (parameter[firsts[k]], parameter[firsts[k + 1]]) for k, name in enumerate(SEGMENTS)}
+    return CubicSpline(parameter, knots), bounds
+
+
+def _arc_length(curve: CubicSpline, start: float, end: float) -> float:
+    return float(np.linalg.norm(np.diff(curve(np.linspace(start, end, 400)), axis=0), axis=1).sum())
+
+
+def _widen(points: np.ndarray, factor: float) -> np.ndarray:
+    """Scales the distance of the inner control points from the chord between the outer two."""
+    along = np.linspace(0, 1, len(points))[:, None]
+    chord = points[0] + along * (points[-1] - points[0])
+    return chord + factor * (points - chord)
