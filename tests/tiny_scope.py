@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+
 from arcgym.assets.endoscope_spec import EndoscopeSpec, capsule_spec, magnetic_spec, proximal_spec
 from arcgym.assets.endoscope_stage import write_endoscope
 

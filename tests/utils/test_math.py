@@ -8,6 +8,7 @@ import math
 
 import pytest
 import torch
+
 from arcgym.utils.math import (
     matrix_from_quat,
     normalize,

@@ -29,9 +29,9 @@ def quat_conjugate(quat: torch.Tensor) -> torch.Tensor:
 
 def quat_apply(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:
     """Rotate `vectors`, shape (..., 3), by unit quaternions, shape (..., 4)."""
-    xyz, w = quat[..., :3], quat[..., 3:]
+    xyz, vectors = torch.broadcast_tensors(quat[..., :3], vectors)
     across = 2.0 * torch.linalg.cross(xyz, vectors)
-    return vectors + w * across + torch.linalg.cross(xyz, across)
+    return vectors + quat[..., 3:] * across + torch.linalg.cross(xyz, across)
 
 
 def quat_apply_inverse(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:

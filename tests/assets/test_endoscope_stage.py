@@ -1,0 +1,171 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The shipped endoscopes: their numbers, their files, and what is said of a broken one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
+from tiny_scope import write_tiny_scope
+
+from arcgym.anatomy import StageError
+from arcgym.assets.endoscope_spec import EndoscopeSpec, endoscope_specs, magnetic_spec, proximal_spec
+from arcgym.assets.endoscope_stage import author_endoscopes, read_endoscope
+from arcgym.utils.paths import ASSETS_ENV, assets_dir
+
+SHIPPED = Path(__file__).parents[2] / "assets" / "usd" / "endoscopes"
+each_spec = pytest.mark.parametrize("spec", endoscope_specs(), ids=lambda spec: spec.name)
+
+
+@each_spec
+def test_round_trip(spec: EndoscopeSpec) -> None:
+    stage = read_endoscope(SHIPPED / f"{spec.name}.usda")
+    assert (stage.name, stage.kind, stage.root) == (spec.name, spec.kind, spec.root)
+    assert stage.bending_links == spec.bending_links
+    for name in ("link_length", "link_radius", "link_mass", "lights"):
+        np.testing.assert_allclose(getattr(stage, name), getattr(spec, name), rtol=1e-6, err_msg=name)
+    for name in ("hinge_stiffness", "hinge_damping", "hinge_limit", "hinge_armature", "stop_stiffness"):
+        np.testing.assert_allclose(getattr(stage, name), getattr(spec, name), rtol=1e-6, err_msg=name)
+    assert stage.camera.position == pytest.approx(spec.camera.position)
+    assert stage.camera.quaternion == pytest.approx(spec.camera.quaternion)
+    assert stage.camera.field_of_view == pytest.approx(math.radians(150.0))
+
+
+@each_spec
+def test_usd_validators_find_nothing(spec: EndoscopeSpec) -> None:
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    stage = Usd.Stage.Open(str(SHIPPED / f"{spec.name}.usda"))
+    errors = UsdValidation.ValidationContext(validators).Validate(stage)
+    assert [error.GetErrorAsString() for error in errors] == []
+
+
+def test_committed_files_are_what_the_code_writes(tmp_path: Path) -> None:
+    for made in author_endoscopes(tmp_path):
+        assert made.read_bytes() == (SHIPPED / made.name).read_bytes(), made.name
+
+
+def test_proximal_dimensions() -> None:
+    """70 shaft links of 20 mm and 10 of 10 mm: 1.5 m, 0.3 kg; five hinges share 180 degrees, five share 160."""
+    spec = proximal_spec()
+    assert spec.total_length == pytest.approx(1.5)
+    assert spec.link_mass.sum() == pytest.approx(0.3)
+    assert spec.hinge_stiffness[0] == pytest.approx(0.025 / (2 * 0.020))
+    assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / (2 * 0.010))
+    assert spec.hinge_limit[-9::2].sum() == pytest.approx(math.radians(180))  # hinges 71, 73 .. 79, about X
+    assert spec.hinge_limit[-10::2].sum() == pytest.approx(math.radians(160))  # hinges 70, 72 .. 78, about Y
+
+
+def test_magnetic_head_is_stiffer_than_its_tether() -> None:
+    spec = magnetic_spec()
+    assert spec.bending_links == 0
+    assert spec.bending_rigidity[-2:] == pytest.approx(0.025) and spec.bending_rigidity[:-2] == pytest.approx(0.003)
+    assert list(2000 * spec.link_radius[-4:]) == pytest.approx([8.0, 13.2, 13.2, 13.2])
+
+
+@each_spec
+def test_rest_pose_has_its_tip_five_centimetres_in(spec: EndoscopeSpec) -> None:
+    usd = Usd.Stage.Open(str(SHIPPED / f"{spec.name}.usda"))
+    links = usd.GetPrimAtPath("/Endoscope/Links").GetChildren()
+    centres = [UsdGeom.Xformable(link).GetLocalTransformation().ExtractTranslation()[2] for link in links]
+    assert centres[-1] + spec.link_length[-1] / 2 == pytest.approx(0.05)
+    assert centres[0] - spec.link_length[0] / 2 == pytest.approx(0.05 - spec.total_length)
+
+
+@each_spec
+def test_camera_looks_along_the_link_from_within_the_tip(spec: EndoscopeSpec) -> None:
+    usd = Usd.Stage.Open(str(SHIPPED / f"{spec.name}.usda"))
+    tip = usd.GetPrimAtPath("/Endoscope/Links").GetChildren()[-1].GetPath()
+    pose = UsdGeom.Xformable(usd.GetPrimAtPath(f"{tip}/Camera")).GetLocalTransformation()
+    assert pose.TransformDir((0.0, 0.0, -1.0)) == pytest.approx((0.0, 0.0, 1.0))
+    assert pose.TransformDir((0.0, 1.0, 0.0)) == pytest.approx((0.0, 1.0, 0.0))
+    shape = UsdGeom.Capsule(usd.GetPrimAtPath(f"{tip}/Shape"))
+    front = shape.GetHeightAttr().Get() / 2 + shape.GetRadiusAttr().Get()
+    assert front - pose.ExtractTranslation()[2] == pytest.approx(0.001)
+
+
+def joint(usd: Usd.Stage, name: str) -> Usd.Prim:
+    return usd.GetPrimAtPath(f"/Endoscope/Joints/{name}")
+
+
+def link(usd: Usd.Stage, name: str) -> Usd.Prim:
+    return usd.GetPrimAtPath(f"/Endoscope/Links/{name}")
+
+
+DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
+    "centimetres": (lambda usd: UsdGeom.SetStageMetersPerUnit(usd, 0.01), ["metersPerUnit", "0.01", "metres"]),
+    "y_up": (lambda usd: UsdGeom.SetStageUpAxis(usd, "Y"), ["upAxis", "Z up"]),
+    "no_articulation": (
+        lambda usd: usd.GetDefaultPrim().RemoveAPI(UsdPhysics.ArticulationRootAPI),
+        ["/Endoscope", "ArticulationRootAPI", "Apply"],
+    ),
+    "no_rigid_body": (
+        lambda usd: link(usd, "link_03").RemoveAPI(UsdPhysics.RigidBodyAPI),
+        ["hinge_03", "physics:body1", "link_03"],
+    ),
+    "no_collider": (
+        lambda usd: usd.GetPrimAtPath("/Endoscope/Links/link_02/Shape").RemoveAPI(UsdPhysics.CollisionAPI),
+        ["link_02/Shape", "CollisionAPI"],
+    ),
+    "massless": (lambda usd: link(usd, "link_01").GetAttribute("physics:mass").Set(0.0), ["link_01", "physics:mass"]),
+    "missing_hinge": (lambda usd: usd.RemovePrim("/Endoscope/Joints/hinge_02"), ["hinge_02", "no such prim"]),
+    "no_drive": (
+        lambda usd: joint(usd, "hinge_02").RemoveAPI(UsdPhysics.DriveAPI, "angular"),
+        ["hinge_02", "PhysicsDriveAPI:angular"],
+    ),
+    "wrong_axis": (
+        lambda usd: joint(usd, "hinge_02").GetAttribute("physics:axis").Set("X"),
+        ["hinge_02", "physics:axis", "'Y'"],
+    ),
+    "locked_slide": (
+        lambda usd: joint(usd, "root").GetAttribute("limit:transZ:physics:low").Set(9.0),
+        ["/root", "limit:transZ:physics:low", "low < high"],
+    ),
+    "shifted_hinge": (
+        lambda usd: joint(usd, "hinge_01").GetAttribute("physics:localPos0").Set((0.0, 0.0, 0.02)),
+        ["hinge_01", "physics:localPos0", "0.01"],
+    ),
+    "degrees_of_view": (
+        lambda usd: usd.GetPrimAtPath("/Endoscope/Links/link_05/Camera").GetAttribute("arcgym:fieldOfView").Set(150.0),
+        ["Camera", "arcgym:fieldOfView", "radians"],
+    ),
+    "unknown_kind": (
+        lambda usd: usd.GetDefaultPrim().GetAttribute("arcgym:kind").Set("snake"),
+        ["arcgym:kind", "'snake'", "proximal"],
+    ),
+}
+
+
+@pytest.mark.parametrize("defect", DEFECTS)
+def test_broken_stage_is_named_with_its_mend(tmp_path: Path, defect: str) -> None:
+    path = write_tiny_scope(tmp_path / "scope.usda")
+    usd = Usd.Stage.Open(str(path))
+    spoil, words = DEFECTS[defect]
+    spoil(usd)
+    usd.GetRootLayer().Save()
+    with pytest.raises(StageError) as error:
+        read_endoscope(path)
+    assert all(word in str(error.value) for word in ["scope.usda", *words]), str(error.value)
+
+
+def test_wrong_path_lists_what_is_there(tmp_path: Path) -> None:
+    write_tiny_scope(tmp_path / "scope.usda")
+    with pytest.raises(StageError, match=r"no such file.*scope\.usda"):
+        read_endoscope(tmp_path / "scop.usda")
+
+
+def test_text_file_is_no_stage(tmp_path: Path) -> None:
+    (tmp_path / "scope.usda").write_text("hello")
+    with pytest.raises(StageError, match="not a USD file"):
+        read_endoscope(tmp_path / "scope.usda")
+
+
+def test_assets_dir_names_the_places_tried(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert (assets_dir() / "endoscopes").is_dir()
+    monkeypatch.setenv(ASSETS_ENV, str(tmp_path / "nowhere"))
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        assets_dir()
