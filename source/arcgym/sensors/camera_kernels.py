@@ -1,12 +1,13 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Kernels of the endoscope camera: rays to radiance and depth, exposure, and the response curve."""
 
 import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
 
-from .shading import Lighting, SurfaceView, shade, surface_hit
+from .shading_kernels import Lighting, SurfaceView, shade, surface_hit
 
 
 @wp.kernel
@@ -84,9 +85,11 @@ def expose(
 
 
 @wp.func
-def response(radiance: float, edge: float) -> wp.uint8:
-    """Camera response: saturating, then gamma 2, as a byte."""
-    return wp.uint8(255.0 * wp.sqrt(1.0 - wp.exp(-radiance)) * edge + 0.5)
+def response(radiance: float, edge: float, contrast: float) -> wp.uint8:
+    """Camera response as a byte: saturating, gamma 2, then an S-curve."""
+    level = wp.sqrt(1.0 - wp.exp(-radiance)) * edge
+    curve = level * level * (3.0 - 2.0 * level)
+    return wp.uint8(255.0 * (level + contrast * (curve - level)) + 0.5)
 
 
 @wp.kernel
@@ -97,6 +100,7 @@ def develop(
     color_gain: wp.array[wp.vec3],
     rays: wp.array3d[wp.vec3],
     vignette: float,
+    contrast: float,
     drawn: wp.array[wp.bool],
     rgb: wp.array4d[wp.uint8],
 ):
@@ -107,6 +111,6 @@ def develop(
     exposed = wp.cw_mul(radiance[world, row, column], color_gain[world]) * (gain[world] * light_gain[world])
     cosine = wp.max(-rays[row, column, 0][2], 0.0)
     edge = 1.0 - vignette * (1.0 - cosine)
-    rgb[world, row, column, 0] = response(exposed[0], edge)
-    rgb[world, row, column, 1] = response(exposed[1], edge)
-    rgb[world, row, column, 2] = response(exposed[2], edge)
+    rgb[world, row, column, 0] = response(exposed[0], edge, contrast)
+    rgb[world, row, column, 1] = response(exposed[1], edge, contrast)
+    rgb[world, row, column, 2] = response(exposed[2], edge, contrast)

@@ -24,7 +24,7 @@ class LightingCfg:
     bump: float = 0.30
     """Height of the mucosal relief relative to the detail texture. 0 gives a smooth wall."""
 
-    film: float = 0.55
+    film: float = 0.45
     """How much of the relief shows through the film of mucus that carries the highlights."""
 
     gloss: float = 0.7
@@ -47,7 +47,7 @@ class ExposureCfg:
     gain: float = 1.2e-3
     """Gain of the fixed exposure. Only used if not automatic."""
 
-    target: float = 0.20
+    target: float = 0.24
     """Mean of the exposed radiance that automatic exposure aims at. Raise for brighter pictures."""
 
     gain_range: tuple[float, float] = (2.0e-5, 6.0e-3)
@@ -59,3 +59,6 @@ class ExposureCfg:
 
     vignette: float = 0.35
     """Darkening towards the edge of the field: 0 none, 1 with the cosine of the angle to the axis."""
+
+    contrast: float = 0.45
+    """Strength of the S-curve that darkens shadows and lifts lights: 0 none, 1 full."""

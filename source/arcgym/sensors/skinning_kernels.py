@@ -1,5 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Kernels that carry the visual surface along with the deforming wall, all worlds in one launch."""
 
 import warp as wp

@@ -14,7 +14,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 from .camera_kernels import cast_rays, develop, expose, row_brightness
 from .camera_rays import fisheye_rays, pixel_angle
-from .shading import Lighting, SurfaceView
+from .shading_kernels import Lighting, SurfaceView
 from .texture_density import texel_density
 
 if TYPE_CHECKING:
@@ -128,6 +128,7 @@ class SurfaceRenderer:
                 looks.color_gain,
                 self.rays,
                 self.optics.exposure.vignette,
+                self.optics.exposure.contrast,
                 drawn,
             ],
             outputs=[self.rgb],

@@ -1,5 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Light on wet mucosa, as Warp functions shared by the policy camera and the video camera."""
 
 import warp as wp
@@ -87,8 +88,9 @@ def surface_hit(
     hit.tint = at[2]
     normal = wp.normalize(surface.normals[i0] * w0 + surface.normals[i1] * w1 + surface.normals[i2] * w2)
     hit.normal = facing_normal(normal, area, direction)
-    slant = wp.max(-wp.dot(hit.normal, direction), 0.25)
-    hit.level = wp.log2(wp.max(at[3] * query.t * pixel_angle / slant, 1.0))
+    # sharper than the pixel's long side at a slant, coarser than its short one
+    slant = wp.sqrt(wp.max(-wp.dot(hit.normal, direction), 0.05))
+    hit.level = wp.log2(wp.max(0.7 * at[3] * query.t * pixel_angle / slant, 1.0))
     return hit
 
 
@@ -176,7 +178,7 @@ def shade(
     """Radiance that a hit sends back along the ray."""
     uv = hit.uv + texture_offset
     texel = wp.texture_sample(albedo, uv, dtype=wp.vec4f, lod=hit.level)
-    relief_texel = wp.texture_sample(detail, uv, dtype=wp.vec4f, lod=hit.level)
+    relief_texel = wp.texture_sample(detail, uv, dtype=wp.vec4f, lod=hit.level + 1.0)
     color = mucosa_color(texel, hit.tint)
     slope = wp.vec2(2.0 * relief_texel[0] - 1.0, 2.0 * relief_texel[1] - 1.0)
     relief = relief_normal(hit, slope, surface.texture_size, lighting.bump)
