@@ -15,6 +15,7 @@ from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager
 from arcgym.managers.observation_manager import Observation
+from arcgym.utils.string import resolve_callable
 from arcgym.utils.seed import set_seed
 
 if TYPE_CHECKING:
@@ -196,10 +197,6 @@ class ManagerBasedEnv(gym.Env):
 
 
 def _build_scene(cfg: ManagerBasedEnvCfg) -> InteractiveScene:
-    """Builds the scene by its configuration's ``class_type``, if it has one."""
-    scene_class = getattr(cfg.scene, "class_type", None)
-    if scene_class is None:
-        from arcgym.scene import InteractiveScene
-
-        scene_class = InteractiveScene
-    return scene_class(cfg.scene, cfg.sim)
+    """Builds the scene by its configuration's ``class_type``, a class or its name."""
+    class_type = cfg.scene.class_type
+    return (resolve_callable(class_type) if isinstance(class_type, str) else class_type)(cfg.scene, cfg.sim)
