@@ -8,7 +8,7 @@ A class under :func:`configclass` is a plain dataclass with these conveniences:
 * Defaults may be mutable; every instance gets its own deep copy.
 * A field without default, or with :data:`MISSING`, must be set before :func:`validate` is called.
 * A subclass overrides a field by assigning it again; ``= None`` switches a term off.
-* ``super().__post_init__()`` always works, whether or not a base class defines one.
+* A subclass may call ``super().__post_init__()`` whether or not its base class defines one.
 * Instances have ``copy()``, ``replace()``, ``to_dict()``, ``from_dict()`` and ``validate()``.
 """
 
