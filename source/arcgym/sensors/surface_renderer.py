@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import warp as wp
 
+from arcgym.anatomy.visual import TEXTURE_LENGTH
 from arcgym.utils import warp_setup  # noqa: F401
 
 from .camera_kernels import cast_rays, develop, expose, row_brightness
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
     from .lighting_cfg import ExposureCfg, LightingCfg
     from .mucosa_textures import MucosaTextures
     from .skinned_surface import SkinnedSurface
-
-TEXTURE_SIZE = (0.123, 0.24)
-"""Length of the mucosa texture along u and v at its true scale [m]; v = s / 0.24 m in every stage."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +163,7 @@ def _surface_view(surface: SkinnedSurface, visual: VisualMesh, textures: MucosaT
     view.roots = surface.roots
     view.normals = surface.normals
     view.attributes = wp.array(attributes, dtype=wp.vec4, device=surface.device)
-    view.texture_size = wp.vec2(*TEXTURE_SIZE)
+    view.texture_size = wp.vec2(TEXTURE_LENGTH * textures.width / textures.height, TEXTURE_LENGTH)
     return view
 
 

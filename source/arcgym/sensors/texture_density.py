@@ -12,17 +12,11 @@ if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
 
 
-MAX_CROWDING = 2.2
-"""How much denser u may be than on most of the mesh before it counts as crowded; crests of folds stay below."""
-
-
 def texel_density(visual: VisualMesh, width: int, height: int) -> np.ndarray:
     """Returns the texels per metre at every vertex along the texture's denser axis, shape (M,), float64.
 
     The renderer picks the level of the texture pyramid by it. It is taken at rest, as the mean over the triangles
-    around a vertex, so that levels change smoothly over the surface. Where u crowds, as at the pole of a polar
-    mapping, the value is raised by the fourth power of the crowding: the texture fades to its mean instead of
-    showing a star of streaks.
+    around a vertex, so that levels change smoothly over the surface.
     """
     corner = visual.points[visual.faces].astype(np.float64)
     uv = visual.uv[visual.faces].astype(np.float64) * (width, height)
@@ -31,9 +25,8 @@ def texel_density(visual: VisualMesh, width: int, height: int) -> np.ndarray:
     area = np.cross(e1, e2)
     area_sq = np.maximum((area**2).sum(axis=1), 1.0e-24)
     gradient = np.cross(d1[:, :, None] * e2[:, None] - d2[:, :, None] * e1[:, None], area[:, None])
-    along_u, along_v = (np.linalg.norm(gradient, axis=2) / area_sq[:, None]).T
-    crowding = np.clip(along_u / (MAX_CROWDING * max(np.median(along_u), 1.0e-9)), 1.0, 20.0)
-    return _vertex_mean(visual, np.maximum(along_u, along_v) * crowding**4, np.sqrt(area_sq))
+    density = np.linalg.norm(gradient, axis=2).max(axis=1) / area_sq
+    return _vertex_mean(visual, density, np.sqrt(area_sq))
 
 
 def _vertex_mean(visual: VisualMesh, value: np.ndarray, weight: np.ndarray) -> np.ndarray:
