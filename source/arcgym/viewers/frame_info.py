@@ -1,0 +1,81 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a video frame says about its environment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from arcgym.anatomy.segments import SEGMENTS
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+
+@dataclass(frozen=True)
+class FrameInfo:
+    """State of one world, as numbers of the host."""
+
+    time: float = 0.0
+    """Since the start of the episode [s]."""
+    segment: str = ""
+    """Segment that the tip is in."""
+    tip_arc: float = 0.0
+    """Arc length of the tip from the anal verge [m]."""
+    inserted: float = 0.0
+    """Length of scope inside the anus [m]."""
+    tip_force: float = 0.0
+    """Wall force on the last link [N]."""
+    max_force: float = 0.0
+    """Largest wall force on a link [N]."""
+    reward: float | None = None
+    """Reward of the last step; None if the environment has none."""
+    task_range: tuple[float, float] | None = None
+    """Arc length at start and goal of the task [m]; None if there is no task."""
+    terms: dict[str, float] = field(default_factory=dict)
+    """Further numbers to show, by label."""
+
+
+def read_info(env: ManagerBasedEnv, env_id: int, extra: Mapping[str, Any] | None = None) -> FrameInfo:
+    """Reads the state of one world; what the environment lacks stays at its default.
+
+    Args:
+        env: The environment; its scene holds ``colon`` and ``endoscope``.
+        env_id: World to read.
+        extra: Numbers to show beside it. ``reward`` replaces the environment's.
+    """
+    data = env.scene["endoscope"].data
+    forces = data.wall_force_w[env_id].norm(dim=-1)
+    terms = {**_lumen_scores(env, env_id), **{name: float(value) for name, value in (extra or {}).items()}}
+    reward = terms.pop("reward", None)
+    if reward is None and hasattr(env, "reward_buf"):
+        reward = float(env.reward_buf[env_id])
+    steps = getattr(env, "episode_length_buf", None)
+    return FrameInfo(
+        time=0.0 if steps is None else float(steps[env_id]) * env.step_dt,
+        segment=SEGMENTS[int(data.tip_segment[env_id])],
+        tip_arc=float(data.tip_arc_length[env_id]),
+        inserted=float(data.inserted_length[env_id]),
+        tip_force=float(forces[-1]),
+        max_force=float(forces.max()),
+        reward=reward,
+        task_range=_task_range(env),
+        terms=terms,
+    )
+
+
+def _lumen_scores(env: ManagerBasedEnv, env_id: int) -> dict[str, float]:
+    """Returns centring and visibility of the lumen where the task defines them."""
+    if getattr(env.cfg, "lumen", None) is None:
+        return {}
+    from arcgym.envs.mdp.lumen import lumen_scores
+
+    scores = lumen_scores(env)
+    return {"s_c": float(scores.s_c[env_id]), "s_o": float(scores.s_o[env_id])}
+
+
+def _task_range(env: ManagerBasedEnv) -> tuple[float, float] | None:
+    segment = getattr(env.cfg, "segment", None)
+    return env.scene["colon"].stage.segment_bounds().get(segment)

@@ -1,0 +1,82 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Legends of the outside view: deformation, wall force, scale and sides."""
+
+from __future__ import annotations
+
+import numpy as np
+from PIL import ImageDraw
+
+from .drawing import Color, font, text_width
+from .palette import FORCE_TIERS, deformation_colors, to_display
+from .view_camera import ViewCamera
+
+_TEXT: Color = (62, 70, 84)
+_FAINT: Color = (128, 138, 154)
+_SIZE = 11
+_LINE = 15
+_BAR = (9, 84)
+
+
+def draw_legends(draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: ViewCamera, full_scale: float) -> None:
+    """Draws all legends into the picture's corners, where the colon is not.
+
+    Args:
+        draw: Where to draw.
+        origin: Upper left corner of the outside view in the picture [px].
+        camera: Camera of the outside view.
+        full_scale: Displacement at the end of the heat map [m].
+    """
+    left, top = origin
+    width, height = camera.size
+    _draw_forces(draw, left + 12, top + height - 14 - _LINE * (len(FORCE_TIERS) + 1))
+    _draw_deformation(draw, left + width - 12, top + height - 30 - _BAR[1], full_scale)
+    _draw_scale_bar(draw, left + width - 12, top + 20, camera)
+    _draw_sides(draw, origin, camera)
+
+
+def _draw_forces(draw: ImageDraw.ImageDraw, x: float, y: float) -> None:
+    draw.text((x, y), "wall force on scope", fill=_TEXT, font=font(_SIZE))
+    ends = [tier.start for tier in FORCE_TIERS[1:]] + [None]
+    for row, (tier, end) in enumerate(zip(FORCE_TIERS, ends, strict=True), start=1):
+        span = f"> {tier.start:.0f}" if end is None else f"{tier.start:.0f}–{end:.0f}"
+        draw.rounded_rectangle((x, y + row * _LINE + 2, x + 12, y + row * _LINE + 12), radius=2, fill=tier.color)
+        draw.text((x + 18, y + row * _LINE), f"{span} N  {tier.label}", fill=_TEXT, font=font(_SIZE))
+
+
+def _draw_deformation(draw: ImageDraw.ImageDraw, right: float, top: float, full_scale: float) -> None:
+    colors = to_display(deformation_colors(np.linspace(1.0, 0.0, _BAR[1])))
+    for row, color in enumerate(colors.tolist()):
+        draw.line([(right - _BAR[0], top + row), (right, top + row)], fill=tuple(color))
+    for share in (0.0, 0.5, 1.0):
+        y = top + (1.0 - share) * (_BAR[1] - 1)
+        label = f"{1000.0 * share * full_scale:.0f} mm"
+        draw.text((right - _BAR[0] - 5, y), label, fill=_TEXT, font=font(_SIZE), anchor="rm")
+    draw.text((right, top + _BAR[1] + 6), "wall displacement", fill=_TEXT, font=font(_SIZE), anchor="ra")
+
+
+def _draw_scale_bar(draw: ImageDraw.ImageDraw, right: float, y: float, camera: ViewCamera) -> None:
+    length = 0.05 * camera.pixels_per_meter(camera.eye + camera.forward * _focus(camera))
+    draw.line([(right - length, y), (right, y)], fill=_TEXT, width=2)
+    for x in (right - length, right):
+        draw.line([(x, y - 3), (x, y + 3)], fill=_TEXT, width=2)
+    draw.text((right - 0.5 * length, y - 6), "5 cm", fill=_TEXT, font=font(_SIZE), anchor="ms")
+
+
+def _focus(camera: ViewCamera) -> float:
+    """Returns the distance at which the picture is scaled right: to the vertical line through the anus [m]."""
+    return float(-camera.eye @ camera.forward)
+
+
+def _draw_sides(draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: ViewCamera) -> None:
+    """Writes which side of the patient is left and right in the picture, for views from the front or the back."""
+    if abs(camera.right[0]) < 0.5:
+        return
+    sides = ("patient's right", "patient's left")
+    at_left, at_right = sides if camera.right[0] < 0.0 else sides[::-1]
+    left, top = origin
+    y = top + 12
+    draw.text((left + 12, y), f"◂ {at_left}", fill=_FAINT, font=font(_SIZE))
+    label = f"{at_right} ▸"
+    x = left + camera.size[0] - 12 - text_width(draw, label, _SIZE)
+    draw.text((x, y + 22), label, fill=_FAINT, font=font(_SIZE))

@@ -1,0 +1,119 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Everything that is written and drawn around the two pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from .drawing import DARK, DIM_INK, INK, Box, Color, font, text_width
+from .frame_info import FrameInfo
+from .palette import FORCE_TIERS, force_tier
+from .segment_bar import draw_segment_bar
+from .sparkline import draw_sparkline
+
+_LABEL_SIZE = 11
+_VALUE_SIZE = 18
+_CELL_GAP = 16
+_REWARD_COLOR: Color = (124, 196, 255)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One number with its label."""
+
+    label: str
+    """Small text above."""
+    value: str
+    """The number with its unit."""
+    widest: str
+    """Text of the largest width that the value can have, so that cells do not move from frame to frame."""
+    dot: Color | None = None
+    """Colour of a dot before the value."""
+
+
+def octagon(picture: np.ndarray, corner: float = 0.137, ground: Color = DARK) -> Image.Image:
+    """Cuts the corners off an endoscope picture, as video processors do.
+
+    Args:
+        picture: uint8, shape (H, W, 3).
+        corner: Side of the triangles cut off, as a fraction of the width.
+        ground: Colour behind them.
+
+    Returns:
+        Picture of the same size.
+    """
+    height, width = picture.shape[:2]
+    cut, scale = corner * width, 4
+    mask = Image.new("L", (width * scale, height * scale), 0)
+    corners = [(cut, 0), (width - cut, 0), (width, cut), (width, height - cut)]
+    corners += [(width - x, height - y) for x, y in corners]
+    ImageDraw.Draw(mask).polygon([(x * scale, y * scale) for x, y in corners], fill=255)
+    out = Image.new("RGB", (width, height), ground)
+    out.paste(Image.fromarray(picture), (0, 0), mask.resize((width, height), Image.Resampling.BOX))
+    return out
+
+
+def draw_panel(
+    draw: ImageDraw.ImageDraw,
+    box: Box,
+    info: FrameInfo,
+    bounds: dict[str, tuple[float, float]],
+    rewards: Sequence[float],
+    forces: Sequence[float],
+) -> None:
+    """Draws segment bar, numbers and charts into a box.
+
+    Args:
+        draw: Where to draw.
+        box: Everything drawn stays inside.
+        info: What this frame shows.
+        bounds: Start and end of each segment [m of arc length].
+        rewards: Reward of each frame so far.
+        forces: Largest link force of each frame so far [N].
+    """
+    left, top, right, bottom = box
+    draw_segment_bar(draw, (left, top, right, top + 30), bounds, info.tip_arc, info.task_range)
+    chart_width = 0.16 * (right - left)
+    chart_top = top + 40
+    draw_cells(draw, (left, chart_top, right - 2 * chart_width - 24, bottom), cells(info))
+    first = (right - 2 * chart_width - 8, chart_top, right - chart_width - 8, bottom)
+    draw_sparkline(draw, first, rewards, "reward", _REWARD_COLOR, (0.0, 0.1))
+    limits = [(tier.start, tier.color) for tier in FORCE_TIERS[1:]]
+    second = (right - chart_width, chart_top, right, bottom)
+    draw_sparkline(draw, second, forces, "largest link force [N]", INK, (0.0, FORCE_TIERS[1].start + 0.5), limits)
+
+
+def cells(info: FrameInfo) -> list[Cell]:
+    """Returns what is shown as numbers, the most important first."""
+    forces = (("tip force", info.tip_force), ("max link force", info.max_force))
+    shown = [
+        Cell("time", f"{info.time:.1f} s", "000.0 s"),
+        Cell(f"tip in {info.segment}", f"{100 * info.tip_arc:.1f} cm", "000.0 cm"),
+        Cell("inserted", f"{100 * info.inserted:.1f} cm", "000.0 cm"),
+        *(Cell(label, f"{force:.1f} N", "000.0 N", force_tier(force).color) for label, force in forces),
+    ]
+    if info.reward is not None:
+        shown.append(Cell("reward", f"{info.reward:+.2f}", "+0.00"))
+    return shown + [Cell(name, f"{value:+.2f}", "+0.00") for name, value in info.terms.items()]
+
+
+def draw_cells(draw: ImageDraw.ImageDraw, box: Box, shown: Sequence[Cell]) -> int:
+    """Draws cells from left to right as far as they fit, and returns how many did."""
+    left, top, right, _ = box
+    for count, cell in enumerate(shown):
+        indent = 14 if cell.dot else 0
+        value_width = indent + max(text_width(draw, text, _VALUE_SIZE) for text in (cell.widest, cell.value))
+        width = max(text_width(draw, cell.label, _LABEL_SIZE), value_width)
+        if left + width > right:
+            return count
+        draw.text((left, top + 4), cell.label, fill=DIM_INK, font=font(_LABEL_SIZE))
+        if cell.dot:
+            draw.ellipse((left, top + 26, left + 9, top + 35), fill=cell.dot)
+        draw.text((left + indent, top + 20), cell.value, fill=INK, font=font(_VALUE_SIZE))
+        left += width + _CELL_GAP
+    return len(shown)

@@ -1,0 +1,126 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of `env.render()` and of videos: the endoscope's view beside the outside view."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from arcgym.sensors import SkinnedSurface
+from arcgym.utils.configclass import configclass
+
+from .drawing import DARK, DIM_INK, font
+from .frame_info import FrameInfo, read_info
+from .legend import draw_legends
+from .outside_view import OutsideView, OutsideViewCfg
+from .overlay import draw_panel, octagon
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+_MARGIN = 8
+_PANEL_HEIGHT = 96
+_HISTORY = 100
+
+
+@configclass
+class TwoPaneCfg:
+    """Size and quality of the picture."""
+
+    outside: OutsideViewCfg = OutsideViewCfg()
+    """Camera and look of the outside view; its height is the endoscope view's size too."""
+    samples: int = 2
+    """Rays a pixel of the endoscope's view. 1 is twice as fast, 4 gives the smoothest edges."""
+
+
+class TwoPaneView:
+    """Draws one world of an environment from inside and from outside, with numbers and charts below.
+
+    The outside view is drawn from the coarse visual surface, the endoscope's view from the fine one.
+    """
+
+    def __init__(self, env: ManagerBasedEnv, cfg: TwoPaneCfg | None = None) -> None:
+        """Builds the surface of one world.
+
+        Args:
+            env: Environment whose scene holds ``colon``, ``endoscope`` and, if it has one, ``camera``.
+            cfg: Size and quality; None for the defaults.
+        """
+        self.cfg = cfg or TwoPaneCfg()
+        self._env = env
+        self._colon, self._scope = env.scene["colon"], env.scene["endoscope"]
+        stage = self._colon.stage
+        device = str(self._colon.nodal_pos_wp.device)
+        self._surface = SkinnedSurface(stage.visual_proxy, stage.wall, 1, device)
+        scope = self._scope.stage
+        self._outside = OutsideView(
+            self.cfg.outside,
+            self._surface,
+            stage.visual_proxy.points,
+            scope.link_length,
+            scope.link_radius,
+            scope.bending_links,
+        )
+        self._bounds = stage.segment_bounds()
+        self._forget(0)
+
+    def frame(self, env_id: int = 0, info: Mapping[str, Any] | None = None) -> np.ndarray:
+        """Draws a world as it is now.
+
+        Args:
+            env_id: World to draw.
+            info: Further numbers to show, by label; ``reward`` replaces the environment's.
+
+        Returns:
+            Picture, uint8, shape (H, W, 3) with even H and W.
+        """
+        shown = read_info(self._env, env_id, info)
+        self._remember(env_id, shown)
+        height, width = self.cfg.outside.height, self.cfg.outside.width
+        size = (height + width + 3 * _MARGIN, height + 2 * _MARGIN + _PANEL_HEIGHT)
+        picture = Image.new("RGB", (size[0] + size[0] % 2, size[1] + size[1] % 2), DARK)
+        picture.paste(self._endoscope_view(env_id, height), (_MARGIN, _MARGIN))
+        corner = (height + 2 * _MARGIN, _MARGIN)
+        picture.paste(Image.fromarray(self._outside_view(env_id)), corner)
+        draw = ImageDraw.Draw(picture)
+        draw_legends(draw, corner, self._outside.camera, self.cfg.outside.deformation_scale)
+        panel = (_MARGIN, height + 2 * _MARGIN, size[0] - _MARGIN, size[1] - _MARGIN)
+        draw_panel(draw, panel, shown, self._bounds, self._rewards, self._forces)
+        return np.asarray(picture)
+
+    def _endoscope_view(self, env_id: int, size: int) -> Image.Image:
+        if "camera" in self._env.scene.keys():
+            rgb, _ = self._env.scene["camera"].snapshot_view(env_id, size, self.cfg.samples)
+            return octagon(rgb)
+        picture = Image.new("RGB", (size, size), DARK)
+        draw = ImageDraw.Draw(picture)
+        draw.text((size / 2, size / 2), "no camera", fill=DIM_INK, font=font(18), anchor="mm")
+        return picture
+
+    def _outside_view(self, env_id: int) -> np.ndarray:
+        first = env_id * self._surface.num_nodes
+        self._surface.update(self._colon.nodal_pos_wp[first : first + self._surface.num_nodes])
+        data = self._scope.data
+        return self._outside.render(
+            data.body_pos_w[env_id].cpu().numpy(),
+            data.body_quat_w[env_id].cpu().numpy(),
+            data.wall_force_w[env_id].norm(dim=-1).cpu().numpy(),
+        )
+
+    def _remember(self, env_id: int, info: FrameInfo) -> None:
+        """Adds to the charts, which start again with every episode and world."""
+        if env_id != self._env_id or info.time < self._time:
+            self._forget(env_id)
+        self._time = info.time
+        self._rewards.append(float("nan") if info.reward is None else info.reward)
+        self._forces.append(info.max_force)
+
+    def _forget(self, env_id: int) -> None:
+        self._env_id, self._time = env_id, 0.0
+        self._rewards: deque[float] = deque(maxlen=_HISTORY)
+        self._forces: deque[float] = deque(maxlen=_HISTORY)
