@@ -1,0 +1,187 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from arcgym.managers import (
+    ActionManager,
+    CostManager,
+    CostTermCfg,
+    CurriculumManager,
+    CurriculumTermCfg,
+    EventManager,
+    EventTermCfg,
+    MetricsManager,
+    MetricsTermCfg,
+    ObservationManager,
+    RewardManager,
+    RewardTermCfg,
+    TerminationManager,
+    TerminationTermCfg,
+)
+
+
+def value(env) -> torch.Tensor:
+    return env.value
+
+
+def above(env, limit: float) -> torch.Tensor:
+    return env.value > limit
+
+
+class TestRewards:
+    def test_sum_of_weight_value_and_time(self, env) -> None:
+        manager = RewardManager(
+            {"a": RewardTermCfg(func=value, weight=2.0), "b": RewardTermCfg(func=value, weight=-1.0)}, env
+        )
+        assert manager.compute(dt=0.5).tolist() == [0.5, 1.5]
+        assert manager.step_values["a"].tolist() == [1.0, 3.0]
+
+    def test_log_is_the_mean_episode_sum_over_the_longest_episode(self, env) -> None:
+        manager = RewardManager({"a": RewardTermCfg(func=value)}, env)
+        for _ in range(2):
+            manager.compute(dt=1.0)
+        assert manager.reset(torch.tensor([1]))["Episode_Reward/a"].item() == 6.0 / 2.0
+        assert manager.reset()["Episode_Reward/a"].item() == (2.0 + 0.0) / 2.0 / 2.0
+
+    def test_value_that_is_not_finite_counts_as_zero(self, env) -> None:
+        manager = RewardManager({"a": RewardTermCfg(func=value)}, env)
+        env.value = torch.tensor([float("inf"), float("nan")])
+        assert manager.compute(1.0).tolist() == [0.0, 0.0]
+
+    def test_weight_can_be_changed_while_running(self, env) -> None:
+        manager = RewardManager({"a": RewardTermCfg(func=value, weight=0.0)}, env)
+        assert manager.compute(1.0).tolist() == [0.0, 0.0]
+        manager.get_term_cfg("a").weight = 1.0
+        assert manager.compute(1.0).tolist() == [1.0, 3.0]
+        with pytest.raises(ValueError, match="RewardManager has no term 'b'.*Available: a"):
+            manager.get_term_cfg("b")
+
+
+def test_costs_log_their_episode_sum(env) -> None:
+    manager = CostManager({"a": CostTermCfg(func=value), "b": CostTermCfg(func=value)}, env)
+    assert manager.compute(dt=0.5).tolist() == [1.0, 3.0]
+    assert manager.reset()["Episode_Cost/a"].item() == (0.5 + 1.5) / 2
+
+
+class TestTerminations:
+    def test_time_outs_are_kept_apart(self, env) -> None:
+        cfg = {
+            "lost": TerminationTermCfg(func=above, params={"limit": 2.0}),
+            "time": TerminationTermCfg(func=above, params={"limit": 0.0}, time_out=True),
+        }
+        manager = TerminationManager(cfg, env)
+        assert manager.compute().tolist() == [True, True]
+        assert manager.terminated.tolist() == [False, True]
+        assert manager.time_outs.tolist() == [True, True]
+        assert manager.get_term("lost").tolist() == [False, True]
+        logs = manager.reset(torch.tensor([0]))
+        assert logs["Episode_Termination/lost"].item() == 0.0 and logs["Episode_Termination/time"].item() == 1.0
+
+    def test_value_must_be_bool(self, env) -> None:
+        with pytest.raises(TypeError, match="returned torch.float32, expected torch.bool"):
+            TerminationManager({"a": TerminationTermCfg(func=value)}, env)
+
+
+@pytest.mark.parametrize(("reduce", "expected"), [("mean", 2.0), ("last", -1.0), ("max", 5.0), ("sum", 6.0)])
+def test_metrics_reduce_over_the_episode(env, reduce, expected) -> None:
+    manager = MetricsManager({"a": MetricsTermCfg(func=value, reduce=reduce)}, env)
+    for first in (2.0, 5.0, -1.0):
+        env.value = torch.tensor([first, 100.0])
+        manager.compute()
+    assert manager.reset(torch.tensor([0]))["Episode_Metrics/a"].item() == expected
+
+
+def test_metrics_leave_out_worlds_without_a_step(env) -> None:
+    manager = MetricsManager({"a": MetricsTermCfg(func=value)}, env)
+    manager.compute()
+    manager.reset(torch.tensor([0]))
+    assert manager.reset()["Episode_Metrics/a"].item() == 3.0
+
+
+class TestEvents:
+    @staticmethod
+    def note(env, env_ids, label="") -> None:
+        env.events.append((label, env_ids.tolist()))
+
+    def manager(self, env, **kwargs) -> EventManager:
+        env.events = []
+        return EventManager({"a": EventTermCfg(func=self.note, **kwargs)}, env)
+
+    def test_modes_are_apart(self, env) -> None:
+        manager = self.manager(env, mode="startup", params={"label": "start"})
+        manager.apply("reset", torch.tensor([0]), global_env_step_count=0)
+        assert env.events == []
+        manager.apply("startup")
+        assert env.events == [("start", [0, 1])]
+
+    def test_interval_comes_when_its_time_is_over(self, env) -> None:
+        manager = self.manager(env, mode="interval", interval_range_s=(0.2, 0.2))
+        for _ in range(2):
+            manager.apply("interval", dt=0.1)
+        manager.reset(torch.tensor([1]))
+        for _ in range(2):
+            manager.apply("interval", dt=0.1)
+        assert [ids for _, ids in env.events] == [[0, 1], [0, 1]]
+
+    def test_reset_starts_the_timer_of_its_worlds_again(self, env) -> None:
+        manager = self.manager(env, mode="interval", interval_range_s=(0.2, 0.2))
+        manager.apply("interval", dt=0.1)
+        manager.reset(torch.tensor([1]))
+        manager.apply("interval", dt=0.1)
+        manager.apply("interval", dt=0.1)
+        assert [ids for _, ids in env.events] == [[0], [1]]
+
+    def test_global_timer_takes_all_worlds_and_ignores_resets(self, env) -> None:
+        manager = self.manager(env, mode="interval", interval_range_s=(0.2, 0.2), is_global_time=True)
+        manager.apply("interval", dt=0.1)
+        manager.reset(torch.tensor([1]))
+        manager.apply("interval", dt=0.1)
+        assert [ids for _, ids in env.events] == [[0, 1]]
+
+    def test_expensive_reset_event_waits(self, env) -> None:
+        manager = self.manager(env, mode="reset", min_step_count_between_reset=10)
+        for step, ids in ((0, [0, 1]), (5, [0]), (10, [0]), (12, [0, 1])):
+            manager.apply("reset", torch.tensor(ids), global_env_step_count=step)
+        assert [ids for _, ids in env.events] == [[0, 1], [0], [1]]
+
+    def test_configuration_errors_are_named(self, env) -> None:
+        with pytest.raises(ValueError, match="no mode 'resets'. Did you mean 'reset'"):
+            self.manager(env, mode="resets")
+        with pytest.raises(ValueError, match="interval_range_s must be given"):
+            self.manager(env, mode="interval")
+        with pytest.raises(TypeError, match=r"must take \(env, env_ids, ...\)"):
+            EventManager({"a": EventTermCfg(func=value, mode="reset")}, env)
+
+
+def test_curriculum_logs_what_its_terms_return(env) -> None:
+    cfg = {
+        "level": CurriculumTermCfg(func=lambda env, env_ids: float(len(env_ids))),
+        "parts": CurriculumTermCfg(func=lambda env, env_ids: {"x": 1.0}),
+        "silent": CurriculumTermCfg(func=lambda env, env_ids: None),
+    }
+    manager = CurriculumManager(cfg, env)
+    manager.compute(torch.tensor([0, 1]))
+    assert manager.reset() == {"Curriculum/level": 2.0, "Curriculum/parts/x": 1.0}
+
+
+def test_managers_without_terms_are_neutral(env) -> None:
+    assert RewardManager(None, env).compute(1.0).tolist() == [0.0, 0.0]
+    assert CostManager(None, env).reset() == {}
+    assert TerminationManager(None, env).compute().tolist() == [False, False]
+    assert MetricsManager(None, env).reset() == {}
+    assert ObservationManager(None, env).compute() == {}
+    assert CurriculumManager(None, env).reset() == {}
+    EventManager(None, env).apply("startup")
+    actions = ActionManager(None, env)
+    actions.process_action(torch.zeros(2, 0))
+    actions.apply_action()
+
+
+def test_table_lists_the_terms(env) -> None:
+    table = str(RewardManager({"progress": RewardTermCfg(func=value, weight=2.5)}, env)).splitlines()
+    assert table[0] == "RewardManager (1 terms)"
+    assert table[1].split() == ["index", "name", "weight"] and table[3].split() == ["0", "progress", "2.5"]
