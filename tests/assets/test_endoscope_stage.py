@@ -50,14 +50,14 @@ def test_committed_files_are_what_the_code_writes(tmp_path: Path) -> None:
 
 
 def test_proximal_dimensions() -> None:
-    """70 shaft links of 20 mm and 10 of 10 mm: 1.5 m, 0.3 kg; five hinges share 180 degrees, five share 160."""
+    """A base of 200 mm, 46 shaft links of 25 mm, 10 of 10 mm: 1.45 m, 0.29 kg; five hinges share 180 degrees, five 160."""
     spec = proximal_spec()
-    assert spec.total_length == pytest.approx(1.5)
-    assert spec.link_mass.sum() == pytest.approx(0.3)
-    assert spec.hinge_stiffness[0] == pytest.approx(0.025 / (2 * 0.020))
+    assert spec.total_length == pytest.approx(1.45)
+    assert spec.link_mass.sum() == pytest.approx(0.29)
+    assert spec.hinge_stiffness[1] == pytest.approx(0.025 / (2 * 0.025))
     assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / (2 * 0.010))
-    assert spec.hinge_limit[-9::2].sum() == pytest.approx(math.radians(180))  # hinges 71, 73 .. 79, about X
-    assert spec.hinge_limit[-10::2].sum() == pytest.approx(math.radians(160))  # hinges 70, 72 .. 78, about Y
+    assert spec.hinge_limit[-10::2].sum() == pytest.approx(math.radians(180))  # hinges 47, 49 .. 55, about X
+    assert spec.hinge_limit[-9::2].sum() == pytest.approx(math.radians(160))  # hinges 48, 50 .. 56, about Y
 
 
 def test_magnetic_head_is_stiffer_than_its_tether() -> None:

@@ -14,14 +14,17 @@ import numpy as np
 EndoscopeKind = Literal["capsule", "magnetic", "proximal"]
 RootKind = Literal["free", "slide_roll"]
 
-SHAFT_LINK = 0.020
-"""Length of a shaft link [m]. The chain follows bends down to a radius of about 3 cm."""
+BASE_LINK = 0.200
+"""Length of the base link [m]: the part of the shaft that never enters the anus needs no hinges."""
+SHAFT_LINK = 0.025
+"""Length of a shaft link [m]. The chain follows bends down to a radius of about 3 cm; the scope's cost grows with
+about the square of the number of links."""
 TIP_LINK = 0.010
 """Length of a link of the distal section [m]."""
 TIP_LINKS = 10
 """Number of distal links: 10 cm, about the actively bending length of a colonoscope (van der Stap 2016, 8 cm)."""
-INSERTION_LENGTH = 1.5
-"""Length of a scope with a shaft [m]: mid-transverse is about 1.2 m from the anus, and 0.2 m must stay outside."""
+SCOPE_LENGTH = 1.45
+"""Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside."""
 REST_TIP_HEIGHT = 0.05
 """Height of the tip above the anal verge in the rest pose [m]."""
 
@@ -235,8 +238,8 @@ def endoscope_specs() -> tuple[EndoscopeSpec, ...]:
 
 def _chain_lengths() -> np.ndarray:
     """Link lengths of a scope with a shaft, base first [m], shape (L,)."""
-    shaft_links = round((INSERTION_LENGTH - TIP_LINKS * TIP_LINK) / SHAFT_LINK)
-    return np.array([SHAFT_LINK] * shaft_links + [TIP_LINK] * TIP_LINKS)
+    shaft_links = round((SCOPE_LENGTH - BASE_LINK - TIP_LINKS * TIP_LINK) / SHAFT_LINK)
+    return np.array([BASE_LINK] + [SHAFT_LINK] * shaft_links + [TIP_LINK] * TIP_LINKS)
 
 
 def _bending_limits(links: int, bent: int) -> np.ndarray:
