@@ -1,0 +1,96 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Runs a policy in an environment and counts what comes of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import torch
+from tensordict import TensorDict
+
+from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
+
+Policy = Callable[[TensorDict], torch.Tensor]
+"""Maps observations of N worlds to raw actions of shape (N, A)."""
+
+
+@dataclass(frozen=True)
+class RolloutResult:
+    """What a policy achieved over a number of control steps in all worlds."""
+
+    steps: int
+    """Control steps made by each world."""
+
+    reward_per_step: float
+    """Mean reward of a control step of a world."""
+
+    episodes: int
+    """Episodes that ended."""
+
+    reward_per_episode: float
+    """Mean sum of rewards of the episodes that ended; NaN when none did."""
+
+    success_rate: float
+    """Fraction of the ended episodes that the task's ``success`` term ended; NaN when none ended."""
+
+    wall_time: float
+    """Duration [s]."""
+
+    def __str__(self) -> str:
+        """Return the figures in one line."""
+        return (
+            f"{self.steps} steps in {self.wall_time:.1f} s, mean reward {self.reward_per_step:.4f} a step, "
+            f"{self.episodes} episodes ended, {self.reward_per_episode:.3f} each, success {self.success_rate:.0%}"
+            if self.episodes
+            else f"{self.steps} steps in {self.wall_time:.1f} s, mean reward {self.reward_per_step:.4f} a step, "
+            "no episode ended"
+        )
+
+
+def zero_policy(env: RslRlVecEnvWrapper) -> Policy:
+    """Return the policy whose raw actions are zero."""
+    return lambda obs: torch.zeros(env.num_envs, env.num_actions, device=env.device)
+
+
+def random_policy(env: RslRlVecEnvWrapper) -> Policy:
+    """Return the policy whose raw actions are uniform in [-1, 1]."""
+    return lambda obs: 2.0 * torch.rand(env.num_envs, env.num_actions, device=env.device) - 1.0
+
+
+def run_policy(env: RslRlVecEnvWrapper, policy: Policy, steps: int) -> RolloutResult:
+    """Run ``policy`` for ``steps`` control steps in every world."""
+    start = time.perf_counter()
+    returns = torch.zeros(env.num_envs, device=env.device)
+    total, ended, succeeded, ended_returns = (torch.zeros((), device=env.device) for _ in range(4))
+    obs = env.get_observations()
+    with torch.inference_mode():
+        for _ in range(steps):
+            obs, rewards, dones, _ = env.step(policy(obs))
+            done = dones > 0
+            returns += rewards
+            total += rewards.sum()
+            ended += done.sum()
+            succeeded += (_success(env) & done).sum()
+            ended_returns += (returns * done).sum()
+            returns[done] = 0.0
+    episodes = int(ended)
+    return RolloutResult(
+        steps=steps,
+        reward_per_step=float(total) / (steps * env.num_envs),
+        episodes=episodes,
+        reward_per_episode=float(ended_returns) / episodes if episodes else float("nan"),
+        success_rate=float(succeeded) / episodes if episodes else float("nan"),
+        wall_time=time.perf_counter() - start,
+    )
+
+
+def _success(env: RslRlVecEnvWrapper) -> torch.Tensor:
+    """Worlds that the last step's ``success`` term ended, shape (N,); none when the task has no such term."""
+    manager = env.unwrapped.termination_manager
+    if "success" not in manager.active_terms:
+        return torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
+    return manager.get_term("success")
