@@ -17,10 +17,10 @@ from arcgym.managers import EventTermCfg
 
 
 class FakeSim:
-    """Records written snapshots; holds one for the sigmoid."""
+    """Records written snapshots; has states of its own for the segments ``names``."""
 
-    def __init__(self) -> None:
-        self.snapshots = SimpleNamespace(index=["rectum", "sigmoid"].index)
+    def __init__(self, names: list[str] | None) -> None:
+        self.snapshots = None if names is None else SimpleNamespace(names=names, index=names.index)
         self.written: list[tuple[int, list[int]]] = []
 
     def load_snapshots(self, snapshots: object) -> None:
@@ -30,20 +30,29 @@ class FakeSim:
         self.written.append((int(index), env_ids.tolist()))
 
 
-@pytest.mark.parametrize(("segment", "index"), [("sigmoid", 1), ("rectum", -1)])
-def test_reset_writes_the_snapshot_of_the_segment(env, segment: str, index: int) -> None:
-    env.sim, env.cfg.segment = FakeSim(), segment
-    term = mdp.reset_to_segment_start(EventTermCfg(func=mdp.reset_to_segment_start, mode="reset"), env)
-    term(env, torch.tensor([1]))
+def make_reset(env, segment: str, names: list[str] | None, folder: Path = Path()):
+    env.sim, env.cfg.segment = FakeSim(names), segment
+    env.scene["colon"].path, env.scene["endoscope"].path = folder / "colon.usda", folder / "proximal.usda"
+    return mdp.reset_to_segment_start(EventTermCfg(func=mdp.reset_to_segment_start, mode="reset"), env)
+
+
+@pytest.mark.parametrize(
+    ("segment", "names", "index"),
+    [("sigmoid", ["rectum", "sigmoid"], 1), ("rectum", ["rectum"], 0), ("rectum", ["sigmoid"], -1)],
+)
+def test_reset_writes_the_snapshot_of_the_segment(env, segment: str, names: list[str], index: int) -> None:
+    make_reset(env, segment, names)(env, torch.tensor([1]))
     assert env.sim.written == [(index, [1])]
 
 
 def test_missing_snapshots_name_the_tool(env, tmp_path: Path) -> None:
-    env.sim = FakeSim()
-    env.sim.snapshots = None
-    env.scene["colon"].path, env.scene["endoscope"].path = tmp_path / "colon.usda", tmp_path / "proximal.usda"
     with pytest.raises(FileNotFoundError, match="snapshots/proximal.npz.*make_snapshots"):
-        mdp.reset_to_segment_start(EventTermCfg(func=mdp.reset_to_segment_start, mode="reset"), env)
+        make_reset(env, "sigmoid", None, tmp_path)
+
+
+def test_the_first_segment_starts_from_rest_without_snapshots(env, tmp_path: Path) -> None:
+    make_reset(env, "rectum", None, tmp_path)(env, torch.tensor([0]))
+    assert env.sim.written == [(-1, [0])]
 
 
 def make_perturbation(env, joint_names: list[str], bending_links: int):

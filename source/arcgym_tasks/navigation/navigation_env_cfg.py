@@ -113,7 +113,7 @@ class EventsCfg:
     """Where an episode starts and what differs from world to world."""
 
     reset = EventTerm(func=mdp.reset_to_segment_start, mode="reset")
-    aim = EventTerm(func=mdp.perturb_tip, mode="reset", params={"std": 0.15})
+    aim = EventTerm(func=mdp.perturb_tip, mode="reset", params={"std": 0.1})
     light = EventTerm(func=mdp.randomize_light, mode="reset", params={"gain": (0.7, 1.4)})
     color = EventTerm(func=mdp.randomize_color, mode="reset", params={"gain": (0.9, 1.1)})
     texture = EventTerm(func=mdp.randomize_texture, mode="reset")

@@ -26,8 +26,8 @@ REST_POSE = -1
 class reset_to_segment_start(ManagerTermBase):
     """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
 
-    The first segment of the colon starts from the rest pose. The others come from the file of snapshots that belongs to
-    this colon and this endoscope, loaded once.
+    States come from the file of snapshots that belongs to this colon and this endoscope, loaded once. The first segment
+    of the colon starts from the rest pose if the file does not have it.
     """
 
     def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
@@ -47,12 +47,12 @@ class reset_to_segment_start(ManagerTermBase):
 
     @staticmethod
     def _find(env: ManagerBasedEnv, segment: str) -> int:
-        start, _ = segment_span(env, segment)
-        if start <= 0.0:
-            return REST_POSE
-        if env.sim.snapshots is None:
-            path = snapshot_path(env.scene["colon"].path, env.scene["endoscope"].path)
+        is_first = segment_span(env, segment)[0] <= 0.0
+        path = snapshot_path(env.scene["colon"].path, env.scene["endoscope"].path)
+        if env.sim.snapshots is None and (path.is_file() or not is_first):
             env.sim.load_snapshots(SnapshotSet.load(path))
+        if is_first and (env.sim.snapshots is None or segment not in env.sim.snapshots.names):
+            return REST_POSE
         return env.sim.snapshots.index(segment)
 
 
@@ -72,7 +72,7 @@ class perturb_tip(ManagerTermBase):
         self._share = (axis / axis.sum(1, keepdim=True).clamp(min=1.0)).to(env.device)
         self._columns = torch.tensor(hinges, dtype=torch.long, device=env.device)
 
-    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.15, hinges: int = 10) -> None:
+    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1, hinges: int = 10) -> None:
         """Turn by ``std`` [rad] over the last ``hinges``, whose number is read once at construction."""
         endoscope = env.scene["endoscope"]
         angle = std * torch.randn(len(env_ids), 2, device=env.device)
