@@ -22,7 +22,7 @@ from .surface_renderer import Optics, SurfaceRenderer, WorldLooks
 if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
     from arcgym.assets.endoscope_spec import CameraSpec
-    from arcgym.scene import InteractiveScene
+    from arcgym.scene.interactive_scene import InteractiveScene
 
     from .endoscope_camera_cfg import EndoscopeCameraCfg
 

@@ -4,19 +4,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from arcgym.utils.configclass import configclass
 
-from .endoscope_camera import EndoscopeCamera
 from .lighting_cfg import ExposureCfg, LightingCfg
-from .sensor_base import SensorBaseCfg
+from .sensor_base_cfg import SensorBaseCfg
 
 
 @configclass
 class EndoscopeCameraCfg(SensorBaseCfg):
     """Colour and depth from the tip of the endoscope, all worlds in one launch."""
 
-    class_type: type = EndoscopeCamera
-    """Sensor class that the scene makes from this configuration."""
+    class_type: Any = "arcgym.sensors.endoscope_camera:EndoscopeCamera"
+    """Class built from this configuration; change it to add behaviour to the camera."""
 
     width: int = 84
     """Width of the policy's picture [px]."""

@@ -9,21 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import torch
 
-from arcgym.utils.configclass import MISSING, configclass
-
 if TYPE_CHECKING:
-    from arcgym.scene import InteractiveScene
+    from arcgym.scene.interactive_scene import InteractiveScene
 
-
-@configclass
-class SensorBaseCfg:
-    """Common part of every sensor's configuration."""
-
-    class_type: type = MISSING
-    """Sensor class that the scene makes from this configuration."""
-
-    update_period: float = 0.0
-    """Time between two readings [s]; 0 reads after every control step. Raise it for a sensor slower than control."""
+    from .sensor_base_cfg import SensorBaseCfg
 
 
 class SensorBase(ABC):
