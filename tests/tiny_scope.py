@@ -9,24 +9,26 @@ from pathlib import Path
 
 import numpy as np
 
-from arcgym.assets.endoscope_spec import EndoscopeSpec, capsule_spec, magnetic_spec, proximal_spec
+from arcgym.assets.endoscope_spec import TIP_LINKS, EndoscopeSpec, capsule_spec, magnetic_spec, proximal_spec
 from arcgym.assets.endoscope_stage import write_endoscope
 
 
 def tiny_scope_spec(kind: str = "proximal", links: int = 6) -> EndoscopeSpec:
-    """Returns the base half and the tip half of the shipped scope; a capsule stays whole."""
+    """Returns the last shaft links and the last tip links of the shipped scope, half each; a capsule stays whole."""
     spec = {"capsule": capsule_spec, "magnetic": magnetic_spec, "proximal": proximal_spec}[kind]()
     if kind == "capsule":
         return spec
-    keep = lambda values, count: np.r_[values[: count - count // 2], values[len(values) - count // 2 :]]  # noqa: E731
+    end, tip = len(spec.link_length), links // 2
+    kept = np.r_[end - TIP_LINKS - (links - tip) : end - TIP_LINKS, end - tip : end]
+    hinges = kept[1:] - 1
     return replace(
         spec,
-        link_length=keep(spec.link_length, links),
-        link_radius=keep(spec.link_radius, links),
-        link_mass=keep(spec.link_mass, links),
-        bending_rigidity=keep(spec.bending_rigidity, links - 1),
-        hinge_limit=keep(spec.hinge_limit, links - 1),
-        bending_links=min(spec.bending_links, links // 2),
+        link_length=spec.link_length[kept],
+        link_radius=spec.link_radius[kept],
+        link_mass=spec.link_mass[kept],
+        bending_rigidity=spec.bending_rigidity[hinges],
+        hinge_limit=spec.hinge_limit[hinges],
+        bending_links=min(spec.bending_links, tip),
     )
 
 

@@ -14,7 +14,15 @@ from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
 from tiny_scope import write_tiny_scope
 
 from arcgym.anatomy import StageError
-from arcgym.assets.endoscope_spec import EndoscopeSpec, endoscope_specs, magnetic_spec, proximal_spec
+from arcgym.assets.endoscope_spec import (
+    SHAFT_LINK,
+    TIP_LINK,
+    EndoscopeSpec,
+    endoscope_specs,
+    hinge_axis,
+    magnetic_spec,
+    proximal_spec,
+)
 from arcgym.assets.endoscope_stage import author_endoscopes, read_endoscope
 from arcgym.utils.paths import ASSETS_ENV, assets_dir
 
@@ -50,14 +58,15 @@ def test_committed_files_are_what_the_code_writes(tmp_path: Path) -> None:
 
 
 def test_proximal_dimensions() -> None:
-    """A base of 200 mm, 46 shaft links of 25 mm, 10 of 10 mm: 1.45 m, 0.29 kg; five hinges share 180 degrees, five 160."""
+    """0.2 kg/m and more than 1.4 m; five hinges of the bending section share 180 degrees, five share 160."""
     spec = proximal_spec()
-    assert spec.total_length == pytest.approx(1.45)
-    assert spec.link_mass.sum() == pytest.approx(0.29)
-    assert spec.hinge_stiffness[1] == pytest.approx(0.025 / (2 * 0.025))
-    assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / (2 * 0.010))
-    assert spec.hinge_limit[-10::2].sum() == pytest.approx(math.radians(180))  # hinges 47, 49 .. 55, about X
-    assert spec.hinge_limit[-9::2].sum() == pytest.approx(math.radians(160))  # hinges 48, 50 .. 56, about Y
+    axes = np.array([hinge_axis(hinge) for hinge in range(1, len(spec.link_length))])[-10:]
+    assert spec.total_length > 1.4
+    assert spec.link_mass.sum() == pytest.approx(0.2 * spec.total_length)
+    assert spec.hinge_stiffness[20] == pytest.approx(0.025 / (2 * SHAFT_LINK))
+    assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / (2 * TIP_LINK))
+    assert spec.hinge_limit[-10:][axes == "X"].sum() == pytest.approx(math.radians(180))
+    assert spec.hinge_limit[-10:][axes == "Y"].sum() == pytest.approx(math.radians(160))
 
 
 def test_magnetic_head_is_stiffer_than_its_tether() -> None:
@@ -100,7 +109,7 @@ DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
     "centimetres": (lambda usd: UsdGeom.SetStageMetersPerUnit(usd, 0.01), ["metersPerUnit", "0.01", "metres"]),
     "y_up": (lambda usd: UsdGeom.SetStageUpAxis(usd, "Y"), ["upAxis", "Z up"]),
     "no_articulation": (
-        lambda usd: usd.GetDefaultPrim().RemoveAPI(UsdPhysics.ArticulationRootAPI),
+        lambda usd: usd.GetDefaultPrim().ClearMetadata("apiSchemas"),
         ["/Endoscope", "ArticulationRootAPI", "Apply"],
     ),
     "no_rigid_body": (
@@ -126,8 +135,8 @@ DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
         ["/root", "limit:transZ:physics:low", "low < high"],
     ),
     "shifted_hinge": (
-        lambda usd: joint(usd, "hinge_01").GetAttribute("physics:localPos0").Set((0.0, 0.0, 0.02)),
-        ["hinge_01", "physics:localPos0", "0.01"],
+        lambda usd: joint(usd, "hinge_01").GetAttribute("physics:localPos0").Set((0.0, 0.0, 0.03)),
+        ["hinge_01", "physics:localPos0", f"{SHAFT_LINK / 2:g}"],
     ),
     "degrees_of_view": (
         lambda usd: usd.GetPrimAtPath("/Endoscope/Links/link_05/Camera").GetAttribute("arcgym:fieldOfView").Set(150.0),

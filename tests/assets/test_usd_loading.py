@@ -15,6 +15,7 @@ from tiny import write_tiny_colon
 from tiny_scope import tiny_scope_spec, write_tiny_scope
 
 from arcgym.anatomy import StageError, read_colon
+from arcgym.assets.endoscope_spec import SHAFT_LINK
 from arcgym.assets.endoscope_stage import EndoscopeStage, read_endoscope, write_endoscope
 from arcgym.assets.usd_loading import PARTICLE_RADIUS, add_colon_usd, add_endoscope_usd
 
@@ -61,7 +62,7 @@ def test_wall_particles_are_the_stage_s_vertices(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "coords", "dofs"), [("capsule", 7, 6), ("magnetic", 2 + 5, 2 + 5), ("proximal", 7, 7)]
+    ("kind", "coords", "dofs"), [("capsule", 7, 6), ("magnetic", 2 + 5, 2 + 5), ("proximal", 2 + 5, 2 + 5)]
 )
 def test_root_coordinates_come_first(tmp_path: Path, kind: str, coords: int, dofs: int) -> None:
     path = write_tiny_scope(tmp_path / "scope.usda", kind)
@@ -134,11 +135,11 @@ def test_colon_that_newton_takes_differently(tmp_path: Path, defect: str) -> Non
 SCOPE_DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
     "slide_without_range": (
         lambda usd: usd.GetPrimAtPath("/Endoscope/Joints/root").RemoveAPI(UsdPhysics.LimitAPI, "transZ"),
-        ["/Endoscope/Joints/root", "PhysicsLimitAPI"],
+        ["/Endoscope", "PhysicsLimitAPI"],
     ),
     "weak_hinge": (
         lambda usd: override(usd, "/Endoscope/Joints/hinge_02", "drive:angular:physics:stiffness", 1.0e-3),
-        ["hinge_02", "stiffness", "0.0572958", "0.625"],
+        ["hinge_02", "stiffness", "0.0572958", f"{0.025 / (2 * SHAFT_LINK):g}"],
     ),
     "heavy_link": (lambda usd: override(usd, "/Endoscope/Links/link_03", "physics:mass", 1.0), ["link_03", "mass"]),
     "thin_link": (lambda usd: override(usd, "/Endoscope/Links/link_03/Shape", "radius", 0.001), ["Shape", "radius"]),
@@ -148,7 +149,7 @@ SCOPE_DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
     ),
     "disabled_hinge": (
         lambda usd: override(usd, "/Endoscope/Joints/hinge_03", "physics:jointEnabled", False),
-        ["/Endoscope"],
+        ["/Endoscope", "jointEnabled"],
     ),
     "weak_push": (
         lambda usd: override(usd, "/Endoscope/Joints/root", "drive:transZ:physics:maxForce", 3.0),

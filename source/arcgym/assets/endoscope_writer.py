@@ -197,5 +197,5 @@ def _write_drive(prim: Usd.Prim, axis: str, spec: DriveSpec, unit: float) -> Non
 
 
 def _set(prim: Usd.Prim, name: str, value_type: Sdf.ValueTypeName, value: object) -> None:
-    """Create a custom attribute and set it."""
-    prim.CreateAttribute(name, value_type).Set(value)
+    """Create an attribute and set it; written alike whether or not Newton's USD schemas are registered."""
+    prim.CreateAttribute(name, value_type, custom=False).Set(value)

@@ -116,14 +116,15 @@ def add_endoscope_usd(builder: ModelBuilder, path: str | Path, stage: EndoscopeS
 
 def _import_stage(builder: ModelBuilder, path: str | Path, root_path: str) -> None:
     """Import only what lies below `root_path` and is simulated."""
-    builder.add_usd(
-        str(path),
-        root_path=root_path,
-        load_visual_shapes=False,
-        load_static_visual_shapes=False,
-        load_sites=False,
-        enable_self_collisions=False,
-    )
+    options = {"load_visual_shapes": False, "load_static_visual_shapes": False, "load_sites": False}
+    try:
+        builder.add_usd(str(path), root_path=root_path, enable_self_collisions=False, **options)
+    except ValueError as error:
+        mend = (
+            "Leave physics:jointEnabled on for every joint, and apply PhysicsLimitAPI to the root: low < high for "
+            "transZ and rotZ, low > high for the other axes."
+        )
+        raise StageError(path, root_path, "", f"Newton's importer failed: {error}", mend) from error
 
 
 def _counts(builder: ModelBuilder) -> tuple[int, int, int, int, int]:
