@@ -3,14 +3,24 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import gymnasium as gym
 import numpy as np
 import pytest
 import torch
 
-from arcgym.envs import ManagerBasedRLEnv
+from arcgym.envs import ManagerBasedEnv, ManagerBasedEnvCfg, ManagerBasedRLEnv
 from arcgym.managers import CostTermCfg, MetricsTermCfg
-from arcgym.utils import MISSING
+from arcgym.utils import MISSING, registry
+
+
+def scatter(env, env_ids) -> None:
+    position(env)[env_ids] = torch.rand(len(env_ids))
+
+
+def position(env) -> torch.Tensor:
+    return env.scene["counter"].position
 
 
 def actions(*values: float) -> torch.Tensor:
@@ -76,6 +86,41 @@ def test_observations_are_not_overwritten_by_later_steps(env) -> None:
     assert all(torch.equal(kept[name], copies[name]) for name in kept)
 
 
+def test_steps_in_inference_mode_may_be_followed_by_a_reset_outside(cfg) -> None:
+    cfg.metrics = {"peak": MetricsTermCfg(func=position, reduce="max")}
+    env = ManagerBasedRLEnv(cfg)
+    env.reset()
+    with torch.inference_mode():
+        env.step(actions(1.0, 4.0))
+    assert env.reset()[0]["critic"].tolist() == [[0.0, 0.0], [0.0, 0.0]]
+    env.step(actions(1.0, 4.0))
+
+
+def test_same_seed_gives_the_same_rollout(cfg) -> None:
+    cfg.events["start"].func = scatter
+    env = ManagerBasedRLEnv(cfg)
+    first, second = (env.reset(seed=5)[0]["critic"][:, 0].tolist() for _ in range(2))
+    assert first == second and first != env.reset(seed=6)[0]["critic"][:, 0].tolist()
+
+
+def test_gymnasium_makes_a_registered_task(cfg) -> None:
+    name = "Test-Counter"
+    registry.register_task(name, env_cfg_entry_point="unused:Cfg")
+    env = gym.make(name, cfg=cfg, render_mode="rgb_array")
+    assert isinstance(env, ManagerBasedRLEnv) and env.unwrapped is env and env.spec.id == name
+    assert env.reset(seed=1)[0]["policy"].shape == (2, 9, 2, 2)
+    env.close()
+    del gym.registry[name]
+
+
+def test_base_environment_observes_and_acts_without_reward(cfg) -> None:
+    names = [field.name for field in dataclasses.fields(ManagerBasedEnvCfg)]
+    env = ManagerBasedEnv(ManagerBasedEnvCfg(**{name: getattr(cfg, name) for name in names}))
+    env.reset()
+    obs, extras = env.step(actions(1.0, 4.0))
+    assert obs["critic"].tolist() == [[2.0, 1.0], [8.0, 4.0]] and extras == {"log": {}}
+
+
 def test_non_finite_world_is_terminated_reset_and_counted(env) -> None:
     obs, reward, terminated, _, extras = env.step(actions(1.0, float("nan")))
     assert terminated.tolist() == [False, True]
@@ -94,10 +139,6 @@ def test_final_observation_is_that_before_the_reset(cfg) -> None:
     assert extras["final_obs"]["critic"].tolist() == [[4.0, 1.0], [8.0, 3.0]]
     assert extras["final_obs"]["policy"][:, ::3, 0, 0].tolist() == [[0, 2, 4], [0, 2, 8]]
     assert obs["policy"][:, ::3, 0, 0].tolist() == [[0, 2, 4], [0, 0, 0]]
-
-
-def position(env) -> torch.Tensor:
-    return env.scene["counter"].position
 
 
 def test_costs_and_metrics_are_apart_from_the_reward(cfg) -> None:

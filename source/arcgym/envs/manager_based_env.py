@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import logging
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
@@ -15,8 +15,9 @@ from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager
 from arcgym.managers.observation_manager import Observation
-from arcgym.utils.string import resolve_callable
+from arcgym.utils.configclass import validate
 from arcgym.utils.seed import set_seed
+from arcgym.utils.string import resolve_callable
 
 if TYPE_CHECKING:
     from arcgym.scene import InteractiveScene
@@ -28,9 +29,10 @@ class ManagerBasedEnv(gym.Env):
     """Steps a scene under actions and returns observations, for all worlds at once.
 
     Observations, rewards and flags are torch tensors on :attr:`device`, in memory of their own: they may be kept.
+    Steps and resets leave torch's inference mode, so that the state of terms made inside can be changed outside.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"]}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
 
     def __init__(self, cfg: ManagerBasedEnvCfg, render_mode: str | None = None) -> None:
         """Builds scene and managers.
@@ -42,7 +44,7 @@ class ManagerBasedEnv(gym.Env):
         Raises:
             ValueError: If fields of the configuration are missing or wrong.
         """
-        cfg.validate()
+        validate(cfg)
         self.cfg = cfg
         self.render_mode = render_mode
         self.common_step_counter = 0
@@ -106,6 +108,8 @@ class ManagerBasedEnv(gym.Env):
         """Seeds every random number generator and returns the seed; a negative one draws one."""
         return set_seed(seed)
 
+    @torch.inference_mode(False)
+    @torch.no_grad()
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Observation], dict[str, Any]]:
@@ -126,6 +130,8 @@ class ManagerBasedEnv(gym.Env):
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
 
+    @torch.inference_mode(False)
+    @torch.no_grad()
     def step(self, action: torch.Tensor) -> tuple[Any, ...]:
         """Advances every world by one control step.
 
@@ -197,6 +203,6 @@ class ManagerBasedEnv(gym.Env):
 
 
 def _build_scene(cfg: ManagerBasedEnvCfg) -> InteractiveScene:
-    """Builds the scene by its configuration's ``class_type``, a class or its name."""
     class_type = cfg.scene.class_type
-    return (resolve_callable(class_type) if isinstance(class_type, str) else class_type)(cfg.scene, cfg.sim)
+    scene_class = resolve_callable(class_type) if isinstance(class_type, str) else class_type
+    return scene_class(cfg.scene, cfg.sim)

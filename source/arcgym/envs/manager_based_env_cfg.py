@@ -4,13 +4,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from arcgym.sim.simulation_cfg import SimulationCfg
+from arcgym.scene import InteractiveSceneCfg
+from arcgym.sim import SimulationCfg
 from arcgym.utils import MISSING, configclass
-
-if TYPE_CHECKING:
-    from arcgym.scene import InteractiveSceneCfg
 
 
 @configclass
@@ -19,9 +17,6 @@ class ViewerCfg:
 
     env_id: int = 0
     """World to look at."""
-
-    pane_size: int = 512
-    """Height and width of each of the two panes [pixels]. Halve it for faster videos on the CPU."""
 
 
 @configclass

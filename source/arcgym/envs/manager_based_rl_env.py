@@ -78,7 +78,9 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.metrics_manager = MetricsManager(self.cfg.metrics, self)
         self.curriculum_manager = CurriculumManager(self.cfg.curriculum, self)
 
-    def step(self, action: torch.Tensor) -> StepReturn:
+    @torch.inference_mode(False)
+    @torch.no_grad()
+    def step(self, action: torch.Tensor) -> StepReturn:  # type: ignore[override]
         """Advances every world by one control step and resets those that are done.
 
         Rewards belong to the state before the reset, observations to the state after it.

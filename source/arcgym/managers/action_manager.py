@@ -106,7 +106,7 @@ class ActionManager(ManagerBase):
         if action.shape != expected:
             raise ValueError(f"ActionManager got an action of shape {tuple(action.shape)}, expected {expected}.")
         self._prev_action.copy_(self._action)
-        self._action.copy_(action)
+        self._action.copy_(action.detach())
         for term, part in zip(self._terms.values(), self._action.split(self.action_term_dim, dim=1), strict=True):
             term.process_actions(part)
 

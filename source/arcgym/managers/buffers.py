@@ -44,7 +44,7 @@ class FrameBuffer:
             frames = torch.where(self._is_empty.view(-1, *[1] * value.dim()), filled, shifted)
         if store:
             self._frames = frames
-            self._is_empty = torch.zeros_like(self._is_empty)
+            self._is_empty.zero_()
         return frames
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
@@ -102,7 +102,7 @@ class DelayBuffer:
             self._age += 1
             draw = self._draw()
             is_due = (self._age % self._period == 0) & (self._uniform() >= self._hold_prob)
-            self._lag = torch.where(is_due, draw, self._lag)
+            self._lag.copy_(torch.where(is_due, draw, self._lag))
         frames = self._frames.append(value, store)
         return frames[self._worlds, self._lag_range[1] - self._lag]
 

@@ -35,11 +35,11 @@ class MetricsManager(ManagerBase):
             value = torch.nan_to_num(self._evaluate(name).float(), nan=0.0, posinf=0.0, neginf=0.0)
             past = self._values[name]
             if term.reduce == "last":
-                self._values[name] = value.clone()
+                past.copy_(value)
             elif term.reduce == "max":
-                self._values[name] = torch.where(is_first, value, torch.maximum(past, value))
+                past.copy_(torch.where(is_first, value, torch.maximum(past, value)))
             else:
-                self._values[name] = past + value
+                past.add_(value)
 
     def get_value(self, name: str) -> torch.Tensor:
         """Returns a term reduced over the episode so far, shape (N,)."""

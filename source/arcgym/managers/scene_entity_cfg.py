@@ -84,14 +84,14 @@ class SceneEntityCfg:
         return slice(None) if ids == list(range(len(names))) else torch.tensor(ids, device=device)
 
     def _find_nodes(self, entity: Any, device: str) -> torch.Tensor:
-        stage = getattr(entity, "stage", None)
-        if not hasattr(stage, "wall"):
+        wall = getattr(getattr(entity, "stage", None), "wall", None)
+        if wall is None:
             raise ValueError(f"The entity '{self.name}' ({type(entity).__name__}) has no wall: segments need a colon.")
         try:
             ids, names = resolve_matching_names(self.segments or [], SEGMENTS)
         except ValueError as error:
             raise ValueError(f"segments of the entity '{self.name}': {error}") from error
-        node_segment = torch.as_tensor(stage.wall.segment)
+        node_segment = torch.as_tensor(wall.segment)
         nodes = torch.isin(node_segment, torch.tensor(ids)).nonzero().flatten()
         if len(nodes) == 0:
             raise ValueError(f"The wall of '{self.name}' has no nodes in the segments {names}.")

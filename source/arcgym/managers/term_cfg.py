@@ -21,7 +21,7 @@ class ManagerTermBaseCfg:
     can_be_none: ClassVar[bool] = True
     """A term may be switched off with ``= None`` or ``null`` on the command line."""
 
-    func: Callable[..., Any] | str = MISSING
+    func: Callable[..., Any] = MISSING
     """Function, class derived from :class:`ManagerTermBase`, or the text ``"module:name"`` of either. Functions are
     called as ``func(env, **params)``; those of events and curricula as ``func(env, env_ids, **params)``."""
 

@@ -53,17 +53,18 @@ def resolve_term(cfg: ManagerTermBaseCfg, env: Any, name: str, owner: str, leadi
     label = f"Term '{name}' of {owner}"
     if isinstance(cfg.func, str):
         cfg.func = _named(cfg.func, label)
-    is_class = inspect.isclass(cfg.func)
-    if is_class and not issubclass(cfg.func, ManagerTermBase):  # type: ignore[arg-type]
-        raise TypeError(f"{label} is the class {cfg.func.__name__}, which does not derive from ManagerTermBase.")
-    if not callable(cfg.func):
-        raise TypeError(f"{label} has a func of type {type(cfg.func).__name__}, expected a callable.")
-    signature = inspect.signature(cfg.func.__call__ if is_class else cfg.func)
+    func: Any = cfg.func
+    is_class = isinstance(func, type)
+    if is_class and not issubclass(func, ManagerTermBase):
+        raise TypeError(f"{label} is the class {func.__name__}, which does not derive from ManagerTermBase.")
+    if not callable(func):
+        raise TypeError(f"{label} has a func of type {type(func).__name__}, expected a callable.")
+    signature = inspect.signature(func.__call__ if is_class else func)
     arguments = (("self",) if is_class else ()) + leading
     _check_signature(signature, arguments, cfg.params, label)
     _resolve_entities(signature, cfg.params, env, label)
     if is_class:
-        cfg.func = cfg.func(cfg, env)
+        cfg.func = func(cfg, env)
 
 
 def _named(text: str, label: str) -> Callable[..., Any]:

@@ -19,7 +19,6 @@ import dataclasses
 import functools
 import types
 from collections.abc import Iterator
-from dataclasses import MISSING
 from typing import Any, TypeVar, dataclass_transform
 
 from arcgym.utils.coerce import coerce, field_types, is_config, is_missing, to_plain
@@ -28,6 +27,9 @@ from arcgym.utils.string import did_you_mean
 __all__ = ["MISSING", "configclass", "copy", "from_dict", "is_config", "replace", "to_dict", "validate"]
 
 T = TypeVar("T")
+
+MISSING: Any = dataclasses.MISSING
+"""Value of a field that must be set, the same object as ``dataclasses.MISSING``."""
 
 _NEVER_FIELDS = (types.FunctionType, classmethod, staticmethod, property, functools.cached_property, type)
 _ATOMIC = (type(None), bool, int, float, complex, str, bytes, type, types.FunctionType, types.BuiltinFunctionType)
