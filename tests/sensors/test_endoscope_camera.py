@@ -48,6 +48,20 @@ def test_depth_is_far_where_nothing_is_hit(tmp_path):
     assert (depth == 0.5).all() and (rgb == 0).all()
 
 
+@pytest.mark.parametrize(("x", "covered"), [(RADIUS - 0.002, False), (RADIUS + 0.002, True)])
+def test_lens_in_the_wall_sees_red(tmp_path, x, covered):
+    """2 mm inside the wall's inner surface the lens is free, 2 mm beyond it is covered, and sees no void."""
+    scene = TubeScene(tmp_path, plain=True)
+    scene.move_camera(0, [x, 0.0, 0.15, *FORWARD])
+    camera = make_camera(scene)
+    camera.update()
+    rgb, depth = picture(camera)
+    assert camera.data.covered.item() is covered
+    assert (depth == np.float32(0.001)).all() == covered
+    if covered:
+        assert rgb[0, ..., 0].mean() > 1.3 * rgb[0, ..., 1].mean()
+
+
 def test_brightness_falls_with_the_square_of_distance(tmp_path):
     """A tube twice as wide is seen under the same angles, so every pixel gets a quarter of the light."""
     radiance = []

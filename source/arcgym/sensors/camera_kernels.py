@@ -7,7 +7,48 @@ import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
 
-from .shading_kernels import Lighting, SurfaceView, shade, surface_hit
+from .shading_kernels import Lighting, SurfaceView, covered_radiance, shade, surface_hit
+
+PROBES = wp.constant(14)
+
+
+@wp.func
+def probe_direction(probe: int) -> wp.vec3:
+    """Direction of one of the 14 probes: the six faces and the eight corners of a cube."""
+    if probe < 6:
+        direction = wp.vec3(0.0)
+        direction[probe % 3] = 1.0 - 2.0 * float(probe // 3)
+        return direction
+    corner = probe - 6
+    x = 1.0 - 2.0 * float(corner & 1)
+    y = 1.0 - float(corner & 2)
+    z = 1.0 - 0.5 * float(corner & 4)
+    return wp.normalize(wp.vec3(x, y, z))
+
+
+@wp.kernel
+def find_covered(
+    surface: SurfaceView,
+    drawn: wp.array[wp.bool],
+    poses: wp.array[wp.transform],
+    far: float,
+    covered: wp.array[wp.bool],
+):
+    """Marks the worlds whose lens has sunk into the wall: most of its surroundings show the wall's back."""
+    world = wp.tid()
+    if not drawn[world]:
+        return
+    origin = wp.transform_get_translation(poses[world])
+    balance = wp.int32(0)
+    for probe in range(PROBES):
+        direction = wp.transform_vector(poses[world], probe_direction(probe))
+        query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+        if query.result:
+            if query.sign > 0.0:
+                balance += 1
+            else:
+                balance -= 1
+    covered[world] = balance < 0
 
 
 @wp.kernel
@@ -20,6 +61,8 @@ def cast_rays(
     poses: wp.array[wp.transform],
     rays: wp.array3d[wp.vec3],
     texture_offset: wp.array[wp.vec2],
+    covered: wp.array[wp.bool],
+    near: float,
     far: float,
     radiance: wp.array3d[wp.vec3],
     depth: wp.array3d[float],
@@ -27,6 +70,10 @@ def cast_rays(
     """Radiance (mean of the samples) and ray distance (nearest of the samples) of every pixel of every world."""
     world, row, column = wp.tid()
     if not drawn[world]:
+        return
+    if covered[world]:
+        radiance[world, row, column] = covered_radiance(lighting, albedo)
+        depth[world, row, column] = near
         return
     camera = poses[world]
     origin = wp.transform_get_translation(camera)

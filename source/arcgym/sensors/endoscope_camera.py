@@ -38,6 +38,9 @@ class EndoscopeCameraData:
     """Position of the camera when the picture was taken [m], shape (N, 3)."""
     quat_w_opengl: torch.Tensor
     """Orientation (x, y, z, w) of the frame that looks along −Z with +Y up, shape (N, 4)."""
+    covered: torch.Tensor
+    """Whether the lens has sunk into the wall, shape (N,), bool. The picture is then an even red and the depth the
+    camera's near clipping distance: an unlit void behind the wall would look like open lumen."""
     output: dict[str, torch.Tensor] = field(default_factory=dict)
     """``rgb``: uint8, shape (N, H, W, 3). ``depth``: distance along the ray [m], float32, shape (N, H, W)."""
 
@@ -183,14 +186,15 @@ class EndoscopeCamera(SensorBase):
         """Gathers what the endoscope's stage and the configuration say about camera and lights."""
         stage = self._endoscope.stage
         lights = lights_in_camera(stage.lights, stage.camera)
-        return Optics(self.field_of_view, lights, self.cfg.far, self.cfg.lighting, self.cfg.exposure)
+        near = float(stage.camera.clipping[0])
+        return Optics(self.field_of_view, lights, near, self.cfg.far, self.cfg.lighting, self.cfg.exposure)
 
     def _make_data(self) -> EndoscopeCameraData:
         """Shows the renderer's buffers as tensors."""
         pose = wp.to_torch(self._renderer.drawn_from)
         outputs = {"rgb": self._renderer.rgb, "depth": self._renderer.depth}
         views = {name: wp.to_torch(outputs[name]) for name in self.cfg.data_types}
-        return EndoscopeCameraData(pose[:, :3], pose[:, 3:], views)
+        return EndoscopeCameraData(pose[:, :3], pose[:, 3:], wp.to_torch(self._renderer.covered), views)
 
 
 def lights_in_camera(lights: np.ndarray, camera: CameraSpec) -> np.ndarray:

@@ -164,6 +164,13 @@ def lit_by(
 
 
 @wp.func
+def covered_radiance(lighting: Lighting, albedo: wp.Texture2D) -> wp.vec3:
+    """Mucosa pressed against the lens: its mean colour, lit from as near as can be ("red-out")."""
+    color = mucosa_color(wp.texture_sample(albedo, wp.vec2(0.5, 0.5), dtype=wp.vec4f, lod=16.0), 0.0)
+    return wp.cw_mul(color, color) / lighting.min_distance_sq
+
+
+@wp.func
 def shade(
     surface: SurfaceView,
     lighting: Lighting,

@@ -13,7 +13,7 @@ import warp as wp
 from arcgym.anatomy.visual import TEXTURE_LENGTH
 from arcgym.utils import warp_setup  # noqa: F401
 
-from .camera_kernels import cast_rays, develop, expose, row_brightness
+from .camera_kernels import cast_rays, develop, expose, find_covered, row_brightness
 from .camera_rays import fisheye_rays, pixel_angle
 from .shading_kernels import Lighting, SurfaceView
 from .texture_density import texel_density
@@ -34,6 +34,8 @@ class Optics:
     """Angle from corner to corner [rad]."""
     lights: np.ndarray
     """Positions of the two lights in the camera's frame [m], shape (2, 3)."""
+    near: float
+    """Distance given where the lens is covered by the wall [m]."""
     far: float
     """Farthest distance seen [m]."""
     lighting: LightingCfg
@@ -90,6 +92,7 @@ class SurfaceRenderer:
         self.rgb = wp.zeros((*self.shape, 3), dtype=wp.uint8, device=device)
         self.depth = wp.full(self.shape, optics.far, dtype=float, device=device)
         self.radiance = wp.zeros(self.shape, dtype=wp.vec3, device=device)
+        self.covered = wp.zeros(surface.num_envs, dtype=wp.bool, device=device)
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
@@ -98,6 +101,13 @@ class SurfaceRenderer:
 
     def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
         """Draws the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform."""
+        wp.launch(
+            find_covered,
+            self.shape[0],
+            inputs=[self._view, drawn, poses, self.optics.far],
+            outputs=[self.covered],
+            device=self.device,
+        )
         wp.launch(
             cast_rays,
             self.shape,
@@ -110,6 +120,8 @@ class SurfaceRenderer:
                 poses,
                 self.rays,
                 looks.texture_offset,
+                self.covered,
+                self.optics.near,
                 self.optics.far,
             ],
             outputs=[self.radiance, self.depth],
