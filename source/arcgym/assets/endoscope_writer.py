@@ -185,8 +185,10 @@ def _write_limit(prim: Usd.Prim, axis: str, low: float, high: float) -> None:
     limit.CreateHighAttr(high)
 
 
-def _write_drive(prim: Usd.Prim, axis: str, spec: DriveSpec, unit: float) -> None:
-    """Drive of one axis; `unit` is 1 for metres and one degree in radians for angles, which USD counts in degrees."""
+def _write_drive(prim: Usd.Prim, axis: str, spec: DriveSpec | None, unit: float) -> None:
+    """Drive of one axis, if any; `unit` is 1 for metres, one degree in radians for angles: USD counts per degree."""
+    if spec is None:
+        return
     drive = UsdPhysics.DriveAPI.Apply(prim, axis)
     drive.CreateTypeAttr(UsdPhysics.Tokens.force)
     drive.CreateTargetPositionAttr(0.0)

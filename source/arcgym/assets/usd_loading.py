@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
@@ -158,15 +159,13 @@ class _Check:
         if found != expected:
             raise StageError(self.path, prim, attribute, f"Newton imported {found} instead of {expected}", mend)
 
-    def close(
-        self, prims: Sequence[str], attribute: str, found: Sequence[float], expected: Sequence[float], mend: str
-    ) -> None:
+    def close(self, prims: Sequence[str], attribute: str, found: ArrayLike, expected: ArrayLike, mend: str) -> None:
         """Raise at the first prim whose value differs by more than the precision of a float."""
-        found, expected = np.asarray(found, float), np.asarray(expected, float)
-        wrong = np.flatnonzero(~np.isclose(found, expected, rtol=1e-4, atol=1e-12))
+        have, want = np.asarray(found, float), np.asarray(expected, float)
+        wrong = np.flatnonzero(~np.isclose(have, want, rtol=1e-4, atol=1e-12))
         if len(wrong):
             first = wrong[0]
-            self.equal(prims[first], attribute, f"{found[first]:g}", f"{expected[first]:g}", mend)
+            self.equal(prims[first], attribute, f"{have[first]:g}", f"{want[first]:g}", mend)
 
 
 def _check_wall_mesh(
