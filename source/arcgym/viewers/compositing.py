@@ -54,7 +54,7 @@ def _depth_shade(depth: np.ndarray, hit: np.ndarray, contrast: float) -> np.ndar
     sigma = 0.012 * depth.shape[0]
     weight = gaussian_filter(hit.astype(np.float32), sigma)
     around = gaussian_filter(np.where(hit, depth, 0.0), sigma) / np.maximum(weight, 1.0e-3)
-    behind = np.where(hit, np.clip((depth - around) / 0.03, 0.0, 1.0), 0.0)
+    behind = np.where(hit, np.clip((depth - around) / 0.02, 0.0, 1.0), 0.0)
     return 1.0 - contrast * 0.75 * behind
 
 

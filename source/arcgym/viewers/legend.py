@@ -7,14 +7,14 @@ from __future__ import annotations
 import numpy as np
 from PIL import ImageDraw
 
-from .drawing import Color, font, text_width
+from .drawing import Color, font
 from .palette import FORCE_TIERS, deformation_colors, to_display
 from .view_camera import ViewCamera
 
 _TEXT: Color = (62, 70, 84)
 _FAINT: Color = (128, 138, 154)
-_SIZE = 11
-_LINE = 15
+_SIZE = 12
+_LINE = 16
 _BAR = (9, 84)
 
 
@@ -39,8 +39,8 @@ def _draw_forces(draw: ImageDraw.ImageDraw, x: float, y: float) -> None:
     draw.text((x, y), "wall force on scope", fill=_TEXT, font=font(_SIZE))
     ends = [tier.start for tier in FORCE_TIERS[1:]] + [None]
     for row, (tier, end) in enumerate(zip(FORCE_TIERS, ends, strict=True), start=1):
-        span = f"> {tier.start:.0f}" if end is None else f"{tier.start:.0f}–{end:.0f}"
-        draw.rounded_rectangle((x, y + row * _LINE + 2, x + 12, y + row * _LINE + 12), radius=2, fill=tier.color)
+        span = f"> {tier.start:.0f}" if end is None else f"{tier.start:.0f}-{end:.0f}"
+        draw.rounded_rectangle((x, y + row * _LINE + 2, x + 12, y + row * _LINE + 13), radius=2, fill=tier.color)
         draw.text((x + 18, y + row * _LINE), f"{span} N  {tier.label}", fill=_TEXT, font=font(_SIZE))
 
 
@@ -72,11 +72,9 @@ def _draw_sides(draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: View
     """Writes which side of the patient is left and right in the picture, for views from the front or the back."""
     if abs(camera.right[0]) < 0.5:
         return
-    sides = ("patient's right", "patient's left")
+    sides = ("patient right", "patient left")
     at_left, at_right = sides if camera.right[0] < 0.0 else sides[::-1]
     left, top = origin
     y = top + 12
-    draw.text((left + 12, y), f"◂ {at_left}", fill=_FAINT, font=font(_SIZE))
-    label = f"{at_right} ▸"
-    x = left + camera.size[0] - 12 - text_width(draw, label, _SIZE)
-    draw.text((x, y + 22), label, fill=_FAINT, font=font(_SIZE))
+    draw.text((left + 12, y), at_left, fill=_FAINT, font=font(_SIZE))
+    draw.text((left + camera.size[0] - 12, y + 22), at_right, fill=_FAINT, font=font(_SIZE), anchor="ra")

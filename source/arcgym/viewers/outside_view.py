@@ -52,7 +52,7 @@ class OutsideViewCfg:
     """Opacity of the wall that is seen through the lumen, 0..1."""
     ghost_alpha: float = 0.42
     """The same where the scope lies behind it, 0..1, so that no loop of the colon hides the scope."""
-    edge_threshold: float = 0.035
+    edge_threshold: float = 0.06
     """Difference of neighbouring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
     """
     depth_contrast: float = 0.7

@@ -1,8 +1,11 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Kernels of the outside view: a ray marcher through the translucent wall, and its edge anti-aliasing."""
 
 import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
 
 MAX_HITS = wp.constant(24)
 FAR = wp.constant(10.0)
@@ -42,19 +45,19 @@ class ViewGeometry:
 
     wall: wp.uint64
     """Mesh of the wall."""
-    root: wp.array(dtype=int)
+    root: wp.array[int]
     """Where ray queries of the drawn world start in the wall's mesh, shape (1,)."""
-    wall_normals: wp.array(dtype=wp.vec3)
+    wall_normals: wp.array[wp.vec3]
     """Unit normals towards the lumen, one for each wall vertex."""
-    wall_colors: wp.array(dtype=wp.vec3)
+    wall_colors: wp.array[wp.vec3]
     """Linear RGB of each wall vertex."""
     scope: wp.uint64
     """Mesh of the scope."""
-    scope_normals: wp.array(dtype=wp.vec3)
+    scope_normals: wp.array[wp.vec3]
     """Unit normals outwards, one for each scope vertex."""
-    scope_arcs: wp.array(dtype=float)
+    scope_arcs: wp.array[float]
     """Distance of each scope vertex from the proximal end, along the scope [m]."""
-    scope_table: wp.array(dtype=wp.vec3)
+    scope_table: wp.array[wp.vec3]
     """Linear RGB along the scope, an entry every ``ViewParams.table_step``."""
 
 
@@ -70,11 +73,11 @@ class Sample:
 
 @wp.kernel
 def color_wall(
-    points: wp.array(dtype=wp.vec3),
-    rest: wp.array(dtype=wp.vec3),
-    table: wp.array(dtype=wp.vec3),
+    points: wp.array[wp.vec3],
+    rest: wp.array[wp.vec3],
+    table: wp.array[wp.vec3],
     full_scale: float,
-    colors: wp.array(dtype=wp.vec3),
+    colors: wp.array[wp.vec3],
 ):
     """Looks the displacement of every visual vertex up in the deformation colour table."""
     vertex = wp.tid()
@@ -85,7 +88,7 @@ def color_wall(
 
 
 @wp.kernel
-def find_root(mesh: wp.uint64, group: int, root: wp.array(dtype=int)):
+def find_root(mesh: wp.uint64, group: int, root: wp.array[int]):
     """Reads the BVH root of a mesh group."""
     root[0] = wp.mesh_get_group_root(mesh, group)
 
@@ -169,8 +172,8 @@ def trace(
     result = Sample()
     result.depth = FAR
     color = wp.vec3(0.0, 0.0, 0.0)
-    clear = float(1.0)
-    end = float(FAR)
+    clear = wp.float32(1.0)
+    end = wp.float32(FAR)
     inner_alpha = view.far_alpha
 
     hit = wp.mesh_query_ray(geometry.scope, view.eye, ray, end)
@@ -179,8 +182,8 @@ def trace(
         result.depth = hit.t
         inner_alpha = view.ghost_alpha
 
-    at = float(0.0)
-    count = int(0)
+    at = wp.float32(0.0)
+    count = wp.int32(0)
     while count < MAX_HITS and clear > 0.02:
         query = wp.mesh_query_ray(geometry.wall, view.eye + ray * at, ray, end - at, geometry.root[0])
         if not query.result:
@@ -216,8 +219,8 @@ def trace(
 def trace_pixels(
     geometry: ViewGeometry,
     view: ViewParams,
-    color: wp.array2d(dtype=wp.vec4),
-    depth: wp.array2d(dtype=float),
+    color: wp.array2d[wp.vec4],
+    depth: wp.array2d[float],
 ):
     """Traces one ray through the middle of every pixel."""
     row, column = wp.tid()
@@ -227,10 +230,10 @@ def trace_pixels(
 
 
 @wp.func
-def contrast(color: wp.array2d(dtype=wp.vec4), row: int, column: int):
+def contrast(color: wp.array2d[wp.vec4], row: int, column: int):
     """Largest difference between a pixel and its four neighbours."""
     here = color[row, column]
-    biggest = float(0.0)
+    biggest = wp.float32(0.0)
     for k in range(4):
         r = wp.clamp(row + (k % 2) * (k - 2), 0, color.shape[0] - 1)
         c = wp.clamp(column + ((k + 1) % 2) * (k - 1), 0, color.shape[1] - 1)
@@ -244,8 +247,8 @@ def refine_edges(
     geometry: ViewGeometry,
     view: ViewParams,
     threshold: float,
-    color: wp.array2d(dtype=wp.vec4),
-    refined: wp.array2d(dtype=wp.vec4),
+    color: wp.array2d[wp.vec4],
+    refined: wp.array2d[wp.vec4],
 ):
     """Copies flat pixels and averages four rotated-grid samples where neighbours differ by more than `threshold`."""
     row, column = wp.tid()

@@ -16,9 +16,9 @@ from .palette import FORCE_TIERS, force_tier
 from .segment_bar import draw_segment_bar
 from .sparkline import draw_sparkline
 
-_LABEL_SIZE = 11
+_LABEL_SIZE = 12
 _VALUE_SIZE = 18
-_CELL_GAP = 16
+_CELL_GAP = 14
 _REWARD_COLOR: Color = (124, 196, 255)
 
 
@@ -105,6 +105,7 @@ def cells(info: FrameInfo) -> list[Cell]:
 def draw_cells(draw: ImageDraw.ImageDraw, box: Box, shown: Sequence[Cell]) -> int:
     """Draws cells from left to right as far as they fit, and returns how many did."""
     left, top, right, _ = box
+    left += 1  # glyphs may reach one pixel to the left of where they start
     for count, cell in enumerate(shown):
         indent = 14 if cell.dot else 0
         value_width = indent + max(text_width(draw, text, _VALUE_SIZE) for text in (cell.widest, cell.value))

@@ -57,13 +57,15 @@ class ScopeTube:
         tangents = np.concatenate([axis[:1], axis, axis[-1:]])
         curve = CubicHermiteSpline(self._knots, np.concatenate([first, position, last]), tangents)
         side = np.concatenate([side[:1], side, side[-1:]])
-        return self._rings_around(curve(self._rings), curve(self._rings, 1), _interpolate(self._rings, self._knots, side))
+        side = _interpolate(self._rings, self._knots, side)
+        return self._rings_around(curve(self._rings), curve(self._rings, 1), side)
 
-    def _rings_around(self, middle, tangent, side) -> tuple[np.ndarray, np.ndarray]:
+    def _rings_around(self, middle: np.ndarray, tangent: np.ndarray, side: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         tangent = _unit(tangent)
         side = _unit(side - tangent * np.sum(side * tangent, axis=1, keepdims=True))
         third = np.cross(tangent, side)
-        around = np.cos(self._angle)[None, :, None] * side[:, None] + np.sin(self._angle)[None, :, None] * third[:, None]
+        angle = self._angle[None, :, None]
+        around = np.cos(angle) * side[:, None] + np.sin(angle) * third[:, None]
         vertices = middle[:, None] + self._radius[:, None, None] * around
         tilt = self._tilt[:, None, None]
         normals = np.sqrt(1.0 - tilt**2) * around + tilt * tangent[:, None]

@@ -9,7 +9,7 @@ from PIL import ImageDraw
 from .drawing import DARK, INK, Box, Color, first_fitting, font, mix
 from .palette import SEGMENT_COLORS
 
-_TEXT_SIZE = 13
+_TEXT_SIZES = (13, 11)
 _GOAL: Color = (255, 255, 255)
 _UNKNOWN: Color = (120, 126, 136)
 
@@ -53,9 +53,12 @@ def _draw_segment(draw: ImageDraw.ImageDraw, box: Box, name: str, color: Color) 
     if right <= left:
         return
     draw.rounded_rectangle(box, radius=3, fill=color)
-    text = first_fitting(draw, (name, f"{name[:4]}.", f"{name[:3]}."), right - left - 8, _TEXT_SIZE)
     ink = DARK if sum(color) > 330 else INK
-    draw.text((0.5 * (left + right), 0.5 * (top + bottom)), text, fill=ink, font=font(_TEXT_SIZE), anchor="mm")
+    for size in _TEXT_SIZES:
+        text = first_fitting(draw, (name, f"{name[:4]}.", name[:3]), right - left - 2, size)
+        if text:
+            draw.text((0.5 * (left + right), 0.5 * (top + bottom)), text, fill=ink, font=font(size), anchor="mm")
+            return
 
 
 def _draw_marker(draw: ImageDraw.ImageDraw, x: float, top: float, height: float, bottom: float) -> None:

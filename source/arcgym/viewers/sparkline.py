@@ -11,7 +11,7 @@ from PIL import ImageDraw
 
 from .drawing import DIM_INK, PANEL, Box, Color, font, mix
 
-_TEXT_SIZE = 11
+_TEXT_SIZE = 12
 _PAD = 5
 
 

@@ -42,6 +42,10 @@ class TwoPaneView:
     """Draws one world of an environment from inside and from outside, with numbers and charts below.
 
     The outside view is drawn from the coarse visual surface, the endoscope's view from the fine one.
+
+    Attributes:
+        rewards: Reward of each frame of the episode so far, newest last.
+        forces: Largest wall force on a link in each frame [N], newest last.
     """
 
     def __init__(self, env: ManagerBasedEnv, cfg: TwoPaneCfg | None = None) -> None:
@@ -67,7 +71,9 @@ class TwoPaneView:
             scope.bending_links,
         )
         self._bounds = stage.segment_bounds()
-        self._forget(0)
+        self._env_id, self._time = 0, 0.0
+        self.rewards: deque[float] = deque(maxlen=_HISTORY)
+        self.forces: deque[float] = deque(maxlen=_HISTORY)
 
     def frame(self, env_id: int = 0, info: Mapping[str, Any] | None = None) -> np.ndarray:
         """Draws a world as it is now.
@@ -90,7 +96,7 @@ class TwoPaneView:
         draw = ImageDraw.Draw(picture)
         draw_legends(draw, corner, self._outside.camera, self.cfg.outside.deformation_scale)
         panel = (_MARGIN, height + 2 * _MARGIN, size[0] - _MARGIN, size[1] - _MARGIN)
-        draw_panel(draw, panel, shown, self._bounds, self._rewards, self._forces)
+        draw_panel(draw, panel, shown, self._bounds, self.rewards, self.forces)
         return np.asarray(picture)
 
     def _endoscope_view(self, env_id: int, size: int) -> Image.Image:
@@ -115,12 +121,8 @@ class TwoPaneView:
     def _remember(self, env_id: int, info: FrameInfo) -> None:
         """Adds to the charts, which start again with every episode and world."""
         if env_id != self._env_id or info.time < self._time:
-            self._forget(env_id)
-        self._time = info.time
-        self._rewards.append(float("nan") if info.reward is None else info.reward)
-        self._forces.append(info.max_force)
-
-    def _forget(self, env_id: int) -> None:
-        self._env_id, self._time = env_id, 0.0
-        self._rewards: deque[float] = deque(maxlen=_HISTORY)
-        self._forces: deque[float] = deque(maxlen=_HISTORY)
+            self.rewards.clear()
+            self.forces.clear()
+        self._env_id, self._time = env_id, info.time
+        self.rewards.append(float("nan") if info.reward is None else info.reward)
+        self.forces.append(info.max_force)

@@ -1,0 +1,111 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The picture of env.render(), on a tiny colon and an environment of plain objects."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+import warp as wp
+from tiny import tiny_colon_stage
+
+from arcgym.viewers import OutsideViewCfg, TwoPaneCfg, TwoPaneView
+from arcgym.viewers.frame_info import read_info
+
+LINKS = 6
+SMALL = TwoPaneCfg(outside=OutsideViewCfg(width=141, height=128))
+
+
+class FakeCamera:
+    """Gives a picture of one colour per world."""
+
+    def snapshot_view(self, env_id: int, size: int, samples: int):
+        return np.full((size, size, 3), 50 + 100 * env_id, np.uint8), np.ones((size, size))
+
+
+def make_env(with_camera: bool = True) -> SimpleNamespace:
+    stage = tiny_colon_stage()
+    points = torch.from_numpy(np.tile(stage.wall.points, (2, 1)))
+    colon = SimpleNamespace(stage=stage, nodal_pos_wp=wp.from_torch(points, dtype=wp.vec3), points=points)
+    position = torch.zeros(2, LINKS, 3)
+    position[:, :, 2] = torch.arange(LINKS) * 0.02 - 0.05
+    data = SimpleNamespace(
+        body_pos_w=position,
+        body_quat_w=torch.tensor([0.0, 0.0, 0.0, 1.0]).expand(2, LINKS, 4).clone(),
+        wall_force_w=torch.zeros(2, LINKS, 3),
+        tip_arc_length=torch.tensor([0.06, 0.14]),
+        tip_segment=torch.tensor([1, 3]),
+        inserted_length=torch.tensor([0.07, 0.15]),
+    )
+    scope = SimpleNamespace(link_length=np.full(LINKS, 0.02), link_radius=np.full(LINKS, 0.006), bending_links=2)
+    scene = {"colon": colon, "endoscope": SimpleNamespace(stage=scope, data=data)}
+    if with_camera:
+        scene["camera"] = FakeCamera()
+    return SimpleNamespace(
+        scene=scene,
+        cfg=SimpleNamespace(segment="sigmoid"),
+        step_dt=0.1,
+        reward_buf=torch.tensor([0.5, -0.5]),
+        episode_length_buf=torch.tensor([12, 3]),
+    )
+
+
+def test_frame_is_an_even_sized_picture_with_content():
+    frame = TwoPaneView(make_env(), SMALL).frame()
+    assert frame.dtype == np.uint8 and frame.ndim == 3
+    assert frame.shape[0] % 2 == frame.shape[1] % 2 == 0
+    assert frame.std() > 10.0
+
+
+def test_endoscope_is_left_and_outside_view_is_right():
+    frame = TwoPaneView(make_env(), SMALL).frame(env_id=1)
+    assert tuple(frame[70, 60]) == (150, 150, 150)
+    assert frame[20, -30].min() > 180
+
+
+def test_frame_changes_with_scope_wall_and_world():
+    env = make_env()
+    view = TwoPaneView(env, SMALL)
+    first = view.frame().astype(int)
+    env.scene["endoscope"].data.body_pos_w[0, :, 2] += 0.05
+    moved = view.frame().astype(int)
+    env.scene["colon"].points[: len(env.scene["colon"].points) // 2] += 0.02
+    deformed = view.frame().astype(int)
+    other = view.frame(env_id=1).astype(int)
+    for before, after in ((first, moved), (moved, deformed), (deformed, other)):
+        assert (np.abs(after - before).max(axis=2) > 15).sum() > 20
+
+
+def test_scene_without_camera_is_drawn_too():
+    assert TwoPaneView(make_env(with_camera=False), SMALL).frame().std() > 10.0
+
+
+def test_info_reads_the_chosen_world():
+    env = make_env()
+    env.scene["endoscope"].data.wall_force_w[1, 2] = torch.tensor([3.0, 0.0, 4.0])
+    info = read_info(env, 1)
+    assert (info.segment, info.max_force, info.tip_force) == ("splenic", 5.0, 0.0)
+    assert info.time == pytest.approx(0.3)
+    assert info.reward == pytest.approx(-0.5)
+    assert info.task_range == pytest.approx((0.04, 0.08), abs=0.006)
+
+
+def test_extra_numbers_are_shown_and_reward_is_replaced():
+    info = read_info(make_env(), 0, {"s_c": 0.75, "reward": 2.0})
+    assert info.reward == 2.0
+    assert info.terms == {"s_c": 0.75}
+
+
+def test_charts_start_again_with_every_episode():
+    env = make_env()
+    view = TwoPaneView(env, SMALL)
+    for step in (1, 2, 3):
+        env.episode_length_buf[0] = step
+        view.frame()
+    assert len(view.rewards) == 3
+    env.episode_length_buf[0] = 0
+    view.frame()
+    assert len(view.rewards) == 1
