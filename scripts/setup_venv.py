@@ -29,10 +29,8 @@ CPU_INDEX = "https://download.pytorch.org/whl/cpu"
 def main() -> None:
     """Install unless the stamp says that these very files were installed."""
     if sys.version_info < OLDEST_PYTHON:
-        wanted = ".".join(map(str, OLDEST_PYTHON))
-        sys.exit(
-            f"Python {sys.version.split()[0]} is too old, ARCGym needs {wanted} or newer: make PYTHON=python{wanted}"
-        )
+        found, wanted = sys.version.split()[0], ".".join(map(str, OLDEST_PYTHON))
+        sys.exit(f"Python {found} is too old, ARCGym needs {wanted} or newer. Name one: make PYTHON=python{wanted}")
     if STAMP.is_file() and STAMP.read_text() == fingerprint():
         print(f"{VENV} is up to date")
         return

@@ -55,7 +55,7 @@ def parse(parser: argparse.ArgumentParser, argv: Sequence[str] | None = None) ->
 def load_cfgs(parser: argparse.ArgumentParser, args: argparse.Namespace, overrides: Sequence[str]) -> tuple[Any, Any]:
     """Return the task's environment and agent configurations with overrides and arguments written into them.
 
-    A mistake ends the script with the message of the registry or the override, before anything large is imported.
+    A mistake ends the script with the message of the registry or the override, before anything is simulated.
     """
     try:
         env_cfg = load_cfg_from_registry(args.task, "env_cfg_entry_point")

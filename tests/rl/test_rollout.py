@@ -1,0 +1,43 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import torch
+
+from arcgym.rl import RslRlVecEnvWrapper, describe_rollout, rollout_bytes
+from arcgym.rl.rollout import run_policy, zero_policy
+
+
+def wrap(env, success: list[bool] | None = None) -> RslRlVecEnvWrapper:
+    terms = [] if success is None else ["success"]
+    get_term = {"success": torch.tensor(success or [False, False])}.__getitem__
+    env.termination_manager = SimpleNamespace(active_terms=terms, get_term=get_term)
+    return RslRlVecEnvWrapper(env)
+
+
+def test_rewards_and_episodes_are_counted(counting_env):
+    """Two worlds earn 1 and 3 a step; episodes of 4 steps end once each in 6 steps."""
+    actions = torch.tensor([[1.0, 0.0], [3.0, 0.0]])
+    result = run_policy(wrap(counting_env, success=[True, False]), lambda obs: actions, steps=6)
+    assert result.reward_per_step == 2.0
+    assert result.episodes == 2
+    assert result.reward_per_episode == (4 * 1.0 + 4 * 3.0) / 2
+    assert result.success_rate == 0.5
+
+
+def test_no_ended_episode_has_no_success_rate(counting_env):
+    env = wrap(counting_env)
+    result = run_policy(env, zero_policy(env), steps=2)
+    assert math.isnan(result.success_rate)
+    assert "no episode ended" in str(result)
+
+
+def test_rollout_memory(counting_env):
+    """2 worlds x 5 steps x (1200 bytes of image + 4 of state + 4 x (3 x 2 of actions, means, deviations + 6))."""
+    obs = RslRlVecEnvWrapper(counting_env).get_observations()
+    assert rollout_bytes(obs, num_actions=2, num_steps=5) == 2 * 5 * (1200 + 4 + 4 * 12)
+    assert "2 worlds x 5 steps" in describe_rollout(obs, 2, 5)

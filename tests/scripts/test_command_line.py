@@ -1,0 +1,76 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+HEAVY = {"torch", "newton", "warp", "mujoco", "rsl_rl", "pxr"}
+BUDGET_S = 1.0
+
+
+def run(script: str, *arguments: str, flags: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, *flags, str(ROOT / "scripts" / script), *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
+
+
+def processor_time() -> float:
+    """Processor time of all finished child processes [s]."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+@pytest.mark.parametrize(
+    ("script", "arguments"),
+    [
+        ("rsl_rl/train.py", ["--help"]),
+        ("rsl_rl/play.py", ["--help"]),
+        ("zero_agent.py", ["--help"]),
+        ("random_agent.py", ["--help"]),
+        ("list_envs.py", []),
+    ],
+)
+def test_answers_without_heavy_imports(script, arguments):
+    """The budget is on processor time, so that a busy machine does not count."""
+    before = processor_time()
+    result = run(script, *arguments, flags=("-X", "importtime"))
+    assert result.returncode == 0, result.stderr
+    imported = {line.split("|")[-1].strip() for line in result.stderr.splitlines() if line.startswith("import time:")}
+    assert not HEAVY & imported
+    assert processor_time() - before < BUDGET_S
+
+
+def test_list_envs_names_the_tasks():
+    result = run("list_envs.py", "splenic")
+    assert "ARC-Splenic-Proximal-Play" in result.stdout
+    assert "ARC-Rectum-Capsule" not in result.stdout
+
+
+def test_unknown_task_names_the_nearest():
+    result = run("rsl_rl/train.py", "--task", "ARC-Splenic-Proxmal")
+    assert result.returncode == 2
+    assert "ARC-Splenic-Proximal" in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_unknown_flag_is_not_an_override():
+    result = run("rsl_rl/train.py", "--task", "ARC-Splenic-Proximal", "--num_env", "2", "--colour=red")
+    assert result.returncode == 2
+    assert "--colour=red" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("override", "hint"),
+    [("agent.algorithm.learning_rat=1e-4", "learning_rate"), ("env.scene.num_envs=many", "int")],
+)
+def test_bad_override_says_what_was_meant(override, hint):
+    result = run("rsl_rl/train.py", "--task", "ARC-Splenic-Proximal", override)
+    assert result.returncode == 2
+    assert hint in result.stderr
+    assert "Traceback" not in result.stderr
