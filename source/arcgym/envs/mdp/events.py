@@ -51,9 +51,10 @@ class reset_to_segment_start(ManagerTermBase):
         path = snapshot_path(env.scene["colon"].path, env.scene["endoscope"].path)
         if env.sim.snapshots is None and (path.is_file() or not is_first):
             env.sim.load_snapshots(SnapshotSet.load(path))
-        if is_first and (env.sim.snapshots is None or segment not in env.sim.snapshots.names):
+        snapshots = env.sim.snapshots
+        if snapshots is None or (is_first and segment not in snapshots.names):
             return REST_POSE
-        return env.sim.snapshots.index(segment)
+        return snapshots.index(segment)
 
 
 class perturb_tip(ManagerTermBase):
