@@ -16,7 +16,7 @@ from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage import read_colon
 from arcgym.assets.colon_cfg import ColonCfg
 from arcgym.assets.materials import tissue_preset
-from arcgym.assets.usd_loading import add_colon_usd
+from arcgym.assets.usd_loading import add_colon_usd, lame_parameters
 from arcgym.utils.paths import resolve_asset
 
 if TYPE_CHECKING:
@@ -24,12 +24,6 @@ if TYPE_CHECKING:
 
 FIXED = 2
 """Value of the stage's anchor primvar for vertices that never move."""
-
-
-def lame_parameters(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:
-    """Lamé parameters (mu, lambda) [Pa] of an isotropic material."""
-    mu = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
-    return mu, youngs_modulus * poissons_ratio / ((1.0 + poissons_ratio) * (1.0 - 2.0 * poissons_ratio))
 
 
 class Colon:

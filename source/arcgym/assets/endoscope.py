@@ -106,8 +106,10 @@ class Endoscope:
             rigidity = self.cfg.tip_rigidity if hinge >= first_bent else self.cfg.shaft_rigidity
             if rigidity is not None:
                 factor = rigidity / (2.0 * lever[hinge]) / builder.joint_target_ke[dof]
-                builder.joint_target_ke[dof] *= factor
-                builder.joint_target_kd[dof] *= factor
+                for values in (builder.joint_target_ke, builder.joint_target_kd, builder.joint_armature):
+                    values[dof] *= factor
+                for values in (builder.joint_limit_ke, builder.joint_limit_kd):
+                    values[dof] *= factor
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
