@@ -152,6 +152,13 @@ def test_to_dict_is_plain_and_from_dict_reads_it_back() -> None:
     assert other == cfg
 
 
+def test_term_that_is_switched_off_survives_the_round_trip() -> None:
+    cfg = ObservationsCfg(policy=None)
+    other = ObservationsCfg(policy=None)
+    other.from_dict(cfg.to_dict())
+    assert other.policy is None
+
+
 def test_from_dict_names_an_unknown_field() -> None:
     with pytest.raises(ValueError, match="has no field 'policy.joint_pos.wait'. Did you mean 'weight'"):
         ObservationsCfg().from_dict({"policy": {"joint_pos": {"wait": 1.0}}})

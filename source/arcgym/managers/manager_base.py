@@ -30,6 +30,9 @@ class ManagerBase:
     leading_arguments: ClassVar[tuple[str, ...]] = ("env",)
     """Positional arguments that a term function takes before its parameters."""
 
+    unit: ClassVar[str] = "terms"
+    """What the table counts."""
+
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
         """Copies the configuration and resolves its terms.
 
@@ -47,7 +50,7 @@ class ManagerBase:
 
     def __str__(self) -> str:
         """Lists the terms."""
-        return format_table(f"{type(self).__name__} ({len(self._terms)} terms)", self._columns(), self._rows())
+        return format_table(f"{type(self).__name__} ({len(self._terms)} {self.unit})", self._columns(), self._rows())
 
     @property
     def num_envs(self) -> int:
@@ -140,7 +143,9 @@ class ManagerBase:
 
 
 def format_table(title: str, columns: list[str], rows: list[list[Any]]) -> str:
-    """Returns a table in plain text with a title and a line of headings."""
+    """Returns a table in plain text with a title and a line of headings; the title alone if there are no rows."""
+    if not rows:
+        return title
     cells = [columns] + [[str(cell) for cell in row] for row in rows]
     widths = [max(len(row[column]) for row in cells) for column in range(len(columns))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]

@@ -22,6 +22,7 @@ class ObservationManager(ManagerBase):
     """Computes every observation group of the environment."""
 
     term_cfg_type = ObservationGroupCfg
+    unit = "groups"
 
     def __str__(self) -> str:
         """Lists groups and terms with shapes and types."""

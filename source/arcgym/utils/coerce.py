@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import enum
 import re
@@ -60,6 +61,30 @@ def to_plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
+def from_dict(cfg: Any, data: dict[str, Any], path: str = "") -> None:
+    """Writes the values of nested dicts into ``cfg``, in place.
+
+    Args:
+        cfg: Configuration to change.
+        data: As :func:`to_dict` returns it; entries may be left out.
+        path: Where ``cfg`` sits in a larger configuration, for messages.
+
+    Raises:
+        ValueError: If a name is unknown, with the names that exist.
+        TypeError: If a value does not fit its field.
+    """
+    hints = field_types(type(cfg))
+    for name, value in data.items():
+        here = f"{path}.{name}" if path else name
+        if name not in vars(cfg):
+            raise ValueError(f"{type(cfg).__name__} has no field '{here}'. {did_you_mean(name, vars(cfg))}")
+        current = getattr(cfg, name)
+        if is_config(current) and isinstance(value, dict):
+            from_dict(current, value, here)
+        else:
+            setattr(cfg, name, coerce(value, hints.get(name, Any), current, here))
+
+
 def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
     """Fits a plain value, from a command line or a file, to a field.
 
@@ -79,7 +104,7 @@ def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
         TypeError: With the field, the expected type and what was given.
         ValueError: If a callable, an enumeration member or a nested field does not exist.
     """
-    if value is None and (_may_be_none(expected) or getattr(type(current), "can_be_none", False)):
+    if value is None and (current is None or _may_be_none(expected) or _may_be_none(type(current))):
         return None
     if expected in (Any, object):
         if current is None or is_missing(current):
@@ -110,13 +135,14 @@ def _evaluate(annotation: Any, module: dict[str, Any], scope: dict[str, Any]) ->
     if not isinstance(annotation, str):
         return annotation
     try:
-        return eval(annotation, module, scope)  # noqa: S307 - source text of our own classes
+        return eval(annotation, module, scope)
     except (NameError, AttributeError, TypeError):
         return Any
 
 
 def _may_be_none(expected: Any) -> bool:
-    return expected is None or expected is type(None) or type(None) in get_args(expected)
+    """Whether a type is optional, or a configuration that declares ``can_be_none``."""
+    return type(None) in (expected, *get_args(expected)) or getattr(expected, "can_be_none", False)
 
 
 def _coerce_union(value: Any, expected: Any, current: Any, path: str) -> Any:
@@ -166,9 +192,7 @@ def _coerce_mapping(value: Any, expected: Any, current: Any, path: str) -> dict[
 
 
 def _build_config(value: dict[str, Any], kind: type, current: Any, path: str) -> Any:
-    from arcgym.utils.configclass import copy, from_dict
-
-    new = copy(current) if isinstance(current, kind) else kind()
+    new = copy.deepcopy(current) if isinstance(current, kind) else kind()
     from_dict(new, value, path)
     return new
 
@@ -182,7 +206,8 @@ def _coerce_scalar(value: Any, kind: type, expected: Any, path: str) -> Any:
         return kind(value)
     if isinstance(value, str) and kind is slice and (match := _SLICE.fullmatch(value)):
         return slice(*(None if part == "None" else int(part) for part in match.groups()))
-    return _check(isinstance(value, kind), value, value, expected, path)
+    is_letters = isinstance(value, str) and kind is not str  # a string is a Sequence too, but never meant as one
+    return _check(isinstance(value, kind) and not is_letters, value, value, expected, path)
 
 
 def _check(fits: bool, result: Any, value: Any, expected: Any, path: str) -> Any:

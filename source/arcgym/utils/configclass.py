@@ -21,7 +21,7 @@ import types
 from collections.abc import Iterator
 from typing import Any, TypeVar, dataclass_transform
 
-from arcgym.utils.coerce import coerce, field_types, is_config, is_missing, to_plain
+from arcgym.utils.coerce import field_types, from_dict, is_config, is_missing, to_plain
 from arcgym.utils.string import did_you_mean
 
 __all__ = ["MISSING", "configclass", "copy", "from_dict", "is_config", "replace", "to_dict", "validate"]
@@ -80,30 +80,6 @@ def replace(cfg: T, **changes: Any) -> T:
 def to_dict(cfg: Any) -> dict[str, Any]:
     """Returns nested dicts of plain values, fit for YAML: callables become ``"module:name"``, tuples lists."""
     return to_plain(cfg)
-
-
-def from_dict(cfg: Any, data: dict[str, Any], path: str = "") -> None:
-    """Writes the values of nested dicts into ``cfg``, in place.
-
-    Args:
-        cfg: Configuration to change.
-        data: As :func:`to_dict` returns it; entries may be left out.
-        path: Where ``cfg`` sits in a larger configuration, for messages.
-
-    Raises:
-        ValueError: If a name is unknown, with the names that exist.
-        TypeError: If a value does not fit its field.
-    """
-    hints = field_types(type(cfg))
-    for name, value in data.items():
-        here = f"{path}.{name}" if path else name
-        if name not in vars(cfg):
-            raise ValueError(f"{type(cfg).__name__} has no field '{here}'. {did_you_mean(name, vars(cfg))}")
-        current = getattr(cfg, name)
-        if is_config(current) and isinstance(value, dict):
-            from_dict(current, value, here)
-        else:
-            setattr(cfg, name, coerce(value, hints.get(name, Any), current, here))
 
 
 def validate(cfg: Any) -> None:
