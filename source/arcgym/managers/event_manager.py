@@ -20,6 +20,7 @@ class EventManager(ManagerBase):
     """Applies its terms by mode.
 
     Timers and step counts live on the CPU: which worlds are due is known without waiting for the device.
+    Only a reset, whose world indices the environment has just waited for, copies them to the CPU.
     """
 
     term_cfg_type = EventTermCfg

@@ -101,7 +101,7 @@ def validate(cfg: Any) -> None:
 
 
 def _complete_annotations(cls: type) -> dict[str, Any]:
-    """Annotations of the class's own members in the order they were written, with those left out filled in."""
+    """Annotations of the class's own members: the written ones, then those of members without, in their order."""
     written = dict(cls.__dict__.get("__annotations__", {}))
     inherited = _inherited_annotations(cls)
     for name, value in cls.__dict__.items():

@@ -54,7 +54,8 @@ def _child(node: Any, name: str, path: str) -> Any:
     """Returns what ``name`` holds inside ``node``, which sits at ``path``."""
     names = _names(node, path)
     if name not in names:
-        raise ValueError(f"'{path}' has no field '{name}'. {did_you_mean(name, names)}".replace("'' ", "The command "))
+        owner = f"'{path}'" if path else "The command"
+        raise ValueError(f"{owner} has no field '{name}'. {did_you_mean(name, names)}")
     if isinstance(node, dict):
         return node[name]
     return node[int(name)] if isinstance(node, (list, tuple)) else getattr(node, name)
