@@ -157,7 +157,7 @@ class InsertionActionCfg(ActionTermCfg):
 
     bending_scale: float = 1.3
     """Rate of pitch and yaw at a raw action of one [rad/s]: 0.13 rad a step at 10 Hz, enough to steer round every bend
-    at 45 mm/s."""
+    at 45 mm/s. The control wheels follow at ``EndoscopeCfg.bending_rate``; more than that has no effect."""
 
     insertion_velocity: float | None = None
     """Constant insertion velocity [m/s]; the insertion action is then dropped (A = 3). None leaves it to the policy

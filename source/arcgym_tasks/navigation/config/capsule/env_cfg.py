@@ -23,7 +23,7 @@ class CapsuleSceneCfg(NavigationSceneCfg):
 class CapsuleActionsCfg:
     """Six velocities of the capsule in its own frame."""
 
-    capsule = mdp.TipVelocityActionCfg(linear_scale=0.05, angular_scale=1.5)
+    capsule = mdp.TipVelocityActionCfg(linear_scale=0.05)
 
 
 @configclass

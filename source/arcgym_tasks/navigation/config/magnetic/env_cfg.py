@@ -23,7 +23,7 @@ class MagneticSceneCfg(NavigationSceneCfg):
 class MagneticActionsCfg:
     """Six velocities of the tip in its own frame."""
 
-    tip = mdp.TipVelocityActionCfg(linear_scale=0.045, angular_scale=1.5)
+    tip = mdp.TipVelocityActionCfg()
 
 
 @configclass

@@ -23,7 +23,7 @@ class ProximalSceneCfg(NavigationSceneCfg):
 class ProximalActionsCfg:
     """Insertion and roll of the base, pitch and yaw of the bending section."""
 
-    base = mdp.InsertionActionCfg(insertion_scale=0.05, roll_scale=1.0, bending_scale=1.3)
+    base = mdp.InsertionActionCfg()
 
 
 @configclass
