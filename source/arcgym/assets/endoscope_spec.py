@@ -23,8 +23,9 @@ TIP_LINK = 0.010
 """Length of a link of the distal section [m]."""
 TIP_LINKS = 10
 """Number of distal links: 10 cm, about the actively bending length of a colonoscope (van der Stap 2016, 8 cm)."""
-SCOPE_LENGTH = 1.45
-"""Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside."""
+SCOPE_LENGTH = 1.5
+"""Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside.
+With 59 links the chain has 60 degrees of freedom; above 64 MuJoCo Warp turns to a slower factorisation."""
 REST_TIP_HEIGHT = 0.05
 """Height of the tip above the anal verge in the rest pose [m]."""
 

@@ -35,6 +35,7 @@ class Actuation:
         self.dofs = model.joint_dof_count // num_envs
         self.body_mass = model.body_mass
         self.pushed = endoscope.kind == "proximal"
+        self.rest_insertion = endoscope.rest_insertion
         self.pull, self.drive = self._pull(), self._drive()
         self.insertion_velocity = wp.zeros(num_envs, dtype=float, device=device)
         self.roll_rate = wp.zeros(num_envs, dtype=float, device=device)
@@ -60,6 +61,7 @@ class Actuation:
         if self.pushed and slide is not None and roll is not None:
             drive.slide_stiffness, drive.slide_damping = slide.stiffness, slide.damping
             drive.force_limit = self.scope.insertion_force_limit or slide.max_force
+            drive.furthest = self.stage.total_length - self.stage.link_length[0] - self.rest_insertion
             drive.roll_stiffness = roll.stiffness
             drive.torque_limit = self.scope.roll_torque_limit or roll.max_force
         return drive

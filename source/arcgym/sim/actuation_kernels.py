@@ -17,6 +17,7 @@ class BaseDrive:
     slide_stiffness: float  # [N/m]
     slide_damping: float  # [N s/m]
     force_limit: float  # [N]
+    furthest: float  # slide at which the base link reaches the anus [m]
     roll_stiffness: float  # [N m/rad]
     torque_limit: float  # [N m]
 
@@ -67,6 +68,7 @@ def drive_base(
     lag = drive.slide_damping * velocity[w] / drive.slide_stiffness
     t = target[slide] + velocity[w] * dt
     t = wp.clamp(t, z - lead + wp.min(lag, 0.0), z + lead + wp.max(lag, 0.0))
+    t = wp.min(t, drive.furthest)
     target[slide] = t
     push = drive.slide_stiffness * (t - z) - drive.slide_damping * joint_qd[w * dofs]
     force[w] = force[w] + weight * wp.clamp(push, -drive.force_limit, drive.force_limit)
