@@ -43,11 +43,8 @@ def main() -> None:
     scene = InteractiveScene(cfg, SimulationCfg(device=args.device))
     scene.sim.forward()
     place, forward, sideways = course(scene, args.start, args.end)
-    print(
-        f"{'view':18s}"
-        + "".join(f"{name + ' R (s_c, s_o)':>30s}" for name in LUMEN_PRESETS)
-        + "   d_max  contrast [mm]"
-    )
+    presets = "".join(f"{name + ' R (s_c, s_o)':>30s}" for name in LUMEN_PRESETS)
+    print(f"{'view':18s}{presets}   d_max  contrast [mm]")
     for degrees in (0, 15, 30, 45, 60, 90):
         angle = math.radians(degrees)
         look = math.cos(angle) * forward + math.sin(angle) * sideways
