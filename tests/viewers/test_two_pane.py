@@ -28,8 +28,8 @@ class FakeCamera:
 
 def make_env(with_camera: bool = True) -> SimpleNamespace:
     stage = tiny_colon_stage()
-    points = torch.from_numpy(np.tile(stage.wall.points, (2, 1)))
-    colon = SimpleNamespace(stage=stage, nodal_pos_wp=wp.from_torch(points, dtype=wp.vec3), points=points)
+    points = wp.array(np.tile(stage.wall.points, (2, 1)), dtype=wp.vec3)
+    colon = SimpleNamespace(stage=stage, nodal_pos_wp=points, points=wp.to_torch(points))
     position = torch.zeros(2, LINKS, 3)
     position[:, :, 2] = torch.arange(LINKS) * 0.02 - 0.05
     data = SimpleNamespace(

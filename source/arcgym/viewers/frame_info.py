@@ -67,8 +67,8 @@ def read_info(env: ManagerBasedEnv, env_id: int, extra: Mapping[str, Any] | None
 
 
 def _lumen_scores(env: ManagerBasedEnv, env_id: int) -> dict[str, float]:
-    """Returns centring and visibility of the lumen where the task defines them."""
-    if getattr(env.cfg, "lumen", None) is None:
+    """Returns centring and visibility of the lumen where the task defines them and the camera measures depth."""
+    if getattr(env.cfg, "lumen", None) is None or "depth" not in env.scene["camera"].data.output:
         return {}
     from arcgym.envs.mdp.lumen import lumen_scores
 

@@ -48,10 +48,12 @@ class OutsideViewCfg:
     """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
     rim_alpha: float = 0.70
     """Opacity added towards silhouettes, 0..1."""
-    far_alpha: float = 0.86
+    far_alpha: float = 0.97
     """Opacity of the wall that is seen through the lumen, 0..1."""
     ghost_alpha: float = 0.42
-    """The same where the scope lies behind it, 0..1, so that no loop of the colon hides the scope."""
+    """The same where the scope lies behind it, 0..1."""
+    scope_share: float = 0.4
+    """Smallest share of the scope in the picture, 0..1, however many loops of the colon lie before it."""
     edge_threshold: float = 0.06
     """Difference of neighbouring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
     """
@@ -208,6 +210,7 @@ class OutsideView:
         params.width, params.height = camera.size
         params.near_alpha, params.rim_alpha = self.cfg.near_alpha, self.cfg.rim_alpha
         params.far_alpha, params.ghost_alpha = self.cfg.far_alpha, self.cfg.ghost_alpha
+        params.scope_share = self.cfg.scope_share
         params.table_step = float(self._link_length.sum()) / len(self._scope_table)
         return params
 

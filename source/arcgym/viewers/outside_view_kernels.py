@@ -35,6 +35,8 @@ class ViewParams:
     """Opacity of a wall that is seen from the lumen."""
     ghost_alpha: float
     """Opacity of a wall that is seen from the lumen and has the scope behind it."""
+    scope_share: float
+    """Smallest share of the scope in the colour of a pixel that it lies behind."""
     table_step: float
     """Arc length between two entries of the scope's colour table [m]."""
 
@@ -184,7 +186,7 @@ def trace(
 
     at = wp.float32(0.0)
     count = wp.int32(0)
-    while count < MAX_HITS and clear > 0.02:
+    while count < MAX_HITS and clear > 0.03:
         query = wp.mesh_query_ray(geometry.wall, view.eye + ray * at, ray, end - at, geometry.root[0])
         if not query.result:
             break
@@ -209,7 +211,9 @@ def trace(
         count += 1
 
     if hit.result:
-        color += scope_color(geometry, hit, ray, view) * clear
+        share = wp.max(clear, view.scope_share)
+        color = color * ((1.0 - share) / wp.max(1.0 - clear, 1.0e-4))
+        color += scope_color(geometry, hit, ray, view) * share
         clear = 0.0
     result.color = wp.vec4(color[0], color[1], color[2], 1.0 - clear)
     return result

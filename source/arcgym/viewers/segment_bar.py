@@ -9,7 +9,7 @@ from PIL import ImageDraw
 from .drawing import DARK, INK, Box, Color, first_fitting, font, mix
 from .palette import SEGMENT_COLORS
 
-_TEXT_SIZES = (13, 11)
+_TEXT_SIZES = (13, 11, 10)
 _GOAL: Color = (255, 255, 255)
 _UNKNOWN: Color = (120, 126, 136)
 
@@ -55,7 +55,7 @@ def _draw_segment(draw: ImageDraw.ImageDraw, box: Box, name: str, color: Color) 
     draw.rounded_rectangle(box, radius=3, fill=color)
     ink = DARK if sum(color) > 330 else INK
     for size in _TEXT_SIZES:
-        text = first_fitting(draw, (name, f"{name[:4]}.", name[:3]), right - left - 2, size)
+        text = first_fitting(draw, (name, f"{name[:3]}.", name[:3]), right - left - 2, size)
         if text:
             draw.text((0.5 * (left + right), 0.5 * (top + bottom)), text, fill=ink, font=font(size), anchor="mm")
             return

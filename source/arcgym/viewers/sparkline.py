@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from PIL import ImageDraw
 
-from .drawing import DIM_INK, PANEL, Box, Color, font, mix
+from .drawing import DIM_INK, PANEL, Box, Color, first_fitting, font, mix
 
 _TEXT_SIZE = 12
 _PAD = 5
@@ -31,7 +31,7 @@ def draw_sparkline(
         draw: Where to draw.
         box: Everything drawn stays inside.
         values: Oldest first; values that are not finite leave a gap.
-        label: Drawn in the upper left corner.
+        label: Drawn in the upper left corner if it fits.
         color: Colour of the line.
         floor: Lowest and highest value that the axis always covers.
         thresholds: Values and colours of horizontal lines, drawn where they lie on the axis.
@@ -39,7 +39,8 @@ def draw_sparkline(
     """
     left, top, right, bottom = box
     draw.rounded_rectangle(box, radius=4, fill=PANEL)
-    draw.text((left + _PAD, top + 2), label, fill=DIM_INK, font=font(_TEXT_SIZE))
+    title = first_fitting(draw, (label,), right - left - 2 * _PAD, _TEXT_SIZE)
+    draw.text((left + _PAD, top + 2), title, fill=DIM_INK, font=font(_TEXT_SIZE))
     shown = np.asarray(values, float)[-capacity:]
     finite = shown[np.isfinite(shown)]
     low, high = min([floor[0], *finite]), max([floor[1], *finite])
