@@ -1,0 +1,59 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sphinx configuration: MyST pages and an API reference made from the docstrings."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "source"))
+
+from sphinx.ext.napoleon.docstring import GoogleDocstring  # noqa: E402
+
+from arcgym import __version__  # noqa: E402
+
+# Napoleon takes the words before a colon in a field's docstring for its type; ours are sentences.
+GoogleDocstring._parse_attribute_docstring = lambda self: [*self._lines]
+
+project = "ARCGym"
+author = "The ARCGym Developers"
+copyright = f"2026, {author}"
+version = release = __version__
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.apidoc",
+    "sphinx.ext.viewcode",
+]
+exclude_patterns = ["_build"]
+myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
+myst_heading_anchors = 3
+napoleon_google_docstring = True
+napoleon_numpy_docstring = False
+
+_KERNELS = str(ROOT / "source" / "arcgym" / "**" / "*_kernels.py")
+apidoc_modules = [
+    {
+        "path": str(ROOT / "source" / package),
+        "destination": f"api/{package}",
+        "separate_modules": True,
+        "module_first": True,
+        "no_headings": False,
+        "exclude_patterns": [_KERNELS],
+        "automodule_options": ["members", "show-inheritance", "ignore-module-all"],
+    }
+    for package in ("arcgym", "arcgym_tasks")
+]
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_preserve_defaults = True
+autodoc_mock_imports = ["viser"]
+
+html_theme = "furo"
+html_title = f"ARCGym {version}"
+html_static_path: list[str] = []
