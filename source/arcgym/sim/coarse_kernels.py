@@ -13,6 +13,8 @@ from arcgym.sim.geometry_kernels import triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
 
 UNKNOWNS = wp.constant(9)
+Block = wp.types.matrix(shape=(9, 9), dtype=float)
+Unknowns = wp.types.vector(length=9, dtype=float)
 
 
 @wp.struct
@@ -131,66 +133,107 @@ def assemble(
             slot = records.ring_next[slot]
 
 
+@wp.func
+def cholesky(a: Block) -> Block:
+    """Lower factor of a positive definite block; reads its lower triangle."""
+    out = Block()
+    for j in range(9):
+        d = a[j, j]
+        for k in range(j):
+            d -= out[j, k] * out[j, k]
+        d = wp.sqrt(wp.max(d, 1.0e-6))
+        out[j, j] = d
+        for i in range(j + 1, 9):
+            e = a[i, j]
+            for k in range(j):
+                e -= out[i, k] * out[j, k]
+            out[i, j] = e / d
+    return out
+
+
+@wp.func
+def forward_solve(lower: Block, b: Unknowns) -> Unknowns:
+    """Solve ``lower x = b``."""
+    out = Unknowns()
+    for j in range(9):
+        s = b[j]
+        for k in range(j):
+            s -= lower[j, k] * out[k]
+        out[j] = s / lower[j, j]
+    return out
+
+
+@wp.func
+def forward_solve_block(lower: Block, b: Block) -> Block:
+    """Solve ``lower X = b``, all columns."""
+    out = Block()
+    for j in range(9):
+        for c in range(9):
+            s = b[j, c]
+            for k in range(j):
+                s -= lower[j, k] * out[k, c]
+            out[j, c] = s / lower[j, j]
+    return out
+
+
+@wp.func
+def backward_solve(lower: Block, b: Unknowns) -> Unknowns:
+    """Solve ``lower^T x = b``."""
+    out = Unknowns()
+    for back in range(9):
+        j = 8 - back
+        s = b[j]
+        for k in range(j + 1, 9):
+            s -= lower[k, j] * out[k]
+        out[j] = s / lower[j, j]
+    return out
+
+
+@wp.func
+def lower_gram(a: Block) -> Block:
+    """Lower triangle of ``a^T a``."""
+    out = Block()
+    for i in range(9):
+        for j in range(i + 1):
+            s = float(0.0)
+            for k in range(9):
+                s += a[k, i] * a[k, j]
+            out[i, j] = s
+    return out
+
+
 @wp.kernel
 def solve_chain(
-    diagonal: wp.array4d(dtype=float), upper: wp.array4d(dtype=float), rhs: wp.array3d(dtype=float), shift: float
+    diagonal: wp.array2d(dtype=Block), upper: wp.array2d(dtype=Block), rhs: wp.array2d(dtype=Unknowns), shift: float
 ):
-    """Block-tridiagonal Cholesky in place; ``rhs`` becomes the solution. Launch (W,)."""
+    """Block-tridiagonal Cholesky in place; ``rhs`` becomes the solution. Launch (W,).
+
+    Blocks are held in registers: the unrolled arithmetic is what makes one thread a world fast enough.
+    """
     w = wp.tid()
     rings = diagonal.shape[1]
+    carry = Block()
+    carry_rhs = Unknowns()
     for r in range(rings):
+        d = diagonal[w, r] - carry
         largest = float(0.0)
-        for i in range(UNKNOWNS):
-            largest = wp.max(largest, diagonal[w, r, i, i])
-        for i in range(UNKNOWNS):
-            diagonal[w, r, i, i] = diagonal[w, r, i, i] + shift * largest + 1.0e-6
-        for j in range(UNKNOWNS):
-            d = diagonal[w, r, j, j]
-            for k in range(j):
-                d -= diagonal[w, r, j, k] * diagonal[w, r, j, k]
-            d = wp.sqrt(wp.max(d, 1.0e-6))
-            diagonal[w, r, j, j] = d
-            for i in range(j + 1, UNKNOWNS):
-                e = diagonal[w, r, i, j]
-                for k in range(j):
-                    e -= diagonal[w, r, i, k] * diagonal[w, r, j, k]
-                diagonal[w, r, i, j] = e / d
-        for j in range(UNKNOWNS):
-            b = rhs[w, r, j]
-            for k in range(j):
-                b -= diagonal[w, r, j, k] * rhs[w, r, k]
-            rhs[w, r, j] = b / diagonal[w, r, j, j]
-        if r + 1 < rings:
-            for c in range(UNKNOWNS):
-                for j in range(UNKNOWNS):
-                    o = upper[w, r, j, c]
-                    for k in range(j):
-                        o -= diagonal[w, r, j, k] * upper[w, r, k, c]
-                    upper[w, r, j, c] = o / diagonal[w, r, j, j]
-            for c in range(UNKNOWNS):
-                b = rhs[w, r + 1, c]
-                for k in range(UNKNOWNS):
-                    b -= upper[w, r, k, c] * rhs[w, r, k]
-                rhs[w, r + 1, c] = b
-                for c2 in range(c + 1):
-                    s = diagonal[w, r + 1, c, c2]
-                    for k in range(UNKNOWNS):
-                        s -= upper[w, r, k, c] * upper[w, r, k, c2]
-                    diagonal[w, r + 1, c, c2] = s
+        for i in range(9):
+            largest = wp.max(largest, diagonal[w, r][i, i])
+        for i in range(9):
+            d[i, i] = d[i, i] + shift * largest + 1.0e-6
+        lower = cholesky(d)
+        y = forward_solve(lower, rhs[w, r] - carry_rhs)
+        u = forward_solve_block(lower, upper[w, r])
+        carry = lower_gram(u)
+        carry_rhs = wp.transpose(u) * y
+        diagonal[w, r] = lower
+        upper[w, r] = u
+        rhs[w, r] = y
+    ahead = Unknowns()
     for back in range(rings):
         r = rings - 1 - back
-        if r + 1 < rings:
-            for j in range(UNKNOWNS):
-                b = rhs[w, r, j]
-                for k in range(UNKNOWNS):
-                    b -= upper[w, r, j, k] * rhs[w, r + 1, k]
-                rhs[w, r, j] = b
-        for jj in range(UNKNOWNS):
-            j = UNKNOWNS - 1 - jj
-            b = rhs[w, r, j]
-            for k in range(j + 1, UNKNOWNS):
-                b -= diagonal[w, r, k, j] * rhs[w, r, k]
-            rhs[w, r, j] = b / diagonal[w, r, j, j]
+        ahead = backward_solve(diagonal[w, r], rhs[w, r] - upper[w, r] * ahead)
+        rhs[w, r] = ahead
 
 
 @wp.kernel

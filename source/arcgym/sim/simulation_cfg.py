@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from arcgym.utils.configclass import configclass
 
 
@@ -64,7 +66,7 @@ class SimulationCfg:
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Acceleration on the scope [m/s^2]. Zero by default: the colon's own weight is part of its rest shape, and
     the scope's is carried by the wall and small against contact forces."""
-    solver: str = "two_level"
+    solver: Literal["two_level", "newton"] = "two_level"
     """Wall solver and coupling: ``two_level`` (ring correction + vertex block descent, own coupling loop) or ``newton``
     (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
     scope_substeps: int = 2

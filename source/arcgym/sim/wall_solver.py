@@ -76,9 +76,10 @@ class WallSolver:
         self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
-        self.diagonal = wp.zeros((*rings, MODES, MODES), dtype=float, device=device)
-        self.upper = wp.zeros((*rings, MODES, MODES), dtype=float, device=device)
-        self.solution = wp.zeros((*rings, MODES), dtype=float, device=device)
+        self.diagonal = wp.zeros(rings, dtype=coarse_kernels.Block, device=device)
+        self.upper = wp.zeros(rings, dtype=coarse_kernels.Block, device=device)
+        self.solution = wp.zeros(rings, dtype=coarse_kernels.Unknowns, device=device)
+        self._entries = [_scalars(array) for array in (self.diagonal, self.upper, self.solution)]
 
     def _elements(self, wall: WallParameters) -> wall_kernels.WallElements:
         edges = (wall.points[wall.tets[:, 1:]] - wall.points[wall.tets[:, :1]]).transpose(0, 2, 1)
@@ -160,7 +161,7 @@ class WallSolver:
             coarse_kernels.assemble,
             (*rings, MODES),
             [x, self.force, self.space, self.rotation, self.stiffness_scale, 1.0 / self.dt**2, *touching]
-            + [self.diagonal, self.upper, self.solution],
+            + self._entries,
             device=self.device,
         )
         wp.launch(
@@ -170,5 +171,11 @@ class WallSolver:
             device=self.device,
         )
         wp.launch(
-            coarse_kernels.prolong, shape, [self.space, self.solution, self.cfg.largest_move, x], device=self.device
+            coarse_kernels.prolong, shape, [self.space, self._entries[2], self.cfg.largest_move, x], device=self.device
         )
+
+
+def _scalars(array: wp.array) -> wp.array:
+    """The same memory as single numbers, matrix or vector dimensions last."""
+    shape = (*array.shape, *array.dtype._shape_)
+    return wp.array(ptr=array.ptr, dtype=float, shape=shape, device=array.device, copy=False)
