@@ -26,8 +26,8 @@ TIP_LINKS = 10
 SCOPE_LENGTH = 1.5
 """Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside.
 With 59 links the chain has 60 degrees of freedom; above 64 MuJoCo Warp turns to a slower factorisation."""
-REST_TIP_HEIGHT = 0.05
-"""Height of the tip above the anal verge in the rest pose [m]."""
+REST_TIP_HEIGHT = 0.02
+"""Height of the tip above the anal verge in the rest pose [m]: in the straight part of the anal canal."""
 
 
 @dataclass(frozen=True)
