@@ -24,7 +24,7 @@ def scope_color_table(link_length: np.ndarray, bending_links: int, link_force: n
     """Returns the colour of the scope at even steps from its proximal end to its tip.
 
     Dark shaft with a light ring every 10 cm from the tip (as real colonoscopes carry), a lighter bending section and
-    a light tip. The tier colour of the wall force covers shaft and bending section where there is any.
+    a light tip. The tier colour of the wall force covers all but the rings where there is any.
 
     Args:
         link_length: Length of each link [m], shape (L,).
@@ -39,10 +39,10 @@ def scope_color_table(link_length: np.ndarray, bending_links: int, link_force: n
     arc = (np.arange(count) + 0.5) * ends[-1] / count
     from_tip = ends[-1] - arc
     color = np.where((arc > ends[-1] - np.sum(link_length[len(ends) - bending_links :]))[:, None], _BENDING, _SHAFT)
+    color[from_tip < min(_TIP_LENGTH, 0.4 * ends[-1])] = _TIP
     color = _tinted(color, np.interp(arc, ends - 0.5 * np.asarray(link_length), np.asarray(link_force, float)))
     is_mark = (from_tip % _MARK_SPACING < _MARK_LENGTH) & (from_tip > 0.5 * _MARK_SPACING)
     color[is_mark] = _MARK
-    color[from_tip < min(_TIP_LENGTH, 0.4 * ends[-1])] = _TIP
     return color
 
 
