@@ -79,7 +79,7 @@ def make_valves(curve: Curve, rng: np.random.Generator) -> list[Valve]:
     ]
 
 
-def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float) -> np.ndarray:
+def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float = 0.0) -> np.ndarray:
     """Returns the fold depth (share of the way to the chord) at arc length ``s``, ``phi`` from mid-row, shape (n,).
 
     The crest is flat on top: a Gaussian would alias into teeth on rings half a crest apart.
@@ -88,11 +88,26 @@ def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float) 
     after = np.searchsorted(row.s, s)
     for near in (after - 1, after):
         k = np.clip(near, 0, len(row.s) - 1)
-        bow = 0.0024 * (np.cos(1.5 * (phi - row.shift[k])) - 0.6)
-        x = np.abs(s - row.s[k] - row.tilt[k] * phi - bow) / np.maximum(row.width[k], min_width)
+        x = np.abs(s - _crest(row, k, phi)) / np.maximum(row.width[k], min_width)
         profile = (np.exp(-0.5 * x**3) + 0.35 * np.exp(-x / 2.6)) / _CREST
         height = np.maximum(height, row.depth[k] * profile)
     return height
+
+
+def nearness(row: FoldRow, s: np.ndarray, phi: np.ndarray, width: float) -> np.ndarray:
+    """Returns how near each point is to a crest: 1 on it, falling off over ``width`` [m], 0 at the taeniae."""
+    after = np.searchsorted(row.s, s)
+    near = np.zeros_like(s)
+    for k in (np.clip(after - 1, 0, len(row.s) - 1), np.clip(after, 0, len(row.s) - 1)):
+        x = (s - _crest(row, k, phi)) / (row.width[k] + width)
+        near = np.maximum(near, np.exp(-0.5 * x**2))
+    return near * np.clip(np.cos(1.5 * phi), 0.0, 1.0) ** 0.5
+
+
+def _crest(row: FoldRow, k: np.ndarray, phi: np.ndarray) -> np.ndarray:
+    """Returns the arc length of crest ``k`` at ``phi`` [m]: tilted and bowed, as real folds are."""
+    bow = 0.0024 * (np.cos(1.5 * (phi - row.shift[k])) - 0.6)
+    return row.s[k] + row.tilt[k] * phi + bow
 
 
 def haustral_bulge(row: FoldRow, s: np.ndarray, phi: np.ndarray) -> np.ndarray:
@@ -102,7 +117,7 @@ def haustral_bulge(row: FoldRow, s: np.ndarray, phi: np.ndarray) -> np.ndarray:
     return 0.10 * np.sin(np.pi * share) ** 0.8 * np.clip(np.cos(1.5 * phi), 0.0, 1.0)
 
 
-def valve_height(valve: Valve, s: np.ndarray, theta: np.ndarray, min_width: float) -> np.ndarray:
+def valve_height(valve: Valve, s: np.ndarray, theta: np.ndarray, min_width: float = 0.0) -> np.ndarray:
     """Returns how far a rectal valve reaches into the lumen [m]: a half ring, bowed upwards at its ends."""
     angle = np.mod(theta - valve.theta + np.pi, 2 * np.pi) - np.pi
     around = np.cos(np.clip(angle / 2.1, -1, 1) * np.pi / 2) ** 0.7

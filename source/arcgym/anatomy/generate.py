@@ -60,7 +60,7 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     return ColonStage(
         name=spec.name,
         wall=wall,
-        visual=sample_visual(surface, wall, lesions, spec.visual_rows, spec.visual_columns, 2),
+        visual=sample_visual(surface, wall, lesions, spec.visual_rows, spec.visual_columns, 3),
         visual_proxy=sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1),
         centerline=_sample_centerline(surface, curve),
         landmarks=find_landmarks(curve),

@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from .segments import SEGMENTS
 from .surface import Surface
@@ -122,30 +123,48 @@ def shape_lesion(
 
 def _profile(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Returns distance from the axis, height along the outward axis, tint and weight at shares ``t`` of the patch."""
-    size, depth, patch = lesion.size, lesion.depth, lesion.patch
     if lesion.kind == "diverticulum":
-        sac = size * lesion.swell
-        knots = [0, 0.15, 0.32, 0.48, 0.60, 0.70, 0.78, 0.88, 1.0]
-        neck = 0.93 * size
-        spread = np.interp(
-            t, knots, [0, 0.55 * sac, 0.92 * sac, sac, neck + 0.07 * sac, neck, 1.02 * size, 1.3 * size, patch]
-        )
-        rise = np.interp(
-            t, knots, [depth + 0.0015, depth + 0.001, 0.85 * depth, 0.55 * depth, 0.3 * depth, 0.0012, 0.0003, 0, 0]
-        )
-        return spread, rise, -np.clip(rise / depth, 0.0, 1.0), 1.0 - _ramp(0.80, 0.98, t)
-    if lesion.kind == "pedunculated":
-        knots = [0, 0.2, 0.4, 0.55, 0.68, 0.78, 0.88, 1.0]
-        spread = np.interp(t, knots, [*(k * size for k in (0, 0.6, 0.97, 0.92, 0.62, 0.60, 0.8)), patch])
-        top = 0.5 * size
-        heights = [depth + top, 0.93 * depth + top, 0.75 * depth + 0.6 * top, 0.55, 0.33, 0.15, 0.03, 0]
-        heights[3:] = [share * depth for share in heights[3:]]
-        rise = -np.interp(t, knots, heights)
-    else:
-        spread = patch * t * (1 - 0.25 * np.sin(np.pi * np.clip(t, 0, 1)))
-        rise = -0.75 * depth * np.sqrt(np.clip(1 - (t / 0.85) ** 2, 0, 1)) - 0.05 * depth * np.clip(1 - t, 0, 1)
+        spread, rise = _sac(lesion, t)
+        return spread, rise, -np.clip(1.3 * rise / lesion.depth, 0.0, 1.0), 1.0 - _ramp(0.85, 1.0, t)
+    spread, rise = (_stalk if lesion.kind == "pedunculated" else _dome)(lesion, t)
     lobes = 1 + 0.10 * np.sin(3 * angle + 1e3 * lesion.s) * t + 0.06 * np.sin(5 * angle + 9 * t)
     return spread, rise * lobes, 1.0 - _ramp(0.70, 0.95, t), 1.0 - _ramp(0.82, 1.0, t)
+
+
+def _sac(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A sac behind a narrower neck with a rounded rim."""
+    knots = [0.0, 0.13, 0.27, 0.40, 0.52, 0.62, 0.72, 0.80, 0.90, 1.0]
+    neck, sac = lesion.size, lesion.size * lesion.swell
+    spread = [
+        0,
+        0.58 * sac,
+        0.93 * sac,
+        sac,
+        0.5 * (sac + neck),
+        0.94 * neck,
+        neck,
+        1.12 * neck,
+        1.45 * neck,
+        1.9 * neck,
+    ]
+    rise = np.array([1.1, 1.05, 0.85, 0.60, 0.38, 0.22, 0.09, 0.02, 0.0, 0.0]) * lesion.depth
+    return PchipInterpolator(knots, spread)(np.minimum(t, 1)), PchipInterpolator(knots, rise)(np.minimum(t, 1))
+
+
+def _stalk(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A round head on a narrower stalk."""
+    knots = [0, 0.2, 0.4, 0.55, 0.68, 0.78, 0.88, 1.0]
+    spread = [*(share * lesion.size for share in (0, 0.6, 0.97, 0.92, 0.62, 0.60, 0.8)), lesion.patch]
+    rise = np.array([1.0, 0.93, 0.75, 0.55, 0.33, 0.15, 0.03, 0.0]) * lesion.depth
+    rise[:3] += np.array([0.5, 0.5, 0.3]) * lesion.size
+    return np.interp(t, knots, spread), -np.interp(t, knots, rise)
+
+
+def _dome(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A broad-based bump."""
+    spread = lesion.patch * t * (1 - 0.25 * np.sin(np.pi * np.clip(t, 0, 1)))
+    cap = np.sqrt(np.clip(1 - (t / 0.85) ** 2, 0, 1))
+    return spread, -lesion.depth * (0.75 * cap + 0.05 * np.clip(1 - t, 0, 1))
 
 
 def _ramp(low: float, high: float, x: np.ndarray) -> np.ndarray:

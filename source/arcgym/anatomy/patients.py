@@ -20,7 +20,7 @@ def colon_1() -> ColonSpec:
     return ColonSpec(
         name="colon_1",
         patient="man, 65 years: slightly redundant sigmoid with sharp angulations, descending diverticula; supine",
-        seed=1,
+        seed=3,
         segments=segments,
         sigmoid_shape="angulated",
     )

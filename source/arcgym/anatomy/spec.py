@@ -74,7 +74,7 @@ class ColonSpec:
     segments: dict[str, SegmentSpec] = field(default_factory=default_segments)
     """Size and features of each segment."""
     sigmoid_shape: str = "plain"
-    """Course of the sigmoid, a key of :data:`arcgym.anatomy.routes.SIGMOID_SHAPES`; its length sets how far it loops."""
+    """Course of the sigmoid, a key of :data:`arcgym.anatomy.routes.SIGMOID_SHAPES`."""
     transverse_sag: float = 0.10
     """How far the middle of the transverse colon hangs below its ends [m]."""
     jitter: float = 0.004
@@ -101,9 +101,9 @@ class ColonSpec:
     """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through everywhere."""
     material: TissueMaterial = TissueMaterial()
     """Tissue of the wall."""
-    visual_rows: int = 630
+    visual_rows: int = 590
     """Cross sections of the fine visual surface."""
-    visual_columns: int = 72
+    visual_columns: int = 68
     """Points around the fine visual surface."""
     proxy_rows: int = 430
     """Cross sections of the surface drawn for policies."""

@@ -74,7 +74,7 @@ class _Reader:
 
     def prim(self, path: str, type_name: str = "") -> Usd.Prim:
         prim = self.usd.GetPrimAtPath(path)
-        if not prim or not prim.IsDefined():
+        if not prim or not prim.IsDefined() or not prim.IsActive():
             have = ", ".join(str(child.GetPath()) for child in self.usd.Traverse()) or "nothing"
             raise self.error(path, "", f"the prim is missing; the stage has {have[:300]}")
         if type_name and prim.GetTypeName() != type_name:

@@ -63,13 +63,17 @@ class Surface:
         radius = radius * np.sqrt(close * (2.0 - close))
         return np.maximum(self._bounded(s, theta, radius), 0.0).reshape(shape)
 
+    def sector(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Returns between which taeniae an angle lies (0 to 2), and the angle from the middle between them [rad]."""
+        angle = np.mod(theta - self.taenia, 2 * np.pi)
+        sector = np.minimum((angle * TAENIAE / (2 * np.pi)).astype(int), TAENIAE - 1)
+        return sector, angle - (sector + 0.5) * 2 * np.pi / TAENIAE
+
     def _folds(self, s: np.ndarray, theta: np.ndarray, mean: np.ndarray, depth: float, min_width: float) -> np.ndarray:
         """Returns the change of radius [m] by taeniae, haustra and folds; none in the rectum."""
         start = self.curve.bounds("sigmoid")[0]
         on = _smooth_step(start - 0.015, start + 0.02, s)
-        angle = np.mod(theta - self.taenia, 2 * np.pi)
-        sector = np.minimum((angle * TAENIAE / (2 * np.pi)).astype(int), TAENIAE - 1)
-        phi = angle - (sector + 0.5) * 2 * np.pi / TAENIAE
+        sector, phi = self.sector(theta)
         drawn_in = 1.0 + 0.05 * on * np.cos(TAENIAE * phi)
         chord = mean * np.cos(np.pi / TAENIAE) / np.maximum(np.cos(phi), 0.5)
         reach = mean - chord + 0.10 * mean * np.clip(np.cos(1.4 * phi), 0.0, 1.0)

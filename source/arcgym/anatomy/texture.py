@@ -20,7 +20,7 @@ SLOPE_RANGE = 1.0
 HEIGHT_RANGE = 0.5
 """Height [mm] that the detail texture's blue encodes from 0 to 255, centred on 0."""
 
-_DETAIL_BITS = np.array([0xFE, 0xFE, 0xFC, 0xFC], np.uint8)
+_DETAIL_BITS = np.array([0xFE, 0xFE, 0xF8, 0xF8], np.uint8)
 """Bits kept of slopes, height and wetness: the rest is noise that would double the size of the file."""
 
 _PIXEL = 0.12

@@ -24,6 +24,8 @@ class _Branch:
     angle: float
     width: float
     steps: int
+    rises: bool = False
+    """Whether it comes up from the depth and so begins thin."""
 
 
 def draw_vessels(rng: np.random.Generator, height: int, width: int, count: int, trunk: float, steps: int) -> np.ndarray:
@@ -54,12 +56,12 @@ def draw_vessels(rng: np.random.Generator, height: int, width: int, count: int, 
 
 def _trunk(rng: np.random.Generator, height: int, width: int, trunk: float, steps: int) -> _Branch:
     x, y, angle = rng.uniform(0, width), rng.uniform(0, height), rng.uniform(0, 2 * np.pi)
-    return _Branch(x, y, angle, trunk * rng.uniform(0.6, 1.0), int(steps * rng.uniform(0.5, 1.0)))
+    return _Branch(x, y, angle, trunk * rng.uniform(0.6, 1.0), int(steps * rng.uniform(0.5, 1.0)), True)
 
 
 def _grow(rng: np.random.Generator, branch: _Branch) -> tuple[np.ndarray, list[_Branch]]:
     """Walks along a smoothly winding vessel and lets side branches off; it ends in a fork."""
-    bend = np.cumsum(rng.normal(0, 0.05, branch.steps)) + 0.5 * np.sin(np.arange(branch.steps) / rng.uniform(2.5, 6))
+    bend = np.cumsum(rng.normal(0, 0.05, branch.steps)) + 0.28 * np.sin(np.arange(branch.steps) / rng.uniform(3, 7))
     angle = branch.angle + bend - bend[0]
     path = np.stack([branch.x + _STEP * np.cumsum(np.cos(angle)), branch.y + _STEP * np.cumsum(np.sin(angle))], 1)
     children: list[_Branch] = []
@@ -92,6 +94,8 @@ def _stroke(pen: ImageDraw.ImageDraw, path: np.ndarray, branch: _Branch, trunk: 
     low, high = path.min(0) - branch.width, path.max(0) + branch.width
     shifts = [np.arange(-np.floor(high[k] / size[k]), -np.floor(low[k] / size[k]) + 1) for k in (0, 1)]
     thickness = np.linspace(1.0, 0.8, len(path)) * branch.width * _SUPERSAMPLE
+    if branch.rises:
+        thickness *= np.minimum(1.0, np.linspace(0.1, 3.0, len(path)))
     for dx in shifts[0] * size[0]:
         for dy in shifts[1] * size[1]:
             points = (path + [dx, dy]) * _SUPERSAMPLE

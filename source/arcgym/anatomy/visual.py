@@ -9,13 +9,12 @@ import numpy as np
 from .lesions import Lesion, distance_to, shape_lesion
 from .measures import face_normals
 from .refine import refine
+from .rows import row_positions
 from .stage_types import VisualMesh, WallMesh
 from .surface import DOME_LENGTH, Surface
 
 TEXTURE_LENGTH = 0.24
 """Length of colon that one repeat of the texture covers [m]."""
-
-_MIN_ROW_WIDTH = 0.0012
 
 
 def sample_visual(
@@ -29,14 +28,15 @@ def sample_visual(
         lesions: Diverticula and polyps to shape.
         rows: Cross sections, closer together where there are folds.
         columns: Points around the lumen.
-        refinements: How often triangles on lesions are split into four.
+        refinements: How often triangles on lesions are split into four; from the third time on at their rims only.
     """
     s, theta, faces, dome = _parameter_grid(surface, rows, columns)
     grid = np.stack([s, theta, dome], 1)
-    for _ in range(refinements):
+    for level in range(refinements):
         near = np.zeros(len(grid), bool)
         for lesion in lesions:
-            near |= distance_to(surface, lesion, grid[:, 0], grid[:, 1]) < 1.15 * lesion.patch
+            share = distance_to(surface, lesion, grid[:, 0], grid[:, 1]) / lesion.patch
+            near |= (share < 1.15) if level < 2 else (share > 0.5) & (share < 0.9)
         grid, faces = refine(grid, faces, near[faces].any(1))
     s, theta, dome = grid.T
     width = 0.0 if refinements > 1 else 0.8 * surface.curve.length / rows
@@ -111,32 +111,19 @@ def _parameter_grid(surface: Surface, rows: int, columns: int) -> tuple[np.ndarr
 
     The seam of the texture at angle 0 and the edge of the dome have their vertices twice, once for each chart.
     """
-    arc = _row_positions(surface, rows)
-    edge = int(np.searchsorted(arc, surface.curve.length - DOME_LENGTH))
-    theta = np.linspace(0, 2 * np.pi, columns + 1)
+    edge, theta = surface.curve.length - DOME_LENGTH, np.linspace(0, 2 * np.pi, columns + 1)
+    dome_rows = max(6, rows // 40)
+    polar = np.linspace(0.0, 0.5 * np.pi, dome_rows)
+    tube = row_positions(surface, theta, 0.0, edge, rows - dome_rows)
+    cap = np.repeat((edge + DOME_LENGTH * np.sin(polar))[:, None], columns + 1, 1)
+    cap[-1] = surface.curve.length
     parts, faces, offset = [], [], 0
-    for part, mark in ((arc[: edge + 1], 0.0), (arc[edge:], 1.0)):
-        s, angle = (x.ravel() for x in np.meshgrid(part, theta, indexing="ij"))
-        parts.append(np.stack([s, angle, np.full_like(s, mark)], 1))
-        faces.append(grid_triangles(len(part), columns + 1) + offset)
-        offset += len(s)
+    for s, mark in ((tube, 0.0), (cap, 1.0)):
+        parts.append(np.stack([s, np.broadcast_to(theta, s.shape), np.full_like(s, mark)], -1).reshape(-1, 3))
+        faces.append(grid_triangles(len(s), columns + 1) + offset)
+        offset += s.size
     s, angle, dome = np.concatenate(parts).T
     return s, angle, np.concatenate(faces), dome
-
-
-def _row_positions(surface: Surface, rows: int) -> np.ndarray:
-    """Returns arc lengths of the cross sections [m]: about three times as dense on folds as between them."""
-    length = surface.curve.length
-    fine = np.linspace(0, length, 8000)
-    density = np.full_like(fine, 0.45)
-    crests = [(row.s, row.width) for row in surface.rows]
-    crests += [(np.array([valve.s for valve in surface.valves]), np.array([valve.width for valve in surface.valves]))]
-    for s, width in crests:
-        near = np.abs(fine[:, None] - s) / (width + _MIN_ROW_WIDTH)
-        density += np.exp(-0.5 * near**2).sum(1)
-    density[fine > length - DOME_LENGTH] += 1.0
-    count = np.r_[0.0, np.cumsum(0.5 * (density[1:] + density[:-1]))]
-    return np.interp(np.linspace(0, count[-1], rows), count, fine)
 
 
 def _shaped_points(
