@@ -96,8 +96,8 @@ PAPER = LumenCfg()
 """The constants of the original code, in metres (0.01 of its stage units is 1 mm of colon).
 
 In a metric colon ``s_1`` and ``s_3`` are one and ``s_2`` is zero unless the wall is closer than about 1 cm. So
-``s_o`` is 0.2 nearly everywhere and ``R`` follows the centring: 0.51 looking along the lumen, 0.32 at 45 degrees
-off, 0.31, 0.08 and -0.13 facing the wall at 12, 6 and 3 mm (means over colon 1, measured with
+``s_o`` is 0.2 nearly everywhere and ``R`` follows the centring: about 0.5 looking along the lumen, 0.3 at 45 degrees
+off, and 0.3, 0.1 and -0.1 facing the wall at 12, 6 and 3 mm (means over colon 1, measured with
 scripts/benchmarks/lumen_reward.py)."""
 
 METRIC = LumenCfg(
@@ -114,10 +114,10 @@ METRIC = LumenCfg(
 )
 """The same equations with constants for a colon of real size and a lens of 150 degrees.
 
-The ramps of ``s_1`` and ``s_3`` lie between what a camera sees facing the wall (at 12 mm the largest depth is 27 mm,
-the contrast 17 mm) and along the lumen (112 and 97 mm). The mixing weight is 0.9 because the deep region of an open
-lumen is a few per cent of the image, which bounds ``s_o`` by about ``2 mix - 1``. ``R`` is 0.78 looking along the
-lumen, 0.75, 0.69, 0.61, 0.43 and -0.15 at 15, 30, 45, 60 and 90 degrees off, and -0.27, -0.37 and -0.48 facing the
+The ramps of ``s_1`` and ``s_3`` lie between what a camera sees facing the wall (at 12 mm the largest depth is 3 cm,
+the contrast 2 cm) and along the lumen (11 and 9 cm). The mixing weight is 0.9 because the deep region of an open
+lumen is a few per cent of the image, which bounds ``s_o`` by about ``2 mix - 1``. ``R`` is about 0.8 looking along
+the lumen, 0.75, 0.7, 0.6, 0.45 and -0.15 at 15, 30, 45, 60 and 90 degrees off, and -0.25, -0.35 and -0.45 facing the
 wall at 12, 6 and 3 mm (means over colon 1, measured with scripts/benchmarks/lumen_reward.py)."""
 
 LUMEN_PRESETS: dict[str, LumenCfg] = {"paper": PAPER, "metric": METRIC}
