@@ -1,0 +1,136 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A capsule of radius 5 mm and 20 mm length placed by hand in the tube, parallel to one of its eight flat sides."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import torch
+import warp as wp
+from tiny_sim import TinySim
+
+from arcgym.sim import ContactCfg, Simulation
+from arcgym.sim.contact_kernels import link_forces
+from arcgym.sim.wall_kernels import residual
+
+APOTHEM = 0.020 * math.cos(math.pi / 8)
+"""Distance of the tube's flat sides from its axis [m]."""
+REACH = 0.005 + ContactCfg().wall_radius
+"""Distance from the capsule's axis at which it touches [m]."""
+SIDE = np.array([math.cos(math.pi / 8), math.sin(math.pi / 8), 0.0])
+"""Direction of the side between the vertices at 0 and 45 degrees."""
+
+
+@pytest.fixture(scope="module")
+def sim(tiny_sim: TinySim) -> Simulation:
+    return tiny_sim("capsule")
+
+
+def place(sim: Simulation, depth: float, direction: np.ndarray = SIDE, z: float = 0.1) -> None:
+    """Put the capsule so that it overlaps the side in ``direction`` by ``depth`` [m]; find its contacts."""
+    position = (APOTHEM - REACH + depth) * direction + [0.0, 0.0, z]
+    sim.endoscope.data.joint_pos[0] = torch.tensor([*position, 0.0, 0.0, 0.0, 1.0])
+    sim.endoscope.data.joint_vel.zero_()
+    sim.forward()
+    sim.contact.detect(sim.nodal_pos, sim.state.body_q)
+
+
+def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.ndarray:
+    """Force of the wall on the capsule [N]."""
+    total = wp.zeros(1, dtype=wp.vec3, device="cpu")
+    twist = wp.array([[*link_velocity, 0.0, 0.0, 0.0]], dtype=wp.spatial_vector, device="cpu")
+    contact = sim.contact
+    args = [sim.state.body_q, twist, sim.model.body_mass, sim.nodal_pos, sim.nodal_vel, contact.links]
+    args += [contact.records, contact.law, contact.friction, 0.0, sim.cfg.dt / 2, 1.0, 1, sim.state.body_f, total]
+    wp.launch(link_forces, 1, args, device="cpu")
+    return total.numpy()[0]
+
+
+def force_on_wall(sim: Simulation) -> np.ndarray:
+    """Force on each wall vertex at rest [N], shape (V, 3): contact alone, friction left out."""
+    wall, contact = sim.wall, sim.contact
+    out = wp.zeros_like(sim.nodal_pos)
+    args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+    args += [contact.links, contact.law, 1, sim.state.body_q, sim.nodal_pos, out]
+    wp.launch(residual, (1, sim.colon.num_nodes), args, device="cpu")
+    return out.numpy()
+
+
+def count(sim: Simulation) -> int:
+    return int(sim.contact.records.count.numpy()[0])
+
+
+def test_no_records_in_the_middle_of_the_lumen(sim: Simulation) -> None:
+    place(sim, depth=-0.012)
+    assert count(sim) == 0
+    np.testing.assert_array_equal(wall_force(sim), 0.0)
+
+
+def test_records_without_force_just_before_touching(sim: Simulation) -> None:
+    place(sim, depth=-0.001)
+    assert count(sim) > 0
+    np.testing.assert_array_equal(wall_force(sim), 0.0)
+
+
+def test_force_is_stiffness_times_depth_for_each_record(sim: Simulation) -> None:
+    place(sim, depth=1.0e-4)
+    # 2000 N/m * 0.1 mm = 0.2 N a record, towards the axis; a 10 mm axis spans at most three bands of 12.5 mm.
+    assert 1 <= count(sim) <= 6
+    np.testing.assert_allclose(wall_force(sim), -0.2 * count(sim) * SIDE, atol=2e-3 * count(sim))
+
+
+def test_record_normals_point_outwards(sim: Simulation) -> None:
+    place(sim, depth=1.0e-4)
+    normals = sim.contact.records.normal.numpy()[: count(sim)]
+    np.testing.assert_allclose(normals, np.tile(SIDE, (count(sim), 1)), atol=1e-5)
+
+
+def test_each_touch_lies_on_the_lumen_surface(sim: Simulation) -> None:
+    place(sim, depth=1.0e-4)
+    records = sim.contact.records
+    faces, bary = records.face.numpy()[: count(sim)], records.bary.numpy()[: count(sim)]
+    points = np.einsum("nk,nki->ni", bary, sim.nodal_pos.numpy()[faces])
+    np.testing.assert_allclose(points @ SIDE, APOTHEM, atol=1e-6)
+    np.testing.assert_allclose(bary.sum(axis=1), 1.0, atol=1e-5)
+
+
+def test_action_equals_reaction(sim: Simulation) -> None:
+    place(sim, depth=3.0e-4)
+    np.testing.assert_allclose(force_on_wall(sim).sum(axis=0), -wall_force(sim), rtol=1e-3, atol=1e-4)
+
+
+def test_a_capsule_outside_the_wall_is_pushed_back_in(sim: Simulation) -> None:
+    place(sim, depth=REACH + 0.002)  # its axis is 2 mm beyond the wall
+    assert wall_force(sim) @ SIDE < -2000.0 * REACH
+
+
+def test_a_capsule_outside_comes_back(tiny_sim: TinySim) -> None:
+    sim = tiny_sim("capsule")
+    place(sim, depth=REACH + 0.002)
+    sim.step(96)
+    assert sim.endoscope.data.body_pos_w[0, 0].numpy() @ SIDE < APOTHEM - REACH + 2e-4
+
+
+def test_a_sliding_capsule_feels_coulomb_friction(sim: Simulation) -> None:
+    # Above the slip velocity of 10 mm/s friction is 0.1 times the normal force, against the motion.
+    place(sim, depth=1.0e-5)
+    force = wall_force(sim, link_velocity=(0.0, 0.0, 0.05))
+    assert force[2] == pytest.approx(0.1 * force @ SIDE, rel=1e-3)
+
+
+def test_friction_is_viscous_below_the_slip_velocity(sim: Simulation) -> None:
+    # At half the slip velocity the factor is (2 - 1/2) * 1/2 = 3/4.
+    place(sim, depth=1.0e-5)
+    force = wall_force(sim, link_velocity=(0.0, 0.0, 0.005))
+    assert force[2] == pytest.approx(0.75 * 0.1 * force @ SIDE, rel=1e-3)
+
+
+def test_a_link_without_a_ring_is_searched_along_the_whole_colon(sim: Simulation) -> None:
+    place(sim, depth=1.0e-4, z=0.15)
+    sim.contact.ring.fill_(-1)
+    sim.contact.detect(sim.nodal_pos, sim.state.body_q)
+    assert sim.contact.ring.numpy()[0, 0] == 12  # 150 mm / 12.5 mm
+    assert count(sim) >= 1
