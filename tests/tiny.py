@@ -8,10 +8,11 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
+
 from arcgym.anatomy import Centerline, ColonStage, TissueMaterial, VisualMesh, segment_index, write_colon
 from arcgym.anatomy.visual import TEXTURE_LENGTH, grid_triangles, skin_to_rings, smooth_normals
 from arcgym.anatomy.wall import build_wall
-from PIL import Image
 
 TINY_SEGMENTS = ("rectum", "sigmoid", "descending", "splenic", "transverse")
 

@@ -7,7 +7,12 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from arcgym.assets.endoscope_spec import EndoscopeSpec
 
 DEFAULT_OUT = Path(__file__).resolve().parents[2] / "assets" / "usd"
 
@@ -25,18 +30,20 @@ def author_colon(name: str, out: Path) -> None:
     print(f"  length {stage.length:.3f} m, wall {wall} vertices, render {visual}, proxy {proxy}")
 
 
-def asset_authors() -> dict[str, Callable[[Path], None]]:
+def asset_authors() -> dict[str, Callable[[Path], object]]:
     """Returns the function that writes each asset below a folder, by asset name."""
     from arcgym.anatomy.patients import PATIENTS
     from arcgym.assets.endoscope_spec import endoscope_specs
     from arcgym.assets.endoscope_stage import write_endoscope
 
-    authors: dict[str, Callable[[Path], None]] = {}
-    for name in PATIENTS:
-        authors[name] = lambda out, name=name: author_colon(name, out)
+    authors: dict[str, Callable[[Path], object]] = {name: partial(author_colon, name) for name in PATIENTS}
     for spec in endoscope_specs():
-        authors[spec.name] = lambda out, spec=spec: write_endoscope(spec, out / "endoscopes" / f"{spec.name}.usda")
+        authors[spec.name] = partial(_author_endoscope, write_endoscope, spec)
     return authors
+
+
+def _author_endoscope(write: Callable[..., Path], spec: EndoscopeSpec, out: Path) -> None:
+    write(spec, out / "endoscopes" / f"{spec.name}.usda")
 
 
 def main() -> None:

@@ -9,14 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arcgym.anatomy import ColonStage, inner_faces, read_colon, write_colon
-from arcgym.anatomy.generate import make_colon
-from arcgym.anatomy.patients import PATIENTS
-from arcgym.anatomy.validate import failed, validate_stage
 from PIL import Image
 from pxr import Usd, UsdValidation
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+
+from arcgym.anatomy import ColonStage, inner_faces, read_colon, write_colon
+from arcgym.anatomy.generate import make_colon
+from arcgym.anatomy.patients import PATIENTS
+from arcgym.anatomy.validate import failed, validate_stage
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tiny import tiny_colon_stage
+
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generate import AnatomyError, make_colon
 from arcgym.anatomy.measures import tet_quality
@@ -18,7 +20,6 @@ from arcgym.anatomy.texture import make_textures
 from arcgym.anatomy.validate import Check, loop_gap, ring_radii
 from arcgym.anatomy.visual import skin_to_rings
 from arcgym.anatomy.wall import polygon_triangles
-from tiny import tiny_colon_stage
 
 
 def test_spec_names_the_value_out_of_range() -> None:
@@ -67,11 +68,21 @@ def test_ring_radius_is_that_of_the_inscribed_circle() -> None:
     assert ring_radii(tiny_colon_stage().wall) == pytest.approx(0.020 * np.cos(np.pi / 8), rel=1e-5)
 
 
-def test_gap_of_a_horseshoe() -> None:
-    """Bent by 1.6 turns of radius 0.2/(1.6 x 2 pi), a thin tube comes back to itself: no gap; a straight one has none."""
+def test_straight_tube_has_no_other_loop_within_reach() -> None:
     assert loop_gap(tiny_colon_stage().wall) == 0.05
-    thin = tiny_colon_stage(length=0.6, radius=0.01, rings=60, bend=2 * np.pi)
-    assert loop_gap(thin.wall) < 0.003
+
+
+def test_gap_of_a_horseshoe() -> None:
+    """A turn of 180 deg over 0.2 m has a radius of 63.7 mm, its inner wall one of 63.7 - 22 = 41.7 mm.
+
+    Other loops begin beyond 1.7 x 44 = 75 mm, at 6 rings of 12.5 mm, an angle of 1.178 rad: 2 x 41.7 sin(0.589) = 46.3.
+    """
+    assert loop_gap(tiny_colon_stage(bend=np.pi, capped=False).wall) == pytest.approx(0.0463, abs=0.0002)
+
+
+def test_gap_of_a_closed_ring() -> None:
+    ring = tiny_colon_stage(length=0.6, radius=0.01, rings=60, bend=2 * np.pi)
+    assert loop_gap(ring.wall) < 0.003
 
 
 def test_skin_weights_halfway_between_rings_and_sectors() -> None:

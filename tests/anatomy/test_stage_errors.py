@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from arcgym.anatomy import StageError, read_colon, write_colon
 from pxr import Usd, UsdGeom
 from tiny import tiny_colon_stage, write_tiny_colon
+
+from arcgym.anatomy import StageError, read_colon, write_colon
 
 
 def _broken(folder: Path, change: Callable[[Usd.Stage], None]) -> Path:

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tiny import tiny_colon_stage, write_tiny_colon
+
 from arcgym.anatomy import ColonStage, read_colon
 from arcgym.anatomy.measures import tet_volumes
 from arcgym.anatomy.wall import inner_faces
-from tiny import tiny_colon_stage, write_tiny_colon
 
 
 @pytest.mark.parametrize("part", ["wall", "visual", "visual_proxy", "centerline"])

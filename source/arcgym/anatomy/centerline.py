@@ -73,11 +73,15 @@ def _relax(route: np.ndarray, edge: np.ndarray, radius: np.ndarray, hold: np.nda
 
 def _push_apart(points: np.ndarray, need: np.ndarray, other_loop: np.ndarray) -> np.ndarray:
     """Returns the shift of each point away from the points of other loops that are nearer than ``need``."""
-    offset = points[:, None] - points[None]
-    distance = np.sqrt(np.einsum("ijk,ijk->ij", offset, offset)) + 1e-9
-    overlap = np.where(other_loop, np.maximum(need - distance, 0.0), 0.0)
-    share = overlap / (overlap.sum(1, keepdims=True) + 1e-12)
-    return 0.3 * np.einsum("ij,ijk->ik", share * overlap / distance, offset)
+    square = (points**2).sum(1)
+    distance2 = square[:, None] + square[None] - 2.0 * points @ points.T
+    a, b = np.nonzero(other_loop & (distance2 < need**2))
+    offset = points[a] - points[b]
+    distance = np.linalg.norm(offset, axis=1) + 1e-9
+    overlap = need[a, b] - distance
+    total = np.bincount(a, overlap, len(points)) + 1e-12
+    push = (overlap**2 / (total[a] * distance))[:, None] * offset
+    return 0.3 * np.stack([np.bincount(a, push[:, k], len(points)) for k in range(3)], 1)
 
 
 def _unbend(points: np.ndarray, edge: np.ndarray, radius: np.ndarray) -> np.ndarray:

@@ -32,7 +32,7 @@ def write_textures(folder: Path, seed: int) -> tuple[Path, Path]:
     albedo, detail = make_textures(seed)
     paths = folder / "mucosa_albedo.jpg", folder / "mucosa_detail.png"
     Image.fromarray(albedo).save(paths[0], quality=92, subsampling=0)
-    Image.fromarray(detail).save(paths[1], optimize=True)
+    Image.fromarray(detail).save(paths[1], compress_level=7)
     return paths
 
 
