@@ -45,10 +45,11 @@ apidoc_modules = [
         "module_first": True,
         "no_headings": False,
         "exclude_patterns": [_KERNELS],
-        "automodule_options": ["members", "show-inheritance", "ignore-module-all"],
     }
     for package in ("arcgym", "arcgym_tasks")
 ]
+apidoc_automodule_options = {"members", "show-inheritance"}
+autodoc_default_options = {"ignore-module-all": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True

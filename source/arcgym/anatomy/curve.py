@@ -42,11 +42,11 @@ class Curve:
         return np.linalg.norm(self.curvature_vector, axis=1)
 
     def position(self, s: np.ndarray) -> np.ndarray:
-        """Returns positions at arc lengths ``s`` [m], shape (*s.shape, 3)."""
+        """Returns positions at arc lengths ``s`` [m], shape ``(*s.shape, 3)``."""
         return self._spline(np.clip(s, 0, self.length))
 
     def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Returns unit tangent, normal and binormal at ``s``, each of shape (*s.shape, 3)."""
+        """Returns unit tangent, normal and binormal at ``s``, each of shape ``(*s.shape, 3)``."""
         tangent, normal = self.interpolate(s, self._tangent), self.interpolate(s, self._normal)
         tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
         normal -= (normal * tangent).sum(-1, keepdims=True) * tangent

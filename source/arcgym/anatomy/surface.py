@@ -34,7 +34,7 @@ class Surface:
         return np.interp(s, self.curve.s, self.mean_radius)
 
     def points(self, s: np.ndarray, theta: np.ndarray, depth: float = 1.0, min_width: float = 0.0) -> np.ndarray:
-        """Returns surface points [m], shape (*s.shape, 3); arguments as for :meth:`radius`."""
+        """Returns surface points [m], shape ``(*s.shape, 3)``; arguments as for :meth:`radius`."""
         return self.curve.position(s) + self.radius(s, theta, depth, min_width)[..., None] * self.outwards(s, theta)
 
     def outwards(self, s: np.ndarray, theta: np.ndarray) -> np.ndarray:

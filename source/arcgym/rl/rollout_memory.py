@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import torch
 from tensordict import TensorDict
 
@@ -20,7 +22,7 @@ def rollout_bytes(obs: TensorDict, num_actions: int, num_steps: int) -> int:
         num_actions: Size of the action.
         num_steps: Steps of one rollout.
     """
-    tensors: list[torch.Tensor] = list(obs.values())
+    tensors = [cast(torch.Tensor, value) for value in obs.values()]
     images_and_vectors = sum(tensor.element_size() * tensor.numel() for tensor in tensors)
     actions_mean_std = 3 * num_actions
     return num_steps * (images_and_vectors + 4 * obs.batch_size[0] * (actions_mean_std + _SCALARS))

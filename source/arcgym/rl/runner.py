@@ -77,7 +77,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             The ``infos`` saved with it.
         """
         infos = super().load(path, load_cfg, strict, map_location or self.device) or {}
-        self.completed_iterations = infos.get("completed_iterations", self.current_learning_iteration)
+        self.completed_iterations = int(infos.get("completed_iterations", 0))
         self.current_learning_iteration = self.completed_iterations
         self.best_reward = infos.get("best_reward", self.best_reward)
         self.env.unwrapped.common_step_counter = infos.get("common_step_counter", 0)  # type: ignore[attr-defined]

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from typing import Any
 
 import torch
@@ -68,7 +67,7 @@ class InteractiveScene:
             raise KeyError(f"The scene has no {key!r}. {did_you_mean(key, self.keys())}")
         return self.sensors[key] if key in self.sensors else getattr(self, key)
 
-    def reset(self, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Make the sensors forget the past of some worlds; states are reset by events."""
         for sensor in self.sensors.values():
             sensor.reset(env_ids)

@@ -8,7 +8,7 @@ import hashlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -59,7 +59,7 @@ class SnapshotSet:
         """Write to a compressed ``.npz`` file, whole or not at all."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
-        stacked = {k: np.stack([s.arrays[k] for s in self.snapshots]) for k in self.snapshots[0].arrays}
+        stacked: dict[str, Any] = {k: np.stack([s.arrays[k] for s in self.snapshots]) for k in self.snapshots[0].arrays}
         partial = path.with_suffix(".partial.npz")
         np.savez_compressed(partial, names=np.array(self.names), fingerprint=np.array(self.fingerprint), **stacked)
         os.replace(partial, path)
