@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from arcgym.sim.geometry_kernels import closest_on_triangle, segment_parameter, segment_segment, segment_triangle
+
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import warp as wp
 

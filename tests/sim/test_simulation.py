@@ -1,0 +1,200 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two worlds, each a proximal scope that bends its tip against the wall: replay, repetition, resets, broken worlds."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+from tiny_sim import TinySim
+
+from arcgym.sim import Simulation, SimulationCfg
+
+SOFT = {"youngs_modulus": 5.0e5}
+
+
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
+    """A tube of 11 mm radius, in which a bent tip soon meets the wall."""
+    return TinySim(tmp_path_factory.mktemp("narrow"), radius=0.011)
+
+
+def build(narrow: TinySim, num_envs: int = 2, **cfg: object) -> Simulation:
+    return narrow(num_envs=num_envs, colon=SOFT, scope={"bending_rate": 4.0}, **cfg)
+
+
+def drive(sim: Simulation, calls: list[int]) -> None:
+    """Push on and bend the tip against the wall, both worlds differently."""
+    n = sim.num_envs
+    sim.endoscope.set_insertion_command(torch.full((n,), 0.1), torch.full((n,), 0.2))
+    sim.endoscope.set_bending_command(torch.linspace(0.8, 1.2, n), torch.linspace(0.3, 0.1, n))
+    for count in calls:
+        sim.step(count)
+
+
+def state(sim: Simulation) -> dict[str, torch.Tensor]:
+    """All that a world's future depends on, and what managers read."""
+    data = sim.endoscope.data
+    read = {
+        "body_pos": data.body_pos_w,
+        "body_quat": data.body_quat_w,
+        "tip": data.tip_pos_w,
+        "arc": data.tip_arc_length,
+        "force": data.wall_force_w,
+        "centres": sim.colon.data.centerline_pos_w,
+    }
+    return {name: array.clone() for name, array in {**sim.world_arrays(), **read}.items()}
+
+
+def differing(a: Simulation | dict, b: Simulation | dict, world: int | slice = slice(None)) -> list[str]:
+    """Names of the arrays that are not the same bit for bit."""
+    a, b = (s if isinstance(s, dict) else state(s) for s in (a, b))
+    return [name for name in a if not torch.equal(a[name][world], b[name][world])]
+
+
+def test_the_driven_scope_touches_the_wall(narrow: TinySim) -> None:
+    sim = build(narrow)
+    drive(sim, [144, 48])
+    assert (sim.endoscope.data.wall_force_w.norm(dim=-1).amax(dim=1) > 1.0).all()
+    assert (sim.colon.data.nodal_displacement.amax(dim=1) > 1e-4).all()
+
+
+def test_graph_replay_equals_eager_bit_for_bit(narrow: TinySim) -> None:
+    graph, eager = build(narrow, use_graph=True), build(narrow, use_graph=False)
+    for sim in (graph, eager):
+        drive(sim, [144, 10])
+    assert differing(graph, eager) == []
+
+
+def test_same_inputs_give_the_same_result(narrow: TinySim) -> None:
+    first, second = build(narrow), build(narrow)
+    for sim in (first, second):
+        drive(sim, [144])
+    assert differing(first, second) == []
+
+
+def test_one_call_of_two_steps_equals_two_calls(narrow: TinySim) -> None:
+    together, apart = build(narrow), build(narrow)
+    drive(together, [144, 2])
+    drive(apart, [144, 1, 1])
+    forces = {"force"}  # averaged over one call
+    assert set(differing(together, apart)) <= forces
+
+
+def test_a_world_does_not_depend_on_its_neighbours(narrow: TinySim) -> None:
+    alone, pair = build(narrow, num_envs=1), build(narrow, num_envs=2)
+    drive(alone, [144])
+    pair.endoscope.set_insertion_command(torch.tensor([0.1, -0.1]), torch.tensor([0.2, 0.0]))
+    pair.endoscope.set_bending_command(torch.tensor([0.8, -1.0]), torch.tensor([0.3, 0.0]))
+    pair.step(144)
+    assert differing(alone, pair, world=0) == []
+
+
+def test_forces_are_averaged_over_the_call(narrow: TinySim) -> None:
+    together, apart = build(narrow), build(narrow)
+    drive(together, [144, 4])
+    drive(apart, [144])
+    means, bases = [], []
+    for _ in range(4):
+        apart.step(1)
+        means.append(apart.endoscope.data.wall_force_w.clone())
+        bases.append(apart.endoscope.data.base_force.clone())
+    means = torch.stack(means)
+    torch.testing.assert_close(together.endoscope.data.wall_force_w, means.mean(dim=0))
+    torch.testing.assert_close(together.endoscope.data.wall_force_peak, means.norm(dim=-1).amax(dim=0))
+    torch.testing.assert_close(together.endoscope.data.base_force, torch.stack(bases).mean(dim=0))
+
+
+def reset_world_1(sim: Simulation) -> None:
+    sim.write_snapshot(-1, [1])
+    sim.forward()
+
+
+def test_reset_leaves_the_other_world_as_it_was(narrow: TinySim) -> None:
+    sim = build(narrow)
+    drive(sim, [144])
+    before = state(sim)
+    reset_world_1(sim)
+    assert differing(before, sim, world=0) == []
+
+
+def test_reset_makes_a_world_like_new(narrow: TinySim) -> None:
+    sim, fresh = build(narrow), build(narrow)
+    drive(sim, [144])
+    reset_world_1(sim)
+    assert differing(fresh, sim, world=1) == []
+
+
+def test_after_a_reset_both_worlds_go_on_as_if_alone(narrow: TinySim) -> None:
+    sim, undisturbed, fresh = (build(narrow) for _ in range(3))
+    for one in (sim, undisturbed):
+        drive(one, [144])
+    reset_world_1(sim)
+    for one in (sim, undisturbed, fresh):
+        drive(one, [10])
+    assert differing(undisturbed, sim, world=0) == []
+    assert differing(fresh, sim, world=1) == []
+
+
+def test_reset_clears_commands_and_forces(narrow: TinySim) -> None:
+    sim = build(narrow)
+    drive(sim, [144])
+    reset_world_1(sim)
+    data, actuation = sim.endoscope.data, sim.actuation
+    assert not data.wall_force_w[1].any() and not data.wall_force_peak[1].any() and not data.base_force[1].any()
+    assert actuation.insertion_velocity.numpy()[1] == 0.0
+    assert actuation.insertion_velocity.numpy()[0] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("broken", ["wall", "scope"])
+def test_a_broken_world_is_flagged_and_harms_no_other(narrow: TinySim, broken: str) -> None:
+    sim, undisturbed = build(narrow), build(narrow)
+    for one in (sim, undisturbed):
+        drive(one, [48])
+    array = sim.colon.data.nodal_pos_w[1, 100] if broken == "wall" else sim.endoscope.data.joint_pos[1]
+    array.fill_(float("nan"))
+    for one in (sim, undisturbed):
+        one.step(10)
+    assert sim.non_finite.tolist() == [False, True]
+    assert differing(undisturbed, sim, world=0) == []
+
+
+@pytest.mark.parametrize("broken", ["wall", "scope"])
+def test_a_broken_world_is_mended_by_a_reset(narrow: TinySim, broken: str) -> None:
+    sim, fresh = build(narrow), build(narrow)
+    drive(sim, [48])
+    array = sim.colon.data.nodal_pos_w[1, 100] if broken == "wall" else sim.endoscope.data.joint_pos[1]
+    array.fill_(float("nan"))
+    sim.step(10)
+    reset_world_1(sim)
+    assert sim.non_finite.tolist() == [False, False]
+    for one in (sim, fresh):
+        drive(one, [10])
+    assert differing(fresh, sim, world=1) == []
+
+
+def test_a_world_that_left_the_room_is_flagged(narrow: TinySim) -> None:
+    sim = build(narrow)
+    sim.colon.data.nodal_pos_w[0, 100, 1] = 11.0
+    sim.forward()
+    assert sim.non_finite.tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"solver": "jelly"}, "'jelly'; choose 'two_level' or 'newton'"),
+        ({"scope_substeps": 3}, "is 3; it must be even and at least 2"),
+        ({"scope_substeps": 0}, "is 0; it must be even"),
+        ({"dt": 0.1}, "is 0.1 s; it must be positive and at most 1/60 s"),
+        ({"mass_scaling": 0.0}, "mass_scaling is 0.0; it must be positive"),
+    ],
+)
+def test_impossible_settings_are_refused(changes: dict, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        SimulationCfg(**changes)
+
+
+def test_no_worlds_are_refused(narrow: TinySim) -> None:
+    with pytest.raises(ValueError, match="num_envs is 0; at least one"):
+        build(narrow, num_envs=0)
