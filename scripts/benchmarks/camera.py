@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import time
 from typing import Any
 
 import numpy as np
+from _common import median_ms
 
 
 def parse_args() -> argparse.Namespace:
@@ -70,28 +70,15 @@ def centerline_poses(centerline: Any, count: int) -> np.ndarray:
 
 def time_updates(stage: Any, num_envs: int, size: int, args: argparse.Namespace) -> dict[str, float]:
     """Times skinning with refit, drawing, and the whole update of one configuration."""
-    import warp as wp
-
     from arcgym.sensors import EndoscopeCamera, EndoscopeCameraCfg
 
     scene = RestingScene(stage, num_envs, args.device)
     camera = EndoscopeCamera(EndoscopeCameraCfg(width=size, height=size, samples=args.samples))
     camera.initialize(scene)
 
-    def median_ms(action: Any) -> float:
-        action()
-        wp.synchronize_device(args.device)
-        times = []
-        for _ in range(args.repeats):
-            start = time.perf_counter()
-            action()
-            wp.synchronize_device(args.device)
-            times.append(time.perf_counter() - start)
-        return 1.0e3 * float(np.median(times))
-
-    update = median_ms(camera.update)
-    draw = median_ms(camera.draw)
-    skin = median_ms(lambda: camera.surface.update(scene["colon"].nodal_pos_wp))
+    update = median_ms(camera.update, args.device, args.repeats)
+    draw = median_ms(camera.draw, args.device, args.repeats)
+    skin = median_ms(lambda: camera.surface.update(scene["colon"].nodal_pos_wp), args.device, args.repeats)
     return {
         "num_envs": num_envs,
         "size": size,
