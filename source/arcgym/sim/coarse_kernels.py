@@ -13,8 +13,6 @@ from arcgym.sim.geometry_kernels import triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
 
 UNKNOWNS = wp.constant(9)
-Block = wp.types.matrix(shape=(9, 9), dtype=float)
-Unknowns = wp.types.vector(length=9, dtype=float)
 
 
 @wp.struct
@@ -68,6 +66,7 @@ def assemble(
     rotation: wp.array2d(dtype=wp.mat33),
     stiffness_scale: wp.array(dtype=float),
     inv_dt2: float,
+    shift: float,
     records: ContactRecords,
     links: LinkShapes,
     law: ContactLaw,
@@ -96,6 +95,7 @@ def assemble(
                     o += turn[i, i2] * space.coupling[r, 3 * i2 + m, 3 * j2 + n] * rotation[w, r + 1][j, j2]
         diagonal[w, r, a, c] = scale * s + inv_dt2 * space.mass[r, a, c] + space.anchor[r, a, c]
         upper[w, r, a, c] = scale * o
+    diagonal[w, r, a, a] = diagonal[w, r, a, a] * (1.0 + shift) + 1.0e-6
     total = float(0.0)
     base = w * space.vertices
     for k in range(space.members.shape[1]):
@@ -131,109 +131,6 @@ def assemble(
                         n = c - 3 * j
                         upper[w, r, a, c] = upper[w, r, a, c] + mine * t.normal[j] * other[n]
             slot = records.ring_next[slot]
-
-
-@wp.func
-def cholesky(a: Block) -> Block:
-    """Lower factor of a positive definite block; reads its lower triangle."""
-    out = Block()
-    for j in range(9):
-        d = a[j, j]
-        for k in range(j):
-            d -= out[j, k] * out[j, k]
-        d = wp.sqrt(wp.max(d, 1.0e-6))
-        out[j, j] = d
-        for i in range(j + 1, 9):
-            e = a[i, j]
-            for k in range(j):
-                e -= out[i, k] * out[j, k]
-            out[i, j] = e / d
-    return out
-
-
-@wp.func
-def forward_solve(lower: Block, b: Unknowns) -> Unknowns:
-    """Solve ``lower x = b``."""
-    out = Unknowns()
-    for j in range(9):
-        s = b[j]
-        for k in range(j):
-            s -= lower[j, k] * out[k]
-        out[j] = s / lower[j, j]
-    return out
-
-
-@wp.func
-def forward_solve_block(lower: Block, b: Block) -> Block:
-    """Solve ``lower X = b``, all columns."""
-    out = Block()
-    for j in range(9):
-        for c in range(9):
-            s = b[j, c]
-            for k in range(j):
-                s -= lower[j, k] * out[k, c]
-            out[j, c] = s / lower[j, j]
-    return out
-
-
-@wp.func
-def backward_solve(lower: Block, b: Unknowns) -> Unknowns:
-    """Solve ``lower^T x = b``."""
-    out = Unknowns()
-    for back in range(9):
-        j = 8 - back
-        s = b[j]
-        for k in range(j + 1, 9):
-            s -= lower[k, j] * out[k]
-        out[j] = s / lower[j, j]
-    return out
-
-
-@wp.func
-def lower_gram(a: Block) -> Block:
-    """Lower triangle of ``a^T a``."""
-    out = Block()
-    for i in range(9):
-        for j in range(i + 1):
-            s = float(0.0)
-            for k in range(9):
-                s += a[k, i] * a[k, j]
-            out[i, j] = s
-    return out
-
-
-@wp.kernel
-def solve_chain(
-    diagonal: wp.array2d(dtype=Block), upper: wp.array2d(dtype=Block), rhs: wp.array2d(dtype=Unknowns), shift: float
-):
-    """Block-tridiagonal Cholesky in place; ``rhs`` becomes the solution. Launch (W,).
-
-    Blocks are held in registers: the unrolled arithmetic is what makes one thread a world fast enough.
-    """
-    w = wp.tid()
-    rings = diagonal.shape[1]
-    carry = Block()
-    carry_rhs = Unknowns()
-    for r in range(rings):
-        d = diagonal[w, r] - carry
-        largest = float(0.0)
-        for i in range(9):
-            largest = wp.max(largest, diagonal[w, r][i, i])
-        for i in range(9):
-            d[i, i] = d[i, i] + shift * largest + 1.0e-6
-        lower = cholesky(d)
-        y = forward_solve(lower, rhs[w, r] - carry_rhs)
-        u = forward_solve_block(lower, upper[w, r])
-        carry = lower_gram(u)
-        carry_rhs = wp.transpose(u) * y
-        diagonal[w, r] = lower
-        upper[w, r] = u
-        rhs[w, r] = y
-    ahead = Unknowns()
-    for back in range(rings):
-        r = rings - 1 - back
-        ahead = backward_solve(diagonal[w, r], rhs[w, r] - upper[w, r] * ahead)
-        rhs[w, r] = ahead
 
 
 @wp.kernel

@@ -239,10 +239,14 @@ class Simulation:
             snapshot_index: Which state of ``self.snapshots`` each world takes, shape (n,), or one for all; -1 is the
                 rest pose, scope straight and tip just inside the anus.
             env_ids: The worlds, all by default.
+
+        Raises:
+            IndexError: If there is no such state; indices on a GPU are not checked, for that would wait for it.
         """
         ids = torch.arange(self.num_envs, device=self.device)
         if env_ids is not None:
             ids = torch.as_tensor(env_ids, device=self.device, dtype=torch.long)
+        self._check_index(torch.as_tensor(snapshot_index))
         row = torch.as_tensor(snapshot_index, device=self.device, dtype=torch.long).expand(len(ids)) + 1
         for name, array in self.world_arrays().items():
             array[ids] = self._library[name][row].view(len(ids), *array.shape[1:])
@@ -250,6 +254,13 @@ class Simulation:
         mask = torch.zeros(self.num_envs + 1, dtype=torch.bool, device=self.device)
         mask[ids] = True
         self.coupling.reset(wp.from_torch(mask))
+
+    def _check_index(self, index: torch.Tensor) -> None:
+        stored = len(self._library["joint_q"]) - 1
+        if not index.is_cuda and ((index < -1) | (index >= stored)).any():
+            raise IndexError(
+                f"Snapshot index {index.tolist()}: {stored} snapshots are loaded, from 0; -1 is the rest pose."
+            )
 
     def _clear_step(self, ids: torch.Tensor) -> None:
         """Zero the commands and the force averages of some worlds."""

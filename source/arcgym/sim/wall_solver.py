@@ -11,6 +11,7 @@ import numpy as np
 import warp as wp
 
 from arcgym.sim import coarse_kernels, wall_kernels
+from arcgym.sim.chain_solver import ChainSolver
 from arcgym.sim.contact import ContactSearch
 from arcgym.sim.ring_modes import MODES, RingModes
 from arcgym.sim.simulation_cfg import WallSolverCfg
@@ -40,7 +41,7 @@ class WallParameters:
 
 
 REGULARISATION = 1.0e-5
-"""Shift of the coarse matrix, relative to the largest diagonal entry of each ring."""
+"""Shift of the coarse matrix, relative to each diagonal entry."""
 
 
 class WallSolver:
@@ -76,10 +77,7 @@ class WallSolver:
         self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
-        self.diagonal = wp.zeros(rings, dtype=coarse_kernels.Block, device=device)
-        self.upper = wp.zeros(rings, dtype=coarse_kernels.Block, device=device)
-        self.solution = wp.zeros(rings, dtype=coarse_kernels.Unknowns, device=device)
-        self._entries = [_scalars(array) for array in (self.diagonal, self.upper, self.solution)]
+        self.chain = ChainSolver(num_envs, self.ring_count, device)
 
     def _elements(self, wall: WallParameters) -> wall_kernels.WallElements:
         edges = (wall.points[wall.tets[:, 1:]] - wall.points[wall.tets[:, :1]]).transpose(0, 2, 1)
@@ -160,22 +158,12 @@ class WallSolver:
         wp.launch(
             coarse_kernels.assemble,
             (*rings, MODES),
-            [x, self.force, self.space, self.rotation, self.stiffness_scale, 1.0 / self.dt**2, *touching]
-            + self._entries,
+            [x, self.force, self.space, self.rotation, self.stiffness_scale, 1.0 / self.dt**2, REGULARISATION, *touching]
+            + [self.chain.diagonal, self.chain.upper, self.chain.rhs],
             device=self.device,
         )
+        self.chain.solve()
         wp.launch(
-            coarse_kernels.solve_chain,
-            self.num_envs,
-            [self.diagonal, self.upper, self.solution, REGULARISATION],
-            device=self.device,
-        )
-        wp.launch(
-            coarse_kernels.prolong, shape, [self.space, self._entries[2], self.cfg.largest_move, x], device=self.device
+            coarse_kernels.prolong, shape, [self.space, self.chain.rhs, self.cfg.largest_move, x], device=self.device
         )
 
-
-def _scalars(array: wp.array) -> wp.array:
-    """The same memory as single numbers, matrix or vector dimensions last."""
-    shape = (*array.shape, *array.dtype._shape_)
-    return wp.array(ptr=array.ptr, dtype=float, shape=shape, device=array.device, copy=False)
