@@ -8,6 +8,7 @@ contacts at hand. Launch dimensions: W worlds, R rings, V wall vertices.
 
 import warp as wp
 
+from arcgym.sim.chain_kernels import Unknowns
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, touch
 from arcgym.sim.geometry_kernels import triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
@@ -58,6 +59,15 @@ def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, base: int, r: int) -> 
     return out
 
 
+@wp.func
+def turned_row(blocks: wp.array3d(dtype=float), turn: wp.mat33, r: int, i: int, m: int) -> Unknowns:
+    """Row (i, m) of a rest block whose left-hand axes are turned: sum over i2 of turn[i, i2] block[(i2, m), :]."""
+    out = Unknowns()
+    for c in range(9):
+        out[c] = turn[i, 0] * blocks[r, m, c] + turn[i, 1] * blocks[r, 3 + m, c] + turn[i, 2] * blocks[r, 6 + m, c]
+    return out
+
+
 @wp.kernel
 def assemble(
     x: wp.array(dtype=wp.vec3),
@@ -82,17 +92,15 @@ def assemble(
     i = a // 3
     m = a - 3 * i
     turn = rotation[w, r]
+    own_row = turned_row(space.stiffness, turn, r, i, m)
+    next_turn = rotation[w, wp.min(r + 1, rings - 1)]
+    next_row = turned_row(space.coupling, turn, r, i, m)
     scale = stiffness_scale[w]
     for c in range(UNKNOWNS):
         j = c // 3
         n = c - 3 * j
-        s = float(0.0)
-        o = float(0.0)
-        for i2 in range(3):
-            for j2 in range(3):
-                s += turn[i, i2] * space.stiffness[r, 3 * i2 + m, 3 * j2 + n] * turn[j, j2]
-                if r + 1 < rings:
-                    o += turn[i, i2] * space.coupling[r, 3 * i2 + m, 3 * j2 + n] * rotation[w, r + 1][j, j2]
+        s = own_row[n] * turn[j, 0] + own_row[3 + n] * turn[j, 1] + own_row[6 + n] * turn[j, 2]
+        o = next_row[n] * next_turn[j, 0] + next_row[3 + n] * next_turn[j, 1] + next_row[6 + n] * next_turn[j, 2]
         diagonal[w, r, a, c] = scale * s + inv_dt2 * space.mass[r, a, c] + space.anchor[r, a, c]
         upper[w, r, a, c] = scale * o
     diagonal[w, r, a, a] = diagonal[w, r, a, a] * (1.0 + shift) + 1.0e-6
