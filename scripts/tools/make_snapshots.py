@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the start states of the tasks: a scripted expert drives each endoscope up the colon.
 
-Whenever the tip enters a segment, the complete state is kept; velocities are set to zero. The file lies beside the
-colon's stage, ``snapshots/<endoscope>.npz``.
+The first segment starts from the rest pose, settled for half a second. Whenever the tip enters another one, the
+complete state is kept; velocities are set to zero. The file lies beside the colon's stage, ``snapshots/<endoscope>.npz``.
 """
 
 from __future__ import annotations
@@ -50,7 +50,8 @@ def drive(name: str, args: argparse.Namespace) -> tuple[dict[str, Snapshot], Int
     data, expert = scene["endoscope"].data, make_expert(scene, speed=args.speed)
     bounds = scene["colon"].stage.segment_bounds()
     segments = list(bounds)[: list(bounds).index(args.until) + 1]
-    kept: dict[str, Snapshot] = {}
+    scene.sim.step(5 * STEPS_PER_CONTROL)
+    kept: dict[str, Snapshot] = {segments[0]: scene.sim.read_snapshot(0).at_rest()}
     began, step = time.perf_counter(), 0
     while float(data.tip_arc_length[0]) < bounds[args.until][1] + 0.02:
         expert.act()
@@ -58,7 +59,7 @@ def drive(name: str, args: argparse.Namespace) -> tuple[dict[str, Snapshot], Int
         step += 1
         arc = float(data.tip_arc_length[0])
         for segment in segments:
-            if arc > bounds[segment][0] and segment not in kept and bounds[segment][0] > 0.0:
+            if arc > bounds[segment][0] and segment not in kept:
                 kept[segment] = scene.sim.read_snapshot(0).at_rest()
                 print(f"[{name}] enters {segment} after {step * 0.1:.1f} s", flush=True)
         if step % 20 == 0:

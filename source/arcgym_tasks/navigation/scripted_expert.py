@@ -44,7 +44,12 @@ def lumen_direction(scene: InteractiveScene, ahead: float) -> torch.Tensor:
 
 
 class PullExpert:
-    """Pulls the tip towards the centreline ahead and turns it that way."""
+    """Pulls the tip towards the centreline ahead and turns it that way; backs off where it does not get on."""
+
+    PATIENCE = 20
+    """Control steps without 4 mm of progress after which the tip backs off."""
+    RETREAT = 12
+    """Control steps of backing off."""
 
     def __init__(self, scene: InteractiveScene, speed: float = 0.04, ahead: float = 0.035, turn_gain: float = 4.0):
         """Keep the settings.
@@ -56,15 +61,32 @@ class PullExpert:
             turn_gain: Angular velocity per sine of the angle to the target [rad/s].
         """
         self.scene, self.speed, self.ahead, self.turn_gain = scene, speed, ahead, turn_gain
+        self._furthest = torch.full((scene.num_envs,), -1.0, device=scene.device)
+        self._waited = torch.zeros(scene.num_envs, dtype=torch.long, device=scene.device)
+        self._retreat = torch.zeros_like(self._waited)
 
     def act(self) -> None:
         """Set the velocity commands."""
+        self._watch_progress()
+        data = self.scene["endoscope"].data
         direction = lumen_direction(self.scene, self.ahead)
         pace = self.speed * (0.35 + 0.65 * direction[:, 2:].clamp(min=0.0))
+        back = quat_apply_inverse(data.tip_quat_w, -self.speed * data.tip_lumen_direction_w)
         forward = torch.zeros_like(direction)
         forward[:, 2] = 1.0
         turn = self.turn_gain * torch.linalg.cross(forward, direction)
-        self.scene["endoscope"].set_tip_velocity_command(pace * direction, turn)
+        velocity = torch.where(self._retreat[:, None] > 0, back, pace * direction)
+        self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
+
+    def _watch_progress(self) -> None:
+        arc = self.scene["endoscope"].data.tip_arc_length
+        gained = arc > self._furthest + 0.004
+        self._furthest = torch.where(gained, arc, self._furthest)
+        self._waited = torch.where(gained, 0, self._waited + 1)
+        self._retreat = (self._retreat - 1).clamp(min=0)
+        tired = self._waited > self.PATIENCE
+        self._retreat = torch.where(tired, self.RETREAT, self._retreat)
+        self._waited = torch.where(tired, -self.RETREAT, self._waited)
 
 
 class PushExpert:
