@@ -102,6 +102,15 @@ def test_action_equals_reaction(sim: Simulation) -> None:
     np.testing.assert_allclose(force_on_wall(sim).sum(axis=0), -wall_force(sim), rtol=1e-3, atol=1e-4)
 
 
+def test_a_capsule_in_a_corner_is_held_by_both_sides(sim: Simulation) -> None:
+    # Axis parallel to the corner at angle 0, at 0.2 mm depth in the sides at +-22.5 degrees.
+    corner = np.array([1.0, 0.0, 0.0])
+    place(sim, depth=(REACH - APOTHEM) + (APOTHEM - REACH + 2.0e-4) / SIDE[0], direction=corner)
+    normals = sim.contact.records.normal.numpy()[: count(sim)]
+    assert set(np.sign(normals[:, 1])) == {-1.0, 1.0}
+    assert wall_force(sim)[0] == pytest.approx(-count(sim) * 0.4 * SIDE[0], rel=0.02)  # 2000 N/m * 0.2 mm = 0.4 N
+
+
 def test_a_capsule_outside_the_wall_is_pushed_back_in(sim: Simulation) -> None:
     place(sim, depth=REACH + 0.002)  # its axis is 2 mm beyond the wall
     assert wall_force(sim) @ SIDE < -2000.0 * REACH

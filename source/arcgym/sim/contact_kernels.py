@@ -11,6 +11,8 @@ from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, tri
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
+EDGE = wp.constant(1.0e-4)
+"""Barycentric coordinate under which a point counts as on the opposite edge."""
 
 
 @wp.struct
@@ -132,10 +134,9 @@ def face_distances(
 @wp.func
 def owns_contact(surface: LumenSurface, face: int, u: wp.vec3) -> bool:
     """Whether ``face`` reports a touch at barycentric ``u``; shared vertices and edges belong to the lowest face."""
-    eps = float(1.0e-4)
     zeros = int(0)
     for k in range(3):
-        if u[k] < eps:
+        if u[k] < EDGE:
             zeros += 1
     if zeros == 2:
         corner = int(0)
@@ -146,12 +147,25 @@ def owns_contact(surface: LumenSurface, face: int, u: wp.vec3) -> bool:
         return surface.vertex_owner[surface.faces[face, corner]] == face
     if zeros == 1:
         opposite = int(0)
-        if u[1] < eps:
+        if u[1] < EDGE:
             opposite = 1
-        if u[2] < eps:
+        if u[2] < EDGE:
             opposite = 2
         other = surface.neighbors[face, opposite]
         return other < 0 or other > face
+    return True
+
+
+@wp.func
+def lowest_around(
+    surface: LumenSurface, distance: wp.array3d(dtype=float), w: int, link: int, m: int, first: int
+) -> bool:
+    """Whether no neighbour of candidate face ``m`` is nearer to the link."""
+    for k in range(3):
+        other = surface.neighbors[first + m, k] - first
+        if surface.neighbors[first + m, k] >= 0 and other >= 0 and other < distance.shape[2]:
+            if distance[w, link, other] < distance[w, link, m] - 1.0e-6:
+                return False
     return True
 
 
@@ -165,37 +179,34 @@ def select_contacts(
     distance: wp.array3d(dtype=float),
     records: ContactRecords,
 ):
-    """Keep one record for each local minimum of the distance over neighbouring faces. Launch (W, L)."""
+    """Keep one record for each place where the link comes close. Launch (W, L).
+
+    A closest point inside a face is one, so that a link in a corner is held by both sides; a closest point on an edge
+    or a corner is one if no neighbouring face is nearer.
+    """
     w, link = wp.tid()
     row = w * ring.shape[1] + link
     first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
     base = w * surface.vertices
+    pose = body_q[row]
+    centre = wp.transform_get_translation(pose)
+    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     n = int(0)
     for m in range(distance.shape[2]):
-        d = distance[w, link, m]
-        if d < FAR and n < records.capacity:
+        if distance[w, link, m] < FAR and n < records.capacity:
             face = first + m
-            keep = int(1)
-            for k in range(3):
-                other = surface.neighbors[face, k] - first
-                if surface.neighbors[face, k] >= 0 and other >= 0 and other < distance.shape[2]:
-                    if distance[w, link, other] < d - 1.0e-6:
-                        keep = 0
-            if keep == 1:
-                i = base + surface.faces[face, 0]
-                j = base + surface.faces[face, 1]
-                k2 = base + surface.faces[face, 2]
-                pose = body_q[row]
-                centre = wp.transform_get_translation(pose)
-                axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
-                c4 = segment_triangle(centre - axis, centre + axis, x[i], x[j], x[k2])
-                u = wp.vec3(c4[0], c4[1], c4[2])
-                if owns_contact(surface, face, u):
-                    slot = row * records.capacity + n
-                    records.face[slot] = wp.vec3i(i, j, k2)
-                    records.bary[slot] = u
-                    records.normal[slot] = wp.normalize(wp.cross(x[j] - x[i], x[k2] - x[i]))
-                    n += 1
+            i = base + surface.faces[face, 0]
+            j = base + surface.faces[face, 1]
+            k = base + surface.faces[face, 2]
+            c = segment_triangle(centre - axis, centre + axis, x[i], x[j], x[k])
+            u = wp.vec3(c[0], c[1], c[2])
+            inside = wp.min(u) > EDGE
+            if inside or (lowest_around(surface, distance, w, link, m, first) and owns_contact(surface, face, u)):
+                slot = row * records.capacity + n
+                records.face[slot] = wp.vec3i(i, j, k)
+                records.bary[slot] = u
+                records.normal[slot] = wp.normalize(wp.cross(x[j] - x[i], x[k] - x[i]))
+                n += 1
     records.count[row] = n
 
 
@@ -256,7 +267,7 @@ def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: flo
 
 @wp.func
 def slip_scale(speed: float, limit: float) -> float:
-    """1/speed above ``limit``, smoothly bounded below it, so that friction = mu N * scale * slip (Li et al. 2020, IPC)."""
+    """1/speed above ``limit``, smoothly bounded below it: friction = mu N * scale * slip (Li et al. 2020, IPC)."""
     if speed > limit:
         return 1.0 / speed
     return (2.0 - speed / limit) / limit

@@ -34,7 +34,7 @@ class ContactCfg:
     search_reach: int = 3
     """Rings searched on either side of a link's own. Must span half a link; 3 rings of 12.5 mm suit 20 mm links."""
     capacity: int = 16
-    """Contacts kept per link. A 20 mm link in a bend has two to four."""
+    """Contacts kept per link. A link in a bend of colon 1 has two to nine."""
 
 
 @configclass

@@ -1,0 +1,108 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A scope of ten links pushed with a bent tip into a soft tube that moves out of its way by more than a millimetre."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+import warp as wp
+from tiny_sim import TinySim
+
+from arcgym.sim import ContactCfg, Simulation
+from arcgym.sim.wall_kernels import residual
+
+SOFT = {"youngs_modulus": 5.0e5}
+
+
+@pytest.fixture(scope="module")
+def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
+    """A tube of 16 mm radius."""
+    return TinySim(tmp_path_factory.mktemp("narrow"), radius=0.016)
+
+
+def settled(narrow: TinySim, **cfg: object) -> Simulation:
+    """Push to the end of the shaft in about 1 s while bending, then 0.5 s of rest."""
+    sim = narrow(links=10, colon=SOFT, **cfg)
+    sim.endoscope.set_insertion_command(torch.tensor([0.1]), torch.tensor([0.0]))
+    sim.endoscope.set_bending_command(torch.tensor([1.2]), torch.tensor([0.2]))
+    for _ in range(15):
+        sim.step(48)
+    return sim
+
+
+@pytest.fixture(scope="module")
+def two_level(narrow: TinySim) -> Simulation:
+    return settled(narrow)
+
+
+def test_two_level_agrees_with_plain_newton(narrow: TinySim, two_level: Simulation) -> None:
+    newton = settled(narrow, solver="newton")
+    tips, forces, moved = (
+        [read(sim) for sim in (two_level, newton)]
+        for read in (
+            lambda sim: sim.endoscope.data.tip_pos_w[0],
+            lambda sim: sim.endoscope.data.wall_force_w[0].norm(dim=1).max().item(),
+            lambda sim: sim.colon.data.nodal_displacement.max().item(),
+        )
+    )
+    assert (tips[0] - tips[1]).norm() < 0.0005
+    assert forces[0] == pytest.approx(forces[1], rel=0.15)
+    assert moved[0] == pytest.approx(moved[1], rel=0.15)
+    assert moved[0] > 0.001
+
+
+def force_on_wall(sim: Simulation, with_contact: bool) -> np.ndarray:
+    """Force on each vertex that moves [N], shape (V, 3)."""
+    wall, contact = sim.wall, sim.contact
+    if not with_contact:
+        contact.records.vertex_head.fill_(-1)
+    out = wp.zeros_like(sim.nodal_pos)
+    args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+    args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
+    wp.launch(residual, (1, sim.colon.num_nodes), args, device="cpu")
+    return out.numpy()
+
+
+@pytest.fixture(scope="module")
+def frictionless(narrow: TinySim) -> Simulation:
+    return settled(narrow, contact=ContactCfg(friction=0.0))
+
+
+def test_at_rest_the_wall_is_pushed_as_hard_as_the_scope(frictionless: Simulation) -> None:
+    sim = frictionless
+    sim.step(1)
+    on_scope = sim.endoscope.data.wall_force_w[0].numpy()
+    on_wall = force_on_wall(sim, with_contact=True) - force_on_wall(sim, with_contact=False)
+    size = np.linalg.norm(on_scope, axis=1).sum()
+    assert size > 1.0
+    assert np.linalg.norm(on_scope.sum(axis=0) + on_wall.sum(axis=0)) < 0.02 * size
+
+
+def test_base_and_introducer_carry_what_the_wall_pushes(frictionless: Simulation) -> None:
+    sim = frictionless
+    sim.step(48)
+    along = sim.endoscope.data.wall_force_w[0, :, 2].sum().item()
+    assert sim.endoscope.data.base_force.item() == pytest.approx(-along, abs=0.01)
+
+
+def test_a_parked_scope_stays_parked(frictionless: Simulation) -> None:
+    sim = frictionless
+    before = sim.endoscope.data.tip_pos_w.clone()
+    sim.step(240)
+    assert (sim.endoscope.data.tip_pos_w - before).norm() < 2e-5
+    assert sim.colon.data.nodal_vel_w.abs().max() < 1e-4
+
+
+def test_no_link_is_outside_the_wall(two_level: Simulation) -> None:
+    axis_distance = two_level.endoscope.data.body_pos_w[0, :, :2].norm(dim=1)
+    assert axis_distance.max() < 0.016 + two_level.colon.data.nodal_displacement.max() - 0.0064
+
+
+def test_no_wall_element_is_inverted(two_level: Simulation) -> None:
+    x, tets = two_level.nodal_pos.numpy().astype(float), two_level.colon.stage.wall.tets
+    rest = two_level.colon.stage.wall.points.astype(float)
+    volume = [np.linalg.det(p[tets[:, 1:]] - p[tets[:, :1]]) for p in (x, rest)]
+    ratio = volume[0] / volume[1]
+    assert 0.7 < ratio.min() and ratio.max() < 1.3
