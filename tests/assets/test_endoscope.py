@@ -68,7 +68,7 @@ def test_camera_sits_on_the_axis_and_looks_forward(sim: Simulation) -> None:
     ("height", "segment"), [(0.030, "rectum"), (0.050, "sigmoid"), (0.110, "descending"), (0.170, "transverse")]
 )
 def test_a_capsule_knows_where_it_is(tiny: TinySim, height: float, segment: str) -> None:
-    # Five segments of 40 mm, give or take the 5 mm between centreline points; the front of the capsule lies 10 mm ahead of its centre.
+    # Segments of 40 mm on a centreline of 5 mm steps; the front of the capsule lies 10 mm ahead of its centre.
     sim = tiny("capsule")
     sim.endoscope.data.joint_pos[0, :3] = torch.tensor([0.003, 0.0, height - 0.010])
     sim.contact.ring.fill_(-1)

@@ -186,13 +186,13 @@ def sideways(sim: Simulation) -> float:
 
 
 def test_introducer_keeps_the_shaft_outside_straight(tiny_sim: TinySim) -> None:
+    # 0.1 m of a limp shaft: Euler load pi^2 * 0.005 N m^2 / (0.1 m)^2 = 5 N if its ends are guided, less if not.
+    limp = {"shaft_rigidity": 0.005, "insertion_force_limit": 6.0}
     guided, free = (
-        sideways(
-            tiny_sim("proximal", 12, colon={"mobile_until": 0.0}, scope={"introducer": guide, "shaft_rigidity": 0.005})
-        )
+        sideways(tiny_sim("proximal", 12, colon={"mobile_until": 0.0}, scope={"introducer": guide, **limp}))
         for guide in (IntroducerCfg(), IntroducerCfg(stiffness=0.0))
     )
-    assert guided < 0.005 < 0.02 < free
+    assert guided < 0.005 < 0.015 < free
 
 
 def test_gravity_weighs_the_real_masses(tiny_sim: TinySim) -> None:
