@@ -12,9 +12,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.kernel
-def collect_forces(
-    step_force: wp.array(dtype=wp.vec3), total: wp.array(dtype=wp.vec3), peak: wp.array(dtype=float)
-):
+def collect_forces(step_force: wp.array(dtype=wp.vec3), total: wp.array(dtype=wp.vec3), peak: wp.array(dtype=float)):
     """Add one physics step's mean force to the control step's sum and peak, and clear it. Launch (W*L,)."""
     i = wp.tid()
     f = step_force[i]

@@ -113,7 +113,9 @@ def _stiffness_blocks(
     corner_ring = ring[tets]
     if (np.ptp(corner_ring, axis=1) > 1).any():
         bad = int(np.argmax(np.ptp(corner_ring, axis=1)))
-        raise ValueError(f"Wall tet {bad} spans rings {sorted(set(corner_ring[bad]))}; tets may join adjacent rings only.")
+        raise ValueError(
+            f"Wall tet {bad} spans rings {sorted(set(corner_ring[bad]))}; tets may join adjacent rings only."
+        )
     w = weights[tets]
     blocks = np.einsum("taibj,tam,tbn->tabimjn", element_stiffness(points, tets, lame), w, w)
     blocks = blocks.reshape(len(tets), 4, 4, MODES, MODES)

@@ -91,7 +91,8 @@ class SnapshotSet:
         if self.fingerprint != expected:
             raise ValueError(
                 f"The snapshots are of another wall mesh or endoscope than {sim.colon.path} with {sim.endoscope.path} "
-                f"(fingerprint {self.fingerprint}, expected {expected}). Remake them with scripts/tools/make_snapshots.py."
+                f"(fingerprint {self.fingerprint}, expected {expected}). "
+                "Remake them with scripts/tools/make_snapshots.py."
             )
 
 

@@ -208,9 +208,7 @@ def residual(
 
 
 @wp.kernel
-def finish(
-    x_prev: wp.array(dtype=wp.vec3), dt: float, x: wp.array(dtype=wp.vec3), v: wp.array(dtype=wp.vec3)
-):
+def finish(x_prev: wp.array(dtype=wp.vec3), dt: float, x: wp.array(dtype=wp.vec3), v: wp.array(dtype=wp.vec3)):
     """Velocity of the step. Launch (W*V,)."""
     k = wp.tid()
     v[k] = (x[k] - x_prev[k]) / dt
