@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tiny import tiny_colon_stage
 
+from arcgym.anatomy.stage_types import WallMesh
 from arcgym.anatomy.wall import inner_faces
 from arcgym.sim.wall_topology import LumenTopology, face_neighbors, lumen_topology, members, vertex_entries
 
@@ -15,16 +16,16 @@ RINGS, SECTORS = 17, 8
 
 
 @pytest.fixture(scope="module")
-def wall():  # noqa: ANN201
+def wall() -> WallMesh:
     return tiny_colon_stage().wall
 
 
 @pytest.fixture(scope="module")
-def lumen(wall) -> LumenTopology:  # noqa: ANN001
+def lumen(wall: WallMesh) -> LumenTopology:
     return lumen_topology(inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
 
 
-def test_faces_are_sorted_by_their_lowest_ring(wall, lumen: LumenTopology) -> None:  # noqa: ANN001
+def test_faces_are_sorted_by_their_lowest_ring(wall: WallMesh, lumen: LumenTopology) -> None:
     lowest = wall.ring[lumen.faces].min(axis=1)
     assert (np.diff(lowest) >= 0).all()
     for ring in range(RINGS):
@@ -35,7 +36,7 @@ def test_each_band_has_two_faces_a_sector_and_the_cap_two_fewer_than_sectors(lum
     np.testing.assert_array_equal(np.diff(lumen.ring_start), [2 * SECTORS] * (RINGS - 1) + [SECTORS - 2])
 
 
-def test_normals_point_from_the_lumen_into_the_wall(wall, lumen: LumenTopology) -> None:  # noqa: ANN001
+def test_normals_point_from_the_lumen_into_the_wall(wall: WallMesh, lumen: LumenTopology) -> None:
     tube = lumen.faces[: lumen.ring_start[RINGS - 1]]
     a, b, c = (wall.points[tube[:, k]] for k in range(3))
     radial = (a + b + c) * [1.0, 1.0, 0.0]
@@ -61,7 +62,7 @@ def test_neighbours_of_two_triangles() -> None:
     np.testing.assert_array_equal(face_neighbors(faces), [[1, -1, -1], [-1, -1, 0]])
 
 
-def test_owner_of_a_vertex_is_its_lowest_face(wall, lumen: LumenTopology) -> None:  # noqa: ANN001
+def test_owner_of_a_vertex_is_its_lowest_face(wall: WallMesh, lumen: LumenTopology) -> None:
     for vertex in (0, 40, 135):
         assert lumen.vertex_owner[vertex] == np.flatnonzero((lumen.faces == vertex).any(axis=1))[0]
     assert (lumen.vertex_owner[wall.layer > 0] == len(lumen.faces)).all()
