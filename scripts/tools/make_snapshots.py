@@ -4,7 +4,8 @@
 """Makes the start states of the tasks: a scripted expert drives each endoscope up the colon.
 
 The first segment starts from the rest pose, settled for half a second. Whenever the tip enters another one, the
-complete state is kept; velocities are set to zero. The file lies beside the colon's stage, ``snapshots/<endoscope>.npz``.
+complete state is kept; velocities are set to zero. The file lies beside the colon's stage:
+``snapshots/<endoscope>.npz``.
 """
 
 from __future__ import annotations
@@ -78,7 +79,8 @@ def report(name: str, step: int, scene: InteractiveScene, wall_s: float) -> None
         f"[{name}] t {step * 0.1:5.1f} s  s {float(data.tip_arc_length[0]):.3f} m  "
         f"inserted {float(data.inserted_length[0]):.3f} m  push {float(data.base_force[0]):5.1f} N  "
         f"pull {float(data.tip_pull_force_w[0].norm()):4.2f} N  links {float(force.sum()):5.1f} N "
-        f"(max {float(force.max()):4.1f} at {int(force.argmax())})  wall {1e3 * float(colon.nodal_displacement.max()):5.1f} mm  "
+        f"(max {float(force.max()):4.1f} at {int(force.argmax())})  "
+        f"wall {1e3 * float(colon.nodal_displacement.max()):5.1f} mm  "
         f"tip off axis {1e3 * float(data.tip_centerline_distance[0]):4.1f} mm, {float(tip_angle(scene)[0]):3.0f} deg  "
         f"wall clock {wall_s:.0f} s",
         flush=True,

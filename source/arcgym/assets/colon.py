@@ -61,17 +61,18 @@ class Colon:
         mu, lam = lame_parameters(*self.elasticity())
         for tet in range(first_tet, len(builder.tet_indices)):
             builder.tet_materials[tet] = (mu, lam, builder.tet_materials[tet][2])
-        ratio = (self.cfg.density or self.tissue.density or self.stage.material.density) / self.stage.material.density
+        ratio = self._value("density") / self.stage.material.density
         for i in particles:
             builder.particle_mass[i] *= ratio
 
     def elasticity(self) -> tuple[float, float]:
         """Young's modulus [Pa] and Poisson's ratio in use."""
-        stage, preset, cfg = self.stage.material, self.tissue, self.cfg
-        return (
-            cfg.youngs_modulus or preset.youngs_modulus or stage.youngs_modulus,
-            cfg.poissons_ratio or preset.poissons_ratio or stage.poissons_ratio,
-        )
+        return self._value("youngs_modulus"), self._value("poissons_ratio")
+
+    def _value(self, name: str) -> float:
+        """Material value: the configuration's, else the preset's, else the stage's."""
+        values = [getattr(source, name) for source in (self.cfg, self.tissue, self.stage.material)]
+        return next(value for value in values if value is not None)
 
     def mobile(self) -> np.ndarray:
         """Whether each wall vertex moves, shape (V,), bool."""

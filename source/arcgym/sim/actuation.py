@@ -60,10 +60,10 @@ class Actuation:
         slide, roll = self.stage.slide_drive, self.stage.roll_drive
         if self.pushed and slide is not None and roll is not None:
             drive.slide_stiffness, drive.slide_damping = slide.stiffness, slide.damping
-            drive.force_limit = self.scope.insertion_force_limit or slide.max_force
+            drive.force_limit = _override(self.scope.insertion_force_limit, slide.max_force)
             drive.furthest = self.stage.total_length - self.stage.link_length[0] - self.rest_insertion
             drive.roll_stiffness = roll.stiffness
-            drive.torque_limit = self.scope.roll_torque_limit or roll.max_force
+            drive.torque_limit = _override(self.scope.roll_torque_limit, roll.max_force)
         return drive
 
     def _bending_section(self) -> tuple[wp.vec2, wp.vec2]:
@@ -115,3 +115,7 @@ class Actuation:
         args = [state.body_q, state.body_qd, self.link_count, self.pull, self.tip_lin_command, self.tip_ang_command]
         args += [dt, weight, self.lead, self.turn, state.body_f, self.tip_force]
         wp.launch(kernels.pull_tip, self.num_envs, args, device=self.device)
+
+
+def _override(value: float | None, default: float) -> float:
+    return default if value is None else value

@@ -50,12 +50,8 @@ class ChainSolver:
         even = (self.rows - 1) // (2 * h) + 1
         self._launch(kernels.factor_odd, (self.num_envs, odd), [h, 2 * h, self._diagonal])
         sides = [self._left_scalars, self._right_scalars]
-        self._launch(
-            kernels.eliminate_odd, (self.num_envs, odd, 19), [h, self._diagonal, self.upper, *sides, self.rhs]
-        )
-        self._launch(
-            kernels.reduce_even, (self.num_envs, even, 9), [h, *sides, self.diagonal, self.upper, self.rhs]
-        )
+        self._launch(kernels.eliminate_odd, (self.num_envs, odd, 19), [h, self._diagonal, self.upper, *sides, self.rhs])
+        self._launch(kernels.reduce_even, (self.num_envs, even, 9), [h, *sides, self.diagonal, self.upper, self.rhs])
 
     def _odd(self, h: int) -> int:
         """Number of rows h, 3h, 5h, ... that exist."""

@@ -108,9 +108,7 @@ class WallSolver:
             setattr(space, name, wp.array(getattr(modes, name), dtype=float, device=self.device))
         return space
 
-    def step(
-        self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array
-    ) -> None:
+    def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
         """Advance the wall by one physics step, in place.
 
         Args:
@@ -155,15 +153,10 @@ class WallSolver:
             device=self.device,
         )
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation], device=self.device)
-        wp.launch(
-            coarse_kernels.assemble,
-            (*rings, MODES),
-            [x, self.force, self.space, self.rotation, self.stiffness_scale, 1.0 / self.dt**2, REGULARISATION, *touching]
-            + [self.chain.diagonal, self.chain.upper, self.chain.rhs],
-            device=self.device,
-        )
+        args = [x, self.force, self.space, self.rotation, self.stiffness_scale, 1.0 / self.dt**2, REGULARISATION]
+        args += [*touching, self.chain.diagonal, self.chain.upper, self.chain.rhs]
+        wp.launch(coarse_kernels.assemble, (*rings, MODES), args, device=self.device)
         self.chain.solve()
         wp.launch(
             coarse_kernels.prolong, shape, [self.space, self.chain.rhs, self.cfg.largest_move, x], device=self.device
         )
-
