@@ -12,6 +12,7 @@ def main() -> None:
     """Parse the arguments and run."""
     parser = cli.make_parser("Run a task with raw actions that are zero.")
     parser.add_argument("--steps", type=int, default=100, help="control steps (default: 100)")
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON on the last line")
     args, overrides = cli.parse(parser)
     env_cfg, agent_cfg = cli.load_cfgs(parser, args, overrides)
     cli.place(env_cfg, agent_cfg, args.device)
@@ -22,7 +23,10 @@ def main() -> None:
     from arcgym.rl.rollout import run_policy, zero_policy
 
     env = RslRlVecEnvWrapper(gym.make(args.task, cfg=env_cfg))
-    print(run_policy(env, zero_policy(env), args.steps))
+    result = run_policy(env, zero_policy(env), args.steps)
+    print(result)
+    if args.json:
+        print(result.to_json())
     env.close()
 
 

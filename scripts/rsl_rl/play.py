@@ -24,6 +24,7 @@ def main() -> None:
     parser = cli.make_parser("Run a trained policy, record it and export it.")
     parser.add_argument("--policy", choices=("trained", "zero", "random"), default="trained", help="what acts")
     parser.add_argument("--steps", type=int, help="control steps (default: the video's, else one episode)")
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON on the last line")
     cli.add_run_arguments(parser)
     cli.add_video_arguments(parser)
     args, overrides = cli.parse(parser)
@@ -44,11 +45,14 @@ def play(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any) -> None:
     policy = make_policy(args, env, agent_cfg, checkpoint, device)
     steps = args.steps or (args.video_length if args.video else int(env.max_episode_length))
     try:
-        print(run_policy(env, policy, steps))
+        result = run_policy(env, policy, steps)
+        print(result)
     finally:
         env.close()
     for path in videos:
         print(f"video: {path}")
+    if args.json:
+        print(result.to_json())
 
 
 def find_policy(args: argparse.Namespace, agent_cfg: Any) -> Path | None:
@@ -65,12 +69,13 @@ def make_env(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any, folder: Pat
     import gymnasium as gym
 
     from arcgym.rl import PeriodicVideo, RslRlVecEnvWrapper
-    from arcgym.viewers import VideoRecorder
 
     print(f"building {env_cfg.scene.num_envs} worlds on {env_cfg.sim.device}; compiling kernels (first run only)")
     env: gym.Env = gym.make(args.task, cfg=env_cfg, render_mode="rgb_array" if args.video else None)
     videos: list[Path] = []
     if args.video:
+        from arcgym.viewers import VideoRecorder
+
         fps = round(1.0 / env.unwrapped.step_dt)  # type: ignore[attr-defined]
         length = args.video_length
         env = recorder = PeriodicVideo(

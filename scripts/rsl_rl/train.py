@@ -69,12 +69,13 @@ def make_env(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any, folder: Pat
     import gymnasium as gym
 
     from arcgym.rl import PeriodicVideo, RslRlVecEnvWrapper
-    from arcgym.viewers import VideoRecorder
 
     print(f"building {env_cfg.scene.num_envs} worlds on {env_cfg.sim.device}; compiling kernels (first run only)")
     start = time.perf_counter()
     env: gym.Env = gym.make(args.task, cfg=env_cfg, render_mode="rgb_array" if args.video else None)
     if args.video:
+        from arcgym.viewers import VideoRecorder
+
         fps = round(1.0 / env.unwrapped.step_dt)  # type: ignore[attr-defined]
         env = PeriodicVideo(
             env,

@@ -5,9 +5,11 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import torch
 from tensordict import TensorDict
@@ -40,6 +42,13 @@ class RolloutResult:
     wall_time: float
     """Duration [s]."""
 
+    metrics: dict[str, float] = field(default_factory=dict)
+    """Mean of each ``Episode_Metrics/…`` over the episodes that ended."""
+
+    def to_json(self) -> str:
+        """Return all figures as one line of JSON."""
+        return json.dumps(asdict(self))
+
     def __str__(self) -> str:
         """Return the figures in one line."""
         return (
@@ -66,11 +75,13 @@ def run_policy(env: RslRlVecEnvWrapper, policy: Policy, steps: int) -> RolloutRe
     start = time.perf_counter()
     returns = torch.zeros(env.num_envs, device=env.device)
     total, ended, succeeded, ended_returns = (torch.zeros((), device=env.device) for _ in range(4))
+    metrics: dict[str, float] = {}
     obs = env.get_observations()
     with torch.inference_mode():
         for _ in range(steps):
-            obs, rewards, dones, _ = env.step(policy(obs))
+            obs, rewards, dones, extras = env.step(policy(obs))
             done = dones > 0
+            _add_metrics(metrics, extras.get("log", {}), int(done.sum()))
             returns += rewards
             total += rewards.sum()
             ended += done.sum()
@@ -85,7 +96,15 @@ def run_policy(env: RslRlVecEnvWrapper, policy: Policy, steps: int) -> RolloutRe
         reward_per_episode=float(ended_returns) / episodes if episodes else float("nan"),
         success_rate=float(succeeded) / episodes if episodes else float("nan"),
         wall_time=time.perf_counter() - start,
+        metrics={name: value / episodes for name, value in metrics.items()} if episodes else {},
     )
+
+
+def _add_metrics(sums: dict[str, float], log: dict[str, Any], episodes: int) -> None:
+    """Add the means over ``episodes`` that a step's log holds, times their number."""
+    for name, value in log.items():
+        if name.startswith("Episode_Metrics/") and episodes:
+            sums[name] = sums.get(name, 0.0) + float(value) * episodes
 
 
 def _success(env: RslRlVecEnvWrapper) -> torch.Tensor:
