@@ -79,16 +79,22 @@ def validate_wall(wall: WallMesh, spec: ColonSpec | None = None) -> list[Check]:
 def validate_stage(stage: ColonStage) -> list[Check]:
     """Checks a whole stage: wall, visual surfaces, landmarks, handedness."""
     arcs = np.diff(list(stage.landmarks.values()))
-    left = stage.centerline.segment == SEGMENTS.index("descending")
-    right = stage.centerline.segment == SEGMENTS.index("ascending")
-    x = stage.centerline.points[:, 0]
     return [
         *validate_wall(stage.wall),
         *_validate_visual("render surface", stage.visual, stage.wall),
         *_validate_visual("proxy surface", stage.visual_proxy, stage.wall),
         Check("least distance of landmarks [m]", float(arcs.min()), 0.0, at_least=True),
-        Check("ascending minus descending x [m]", float(x[right].mean() - x[left].mean()), 0.05, at_least=True),
+        *_validate_sides(stage),
     ]
+
+
+def _validate_sides(stage: ColonStage) -> list[Check]:
+    """Finds mirrored anatomies: the ascending colon is on the patient's right. Empty where there is only one side."""
+    left, right = (stage.centerline.segment == SEGMENTS.index(name) for name in ("descending", "ascending"))
+    if not (left.any() and right.any()):
+        return []
+    x = stage.centerline.points[:, 0]
+    return [Check("ascending minus descending x [m]", float(x[right].mean() - x[left].mean()), 0.05, at_least=True)]
 
 
 def _validate_visual(name: str, visual: VisualMesh, wall: WallMesh) -> list[Check]:
