@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws a training run's curves beside the zero-action agent's figures, and writes both as JSON.
+
+python scripts/benchmarks/plot_training.py logs/rsl_rl/arc_sigmoid_magnetic/<run> OUT.png --zero zero.json
+
+``zero.json`` holds the line that ``scripts/zero_agent.py --json`` or ``play.py --policy zero --json`` prints last. The
+curves go to ``OUT.json`` beside the picture. Needs matplotlib (``pip install arcgym[dev]``).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+PANELS = {
+    "reward an episode": ("Train/mean_reward", "reward_per_episode"),
+    "centring s_c": ("Episode_Metrics/s_c", "metrics"),
+    "success": ("Episode_Metrics/success", "metrics"),
+    "largest wall force [N]": ("Episode_Metrics/max_wall_force", "metrics"),
+}
+"""Title of each panel, its tag in the log, and where the zero agent's figure is."""
+
+
+def main() -> None:
+    """Read the log, draw, write."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path, help="folder of the run, or its events file")
+    parser.add_argument("out", type=Path, help="picture to write")
+    parser.add_argument("--zero", type=Path, help="JSON of the zero-action agent")
+    parser.add_argument("--title", default="", help="title of the picture")
+    args = parser.parse_args()
+    curves = read_curves(args.run)
+    zero = json.loads(args.zero.read_text().strip().splitlines()[-1]) if args.zero else None
+    args.out.with_suffix(".json").write_text(
+        json.dumps({"title": args.title, "curves": curves, "zero": zero}, indent=1)
+    )
+    draw(curves, zero, args.title, args.out)
+
+
+def read_curves(run: Path) -> dict[str, list[float]]:
+    """Return transitions, hours of wall clock and one list a panel, each with an entry an iteration."""
+    log = EventAccumulator(str(run))
+    log.Reload()
+    curves = {title: [round(e.value, 5) for e in log.Scalars(tag)] for title, (tag, _) in PANELS.items()}
+    events = log.Scalars("Perf/total_fps")
+    seconds = [
+        c.value + u.value
+        for c, u in zip(log.Scalars("Perf/collection_time"), log.Scalars("Perf/learning_time"), strict=True)
+    ]
+    steps = [e.value * s for e, s in zip(events, seconds, strict=True)]
+    total = 0.0
+    curves["transitions"] = [round(total := total + s) for s in steps]
+    return curves
+
+
+def draw(curves: dict[str, list[float]], zero: dict | None, title: str, out: Path) -> None:
+    """Draw one panel a curve, the zero-action agent as a dashed line."""
+    fig, axes = plt.subplots(1, len(PANELS), figsize=(4 * len(PANELS), 3.2), layout="constrained")
+    for axis, (name, (tag, where)) in zip(axes, PANELS.items(), strict=True):
+        values = curves[name]
+        axis.plot([t / 1000 for t in curves["transitions"][-len(values) :]], values, color="#b03a48", label="PPO")
+        if zero is not None:
+            base = zero["metrics"].get(tag) if where == "metrics" else zero[where]
+            axis.axhline(base, color="#555", linestyle="--", label="zero action")
+        axis.set(title=name, xlabel="transitions [thousand]")
+        axis.grid(alpha=0.3)
+    axes[0].legend()
+    fig.suptitle(title)
+    fig.savefig(out, dpi=110)
+
+
+if __name__ == "__main__":
+    main()
