@@ -1,0 +1,185 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tubes of the shipped colon's mesh and lengths of the shipped colonoscope's shaft, written as stages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from arcgym.anatomy import SEGMENTS, Centerline, ColonStage, VisualMesh, read_colon, segment_index, write_colon
+from arcgym.anatomy.visual import TEXTURE_LENGTH, grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.wall import build_wall
+from arcgym.assets import ColonCfg, EndoscopeCfg
+from arcgym.assets.colon import Colon
+from arcgym.assets.endoscope import Endoscope
+from arcgym.assets.endoscope_spec import EndoscopeSpec, proximal_spec
+from arcgym.assets.endoscope_stage import write_endoscope
+from arcgym.sim import Simulation, SimulationCfg
+from arcgym.utils.paths import resolve_asset
+from fidelity_checks.table import Run
+
+SEGMENT = "sigmoid"
+"""Part of the shipped colon that the tubes take their measures from."""
+FREE = dict.fromkeys(SEGMENTS, 0.0)
+"""Anchor stiffness of a tube that is held at its ends alone."""
+
+
+@dataclass(frozen=True)
+class Tube:
+    """A straight tube with one circular bend towards +Y."""
+
+    length: float
+    """[m]."""
+    bend: float = 0.0
+    """Angle of the bend [rad]."""
+    bend_start: float = 0.0
+    """Arc length at which it starts [m]."""
+    bend_radius: float = 0.05
+    """Radius of the centreline in the bend [m]."""
+    refine: int = 1
+    """Rings and sectors for each one of the shipped mesh."""
+
+    def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points of the centreline [m], shape (n, 3), and its angle from the Z axis [rad], shape (n,)."""
+        angle = np.clip((s - self.bend_start) / self.bend_radius, 0.0, self.bend)
+        before = np.minimum(s, self.bend_start) if self.bend else s
+        after = np.maximum(0.0, s - self.bend_start - self.bend * self.bend_radius) if self.bend else 0.0 * s
+        y = self.bend_radius * (1.0 - np.cos(angle)) + after * np.sin(angle)
+        z = before + self.bend_radius * np.sin(angle) + after * np.cos(angle)
+        return np.stack([0.0 * s, y, z], axis=1), angle
+
+    def surface(self, s: np.ndarray, theta: np.ndarray, radius: float) -> np.ndarray:
+        """Points at arc lengths, angles around and a distance from the centreline [m], shape (S, A, 3)."""
+        centre, angle = self.frame(s)
+        inwards = np.stack([0.0 * s, np.cos(angle), -np.sin(angle)], axis=1)
+        across = np.array([1.0, 0.0, 0.0])
+        around = np.cos(theta)[None, :, None] * across + np.sin(theta)[None, :, None] * inwards[:, None]
+        return centre[:, None] + radius * around
+
+
+@dataclass(frozen=True)
+class WallMeasures:
+    """Measures of the shipped wall in the sigmoid."""
+
+    spacing: float
+    """Distance of rings [m]."""
+    sectors: int
+    """Vertices around a ring."""
+    radius: float
+    """Mean radius of the lumen [m]."""
+    thickness: float
+    """Wall thickness [m]."""
+
+
+@cache
+def shipped_stage() -> ColonStage:
+    """The colon that ships with ARCGym."""
+    return read_colon(resolve_asset(ColonCfg().usd_path))
+
+
+@cache
+def wall_measures() -> WallMeasures:
+    """Measure the shipped colon."""
+    wall = shipped_stage().wall
+    rings = len(wall.ring_arc)
+    inner, outer = wall.points.reshape(2, rings, -1, 3).astype(float)
+    radius = np.linalg.norm(inner - inner.mean(axis=1, keepdims=True), axis=2).mean(axis=1)
+    here = wall.segment.reshape(2, rings, -1)[0, :, 0] == segment_index(SEGMENT)
+    thickness = np.median(np.linalg.norm(outer - inner, axis=2))
+    return WallMeasures(
+        float(np.diff(wall.ring_arc).mean()), inner.shape[1], float(radius[here].mean()), float(thickness)
+    )
+
+
+def tube_stage(tube: Tube) -> ColonStage:
+    """A tube with the ring spacing, sectors, radius and thickness of the shipped colon."""
+    measures = wall_measures()
+    sectors = measures.sectors * tube.refine
+    arc = np.linspace(0.0, tube.length, round(tube.length / measures.spacing) * tube.refine + 1)
+    theta = 2.0 * np.pi * np.arange(sectors) / sectors
+    radii = (measures.radius, measures.radius + measures.thickness)
+    layers = np.stack([tube.surface(arc, theta, radius) for radius in radii])
+    codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
+    shipped = shipped_stage()
+    visual = _visual(tube, arc, sectors, measures.radius)
+    return ColonStage(
+        name="tube",
+        wall=build_wall(layers, codes, arc, capped=False),
+        visual=visual,
+        visual_proxy=visual,
+        centerline=Centerline(
+            tube.frame(arc)[0].astype(np.float32),
+            arc.astype(np.float32),
+            np.full(len(arc), measures.radius, np.float32),
+            codes,
+        ),
+        landmarks={"anal_verge": 0.0, "blind_end": tube.length},
+        material=shipped.material,
+        albedo_texture=shipped.albedo_texture,
+        detail_texture=shipped.detail_texture,
+        metadata={"provenance": "scripts/benchmarks/fidelity.py", "licence": "BSD-3-Clause", "patient": "none"},
+    )
+
+
+def _visual(tube: Tube, ring_arc: np.ndarray, sectors: int, radius: float) -> VisualMesh:
+    """The inner surface, which a stage must have."""
+    rows, columns = len(ring_arc), sectors + 1
+    arc, theta = np.linspace(0.0, tube.length, rows), np.linspace(0.0, 2.0 * np.pi, columns)
+    points = tube.surface(arc, theta, radius).reshape(-1, 3).astype(np.float32)
+    s, angle = (grid.ravel() for grid in np.meshgrid(arc, theta, indexing="ij"))
+    faces = grid_triangles(rows, columns)
+    uv = np.stack([angle / (2.0 * np.pi), s / TEXTURE_LENGTH], axis=1).astype(np.float32)
+    skin = skin_to_rings(s, angle, ring_arc, sectors)
+    return VisualMesh(points, faces, smooth_normals(points, faces), uv, np.zeros(len(points), np.float32), *skin)
+
+
+def shaft_spec(links: int, **changes: Any) -> EndoscopeSpec:
+    """Shaft links of the shipped colonoscope, without its base link and its bending section."""
+    spec = proximal_spec()
+    kept = slice(1, 1 + links)
+    if spec.bending_links + links + 1 > len(spec.link_length):
+        raise ValueError(f"The shipped shaft has fewer than {links} links.")
+    return replace(
+        spec,
+        link_length=spec.link_length[kept],
+        link_radius=spec.link_radius[kept],
+        link_mass=spec.link_mass[kept],
+        bending_rigidity=spec.bending_rigidity[kept][: links - 1],
+        hinge_limit=spec.hinge_limit[kept][: links - 1],
+        bending_links=0,
+        **changes,
+    )
+
+
+def build(
+    run: Run,
+    scope: EndoscopeSpec | EndoscopeCfg,
+    tube: Tube | None = None,
+    num_envs: int = 1,
+    colon: dict[str, Any] | None = None,
+    endoscope: dict[str, Any] | None = None,
+    **changes: Any,
+) -> Simulation:
+    """Build worlds with the shipped settings.
+
+    Args:
+        run: Device and folder.
+        scope: A scope to write, or the configuration of a shipped one.
+        tube: A tube to write; the shipped colon by default.
+        num_envs: Worlds.
+        colon: Changes of ``ColonCfg``.
+        endoscope: Changes of ``EndoscopeCfg``.
+        changes: Changes of ``SimulationCfg``.
+    """
+    colon_cfg = ColonCfg(**colon or {})
+    if tube is not None:
+        path = run.folder / f"tube_{abs(hash(tube))}" / "colon.usda"
+        colon_cfg.usd_path = str(path if path.exists() else write_colon(tube_stage(tube), path))
+    if isinstance(scope, EndoscopeSpec):
+        scope = EndoscopeCfg(usd_path=str(write_endoscope(scope, run.folder / "scope.usda")))
+    scope = replace(scope, **endoscope or {})
+    return Simulation(SimulationCfg(device=run.device, **changes), Colon(colon_cfg), Endoscope(scope), num_envs)

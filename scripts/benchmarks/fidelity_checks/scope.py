@@ -1,0 +1,164 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The shaft in free air: bending, buckling and twist against beam theory.
+
+The shaft is a length of the shipped colonoscope's, its base held by the drive, far below the colon. Hinges alternate
+between two planes, fifty millimetres apart in either; each stands for the shaft half a distance to both sides. A beam
+of the chain's begins and ends there, so its length differs by one link between the planes.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from fidelity_checks import references
+from fidelity_checks.loads import LinkLoads, settle
+from fidelity_checks.models import FREE, Tube, build, shaft_spec
+from fidelity_checks.table import Plot, Row, Run, check, relative
+
+IN_AIR = {"stiffness": 0.0, "damping": 0.0}
+"""Introducer that does nothing."""
+DEPTH = 0.4
+"""How far the tip is below the colon [m]; the base may be withdrawn by half a metre."""
+LINKS = 24
+"""Links of the shaft; even, so that the last hinge bends in the Y-Z plane."""
+PLANES = ("X", "Y")
+"""Directions of the sideways load. Hinges about Y bend towards X, hinges about X towards Y."""
+GUIDE = 2000.0
+"""Stiffness of a guide that holds one point of the shaft on the axis [N/m]."""
+TWIST_RIGIDITY = 0.93 * 78.0 * 1.0e-4 * 180.0 / math.pi
+"""GJ [N m^2]: CF-140S, 68 to 88 N cm^2/deg at 24 C, less 7 % at 37 C (Flexural and torsional rigidity of
+colonoscopes)."""
+
+
+def shaft_in_air(run: Run, num_envs: int, links: int = LINKS, **spec: Any) -> tuple[Any, LinkLoads]:
+    """Worlds with a straight shaft below a short tube, and the loads on it."""
+    from arcgym.assets.endoscope_cfg import IntroducerCfg
+
+    cfg = {"introducer": IntroducerCfg(**IN_AIR)}
+    sim = build(run, shaft_spec(links, **spec), Tube(0.15), num_envs, {"anchor_stiffness": FREE}, cfg)
+    for coordinate in (sim.endoscope.data.joint_pos, sim.endoscope.data.joint_pos_target):
+        coordinate[:, 0] = -DEPTH
+    sim.forward()
+    return sim, LinkLoads(sim)
+
+
+def beam(sim: Any, plane: int, links: int) -> tuple[float, float]:
+    """Length of the chain's beam in a plane [m] and place of its end in the frame of the last link [m]."""
+    link = float(sim.endoscope.stage.link_length[0])
+    last = links - 1
+    own = [hinge for hinge in range(1, links) if (hinge % 2 == 0) == (plane == 0)]
+    start, end = (own[0] - 1) * link, (own[-1] + 1) * link
+    return end - start, end - (last + 0.5) * link
+
+
+def rigidity(sim: Any) -> float:
+    """EI of the shaft's hinges [N m^2]."""
+    stage = sim.endoscope.stage
+    return float(stage.hinge_stiffness[0] * 2.0 * stage.link_length[0])
+
+
+def end_places(sim: Any, offsets: list[float]) -> np.ndarray:
+    """Places on the last links' axes [m], shape (N, 3)."""
+    import torch
+
+    from arcgym.utils.math import quat_apply
+
+    data = sim.endoscope.data
+    local = torch.tensor([[0.0, 0.0, offset] for offset in offsets], device=sim.device)
+    return (data.body_pos_w[:, -1] + quat_apply(data.body_quat_w[:, -1], local)).cpu().numpy()
+
+
+@check("cantilever_small", "cantilever_large", quick=True)
+def cantilever(run: Run) -> list[Row]:
+    """End deflection under a dead load across the shaft, in both planes."""
+    sizes = (0.05, 0.5, 1.0, 2.0, 3.0, 4.0)
+    sim, loads = shaft_in_air(run, 2 * len(sizes))
+    stiff = rigidity(sim)
+    beams = [beam(sim, plane, LINKS) for plane in (0, 1) for _ in sizes]
+    forces = [size * stiff / length**2 for size, (length, _) in zip(2 * sizes, beams, strict=True)]
+    for world, ((_, offset), force) in enumerate(zip(beams, forces, strict=True)):
+        loads.point[world, -1, 2] = offset
+        loads.force[world, -1, world // len(sizes)] = force
+    settle(sim)
+    end = end_places(sim, [offset for _, offset in beams])
+    deflection = [float(end[world, world // len(sizes)]) for world in range(len(beams))]
+    exact = [references.elastica_deflection(f, length, stiff) for f, (length, _) in zip(forces, beams, strict=True)]
+    ratio = np.array(deflection) / [length for length, _ in beams]
+    fine = np.linspace(0.01, sizes[-1], 50)
+    plot = Plot("cantilever", "F L² / EI", "end deflection / L")
+    plot.lines.append(("elastica", fine, [references.elastica_deflection(f, 1.0, 1.0) for f in fine]))
+    plot.lines.append(("F L³ / 3 EI", [0.0, 1.5], [0.0, 0.5]))
+    plot.points += [(f"towards {p}", sizes, ratio[i * len(sizes) :][: len(sizes)]) for i, p in enumerate(PLANES)]
+    run.plots.append(plot)
+    small = [references.small_deflection(f, length, stiff) for f, (length, _) in zip(forces, beams, strict=True)]
+    return [
+        worst_plane("cantilever_small", deflection, small, [0, len(sizes)], 0.02, "m"),
+        worst_plane("cantilever_large", deflection, exact, [len(sizes) - 1, -1], 0.02, "m"),
+    ]
+
+
+def worst_plane(
+    name: str, value: list[float], reference: list[float], places: list[int], bound: float, unit: str
+) -> Row:
+    """The row of the plane with the larger error; the other's error goes into the note."""
+    rows = [relative(name, value[k], reference[k], bound, unit) for k in places]
+    errors = ", ".join(f"{row.error:+.2%} towards {plane}" for row, plane in zip(rows, PLANES, strict=True))
+    worst = max(rows, key=lambda row: abs(row.error))
+    return relative(name, worst.value, worst.reference, bound, unit, errors)
+
+
+@check("torsion", quick=True)
+def torsion(run: Run) -> list[Row]:
+    """Twist of the straight shaft between base and tip under a torque on its tip."""
+    torque = 0.03
+    sim, loads = shaft_in_air(run, 1)
+    loads.torque[0, -1, 2] = torque
+    settle(sim)
+    length = float(sim.endoscope.stage.link_length[:-1].sum())
+    twist = twist_angle(sim, -1) - twist_angle(sim, 0)
+    reference = torque * length / TWIST_RIGIDITY
+    return [relative("torsion", twist, reference, 0.10, "rad", "hinges have no twist: the shaft is rigid in torsion")]
+
+
+def twist_angle(sim: Any, link: int) -> float:
+    """Rotation of a link about the Z axis [rad]."""
+    x, y, z, w = sim.endoscope.data.body_quat_w[0, link].tolist()
+    return 2.0 * math.atan2(z, w)
+
+
+@check("buckling", quick=True)
+def buckling(run: Run) -> list[Row]:
+    """Load at which the shaft buckles between the base and a guide at its tip.
+
+    The deflection under a small sideways force grows as 1 / (1 - P / P_cr) (Southwell 1932); a line through its
+    reciprocals meets zero at the critical load.
+    """
+    links, shares = 16, np.array([0.0, 0.3, 0.5, 0.7])
+    sim, loads = shaft_in_air(run, 2 * len(shares), links)
+    stiff, middle = rigidity(sim), links // 2
+    critical, exact, plot = [], [], Plot("buckling", "axial load / Euler load", "first deflection / deflection")
+    for world in range(2 * len(shares)):
+        plane, share = divmod(world, len(shares))
+        length, offset = beam(sim, plane, links)
+        load = references.clamped_pinned_load(length, stiff)
+        loads.point[world, -1, 2] = offset
+        loads.guide[world, -1] = GUIDE
+        loads.force[world, -1, 2] = -shares[share] * load
+        loads.force[world, middle, plane] = 0.01
+        exact.append(load)
+    settle(sim)
+    places = sim.endoscope.data.body_pos_w[:, middle].cpu().numpy()
+    for plane in range(2):
+        rows = slice(plane * len(shares), (plane + 1) * len(shares))
+        inverse = 1.0 / places[rows, plane]
+        slope, level = np.polyfit(shares * exact[rows.start], inverse, 1)
+        critical.append(float(-level / slope))
+        plot.points.append((f"towards {PLANES[plane]}", shares, inverse / inverse[0]))
+    plot.lines.append(("1 - P / P_Euler", [0.0, 1.0], [1.0, 0.0]))
+    run.plots.append(plot)
+    euler = exact[:: len(shares)]
+    return [worst_plane("buckling", critical, euler, [0, 1], 0.10, "N")]
