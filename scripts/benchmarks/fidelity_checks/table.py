@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,8 @@ class Run:
     """Folder for the stages that they write."""
     plots: list[Plot] = field(default_factory=list)
     """Pictures of the checks done."""
+    shared: dict[object, Any] = field(default_factory=dict)
+    """Results that several checks use."""
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,195 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact forces: balance at rest, friction around a bend, and a wall that lets nothing through."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from fidelity_checks.insertion import BEND, CONTROL_STEP, DEPTH, push
+from fidelity_checks.loads import LinkLoads
+from fidelity_checks.models import Tube, build
+from fidelity_checks.references import capstan_ratio
+from fidelity_checks.table import Plot, Row, Run, absolute, check, relative
+
+LOOP = Tube(0.50, math.pi, 0.10, 0.08)
+"""Tube that turns back, for pulling a rope around it."""
+LIMP = 1.0e-4
+"""Bending rigidity of the rope [N m^2]: a hundredth of the bending section's."""
+PULL = 3.0
+"""Dead load on the rope's end [N]."""
+FRICTION = (0.0, 0.05, 0.1, 0.15, 0.2)
+"""Friction coefficients of the worlds; explicit friction is held to be exact up to 0.2."""
+SHOVE = 20.0
+"""Sideways force on a link [N]."""
+
+
+@check("action_reaction", "base_force", quick=True)
+def balance(run: Run) -> list[Row]:
+    """Forces on scope, wall and base once the scope rests in the bend, mean over a control step."""
+    sim = push(run, BEND, DEPTH, rest=2.0).sim
+    on_scope, on_wall, base, steps = np.zeros(3), np.zeros(3), 0.0, round(CONTROL_STEP / sim.physics_dt)
+    for _ in range(steps):
+        sim.step(1)
+        on_scope += sim.endoscope.data.wall_force_w[0].sum(dim=0).cpu().numpy() / steps
+        on_wall += contact_force_on_wall(sim) / steps
+        base += sim.endoscope.data.base_force.item() / steps
+    size = float(np.linalg.norm(on_scope))
+    error = float(np.linalg.norm(on_scope + on_wall)) / size
+    action = Row("action_reaction", float(np.linalg.norm(on_wall)), size, error, 0.02, "N", "error of the vector sum")
+    return [action, relative("base_force", base, -float(on_scope[2]), 0.02, "N")]
+
+
+def contact_force_on_wall(sim: Any) -> np.ndarray:
+    """Sum of the contact forces on the wall of a single world after a step [N], shape (3,).
+
+    It is the wall's residual with the step's contacts less the one without, over all vertices, held ones too. Friction,
+    of which a scope at rest has none, is not in it.
+    """
+    import warp as wp
+
+    from arcgym.sim.wall_kernels import residual
+
+    contact, wall, forces = sim.contact, sim.wall, []
+    mobile = wp.clone(wall.elements.mobile)
+    wall.elements.mobile.fill_(1)
+    for _ in range(2):
+        out = wp.zeros_like(sim.nodal_pos)
+        args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+        args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
+        wp.launch(residual, (1, sim.colon.num_nodes), args, device=sim.device)
+        forces.append(out.numpy().astype(float))
+        contact.records.vertex_head.fill_(-1)
+    wp.copy(wall.elements.mobile, mobile)
+    return (forces[0] - forces[1]).sum(axis=0)
+
+
+@check("capstan", quick=True)
+def capstan(run: Run) -> list[Row]:
+    """Pull a limp shaft around a bend; its tension grows as e^(mu theta)."""
+    sim, loads = rope(run)
+    tension, angle = pull_rope(sim, loads)
+    gain = np.log(tension / tension[0])
+    k = FRICTION.index(sim.cfg.contact.friction)
+    plot = Plot("capstan", "friction coefficient × angle of the bend", "tension / tension without friction")
+    product = np.array(FRICTION) * angle
+    plot.lines.append(("exp(μθ)", product, np.exp(product)))
+    plot.points.append(("shipped settings", product, tension / tension[0]))
+    run.plots.append(plot)
+    exact = math.log(capstan_ratio(FRICTION[k], float(angle[k])))
+    note = f"ln of the ratio; the ratio itself {math.exp(gain[k]) / math.exp(exact) - 1.0:+.1%}; without friction "
+    return [relative("capstan", float(gain[k]), exact, 0.10, "", note + f"{tension[0] / PULL - 1.0:+.1%}")]
+
+
+def rope(run: Run) -> tuple[Any, LinkLoads]:
+    """Worlds of different friction with a limp shaft around the loop, its end loaded along the tube."""
+    import torch
+
+    from arcgym.assets import PROXIMAL_CFG
+
+    limp = {"shaft_rigidity": LIMP, "tip_rigidity": LIMP}
+    sim = build(run, PROXIMAL_CFG, LOOP, len(FRICTION), endoscope=limp)
+    loads = LinkLoads(sim)
+    inserted = LOOP.length - 0.06
+    follow(sim, LOOP, inserted)
+    sim.endoscope.write_friction_to_sim(torch.tensor(FRICTION, device=sim.device))
+    _, angle = LOOP.frame(np.array([LOOP.length]))
+    loads.force[:, -1] = PULL * torch.tensor([0.0, math.sin(angle[0]), math.cos(angle[0])], device=sim.device)
+    return sim, loads
+
+
+def follow(sim: Any, tube: Tube, inserted: float) -> None:
+    """Lay the shaft along the centreline of a tube, inserted by a length [m]."""
+    stage, data = sim.endoscope.stage, sim.endoscope.data
+    ends = inserted - sim.endoscope.tip_offset + 0.5 * stage.link_length[-1]
+    place = ends - stage.total_length + np.cumsum(stage.link_length)[:-1]
+    pitch = np.arange(0, len(place), 2)  # hinges 1, 3, ... turn about X
+    edges = np.r_[-1.0, 0.5 * (place[pitch][1:] + place[pitch][:-1]), tube.length]
+    turn = np.diff(tube.frame(np.maximum(edges, 0.0))[1])
+    for coordinate in (data.joint_pos, data.joint_pos_target):
+        coordinate[:, 0] = inserted - sim.endoscope.rest_insertion
+    for hinge, angle in zip(pitch, turn, strict=True):
+        data.joint_pos[:, 2 + int(hinge)] = -float(angle)
+    sim.contact.ring.fill_(-1)
+    sim.forward()
+
+
+def pull_rope(sim: Any, loads: LinkLoads, speed: float = 0.05) -> tuple[np.ndarray, np.ndarray]:
+    """Withdraw the rope; mean pull on its base [N] and angle it turns by [rad] in each world."""
+    import torch
+
+    from arcgym.utils.math import quat_apply
+
+    data, still = sim.endoscope.data, torch.zeros(sim.num_envs, device=sim.device)
+    sim.endoscope.set_insertion_command(still - speed, still)
+    sim.step(round(0.6 / sim.physics_dt))
+    pulls, angles = [], []
+    axis = torch.tensor([0.0, 0.0, 1.0], device=sim.device).expand(*data.body_quat_w.shape[:2], 3)
+    for _ in range(12):
+        sim.step(round(0.05 / sim.physics_dt))
+        pulls.append(-data.base_force.cpu().numpy())
+        direction = quat_apply(data.body_quat_w, axis)
+        entry = (data.body_pos_w[0, :, 2] - 0.5 * LOOP.bend_start).abs()[: data.body_pos_w.shape[1] // 2 + 20].argmin()
+        cosine = (direction[:, entry] * loads.force[:, -1] / PULL).sum(dim=1)
+        angles.append(torch.arccos(cosine.clamp(-1.0, 1.0)).cpu().numpy())
+    return np.mean(pulls, axis=0), np.mean(angles, axis=0)
+
+
+@check("tunnelling", quick=True)
+def tunnelling(run: Run) -> list[Row]:
+    """Links outside the lumen while 20 N push one of them sideways against the softest preset, for a second.
+
+    The worlds differ in the link pushed, from the tip backwards, and in the side: to either side of the bend's plane,
+    out of the bend and into it. Links of a world that is not finite count as outside.
+    """
+    import torch
+
+    from arcgym.assets import PROXIMAL_CFG
+    from arcgym.utils.math import quat_apply
+
+    links, sides = range(1, 20, 6), [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]
+    sim = build(run, PROXIMAL_CFG, BEND, len(links) * len(sides), {"material": "in_situ"})
+    loads = LinkLoads(sim)
+    follow(sim, BEND, DEPTH)
+    sim.step(24)
+    for world in range(sim.num_envs):
+        link, side = -1 - links[world // len(sides)], world % len(sides)
+        across = quat_apply(sim.endoscope.data.body_quat_w[world, link], torch.tensor(sides[side], device=sim.device))
+        loads.force[world, link] = SHOVE * across
+    events, deepest = np.zeros(sim.num_envs), 0.0
+    for _ in range(20):
+        sim.step(24)
+        events += [links_outside(sim, world) for world in range(sim.num_envs)]
+        deepest = max(deepest, float(sim.colon.data.nodal_displacement.nan_to_num(0.0).max()))
+    note = f"in {np.count_nonzero(events)} of {sim.num_envs} worlds, {int(sim.non_finite.sum())} not finite; "
+    note += f"the wall moved by up to {1e3 * deepest:.0f} mm"
+    return [absolute("tunnelling", float(events.sum()), 0.0, 0.0, "", note)]
+
+
+def links_outside(sim: Any, world: int) -> int:
+    """Links whose centre is outside the lumen: the inner surface winds around it by less than half.
+
+    Links near the open ends of the tube are left out.
+    """
+    from arcgym.anatomy.wall import inner_faces
+
+    wall, data, margin = sim.colon.stage.wall, sim.endoscope.data, 4
+    if bool(sim.non_finite[world]):
+        return sim.endoscope.num_bodies
+    points = sim.colon.data.nodal_pos_w[world].cpu().numpy().astype(float)
+    centres = data.body_pos_w[world].cpu().numpy().astype(float)
+    ring = sim.contact.ring.numpy()[world]
+    centres = centres[(ring >= margin) & (ring < sim.colon.num_rings - margin)]
+    return int((winding(points[inner_faces(wall.tets, wall.layer)], centres) < 0.5).sum())
+
+
+def winding(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Winding number of a surface around points, shape (n,) (solid angles: van Oosterom and Strackee 1983)."""
+    a, b, c = (triangles[None, :, k] - points[:, None] for k in range(3))
+    la, lb, lc = (np.linalg.norm(v, axis=2) for v in (a, b, c))
+    volume = np.einsum("pfi,pfi->pf", a, np.cross(b, c))
+    dots = [(u * v).sum(axis=2) * w for u, v, w in ((a, b, lc), (b, c, la), (c, a, lb))]
+    return np.arctan2(volume, la * lb * lc + sum(dots)).sum(axis=1) / (2.0 * np.pi)

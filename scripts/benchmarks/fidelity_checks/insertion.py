@@ -1,0 +1,167 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pushing the shipped colonoscope: through a straight tube, a bend of 100 degrees, and the sigmoid of the colon."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fidelity_checks.models import Tube, build
+from fidelity_checks.table import Plot, Row, Run, absolute, check, relative
+
+BEND = Tube(0.40, math.radians(100.0), 0.14, 0.05)
+"""Tube with a bend of 100 degrees."""
+STRAIGHT = Tube(0.40)
+"""Tube without one."""
+SPEED = 0.05
+"""Speed of the base [m/s]."""
+CONTROL_STEP = 0.1
+"""Time over which forces are averaged [s]."""
+DEPTH = 0.30
+"""Inserted length at the end of a push through a tube [m]."""
+SIGMOID_DEPTH = 0.42
+"""Inserted length at the end of a push into the colon [m]: the tip is in the S of the sigmoid."""
+PRESETS = {"stiff": "paper", "soft": "in_situ"}
+"""Tissue presets by stiffness."""
+
+
+@dataclass
+class Trace:
+    """A push and the rest after it, sampled every control step."""
+
+    sim: Any
+    """The simulation in its last state."""
+    inserted: list[float] = field(default_factory=list)
+    """Inserted length while pushing [m]."""
+    force: list[float] = field(default_factory=list)
+    """Push on the base [N]."""
+    tip: list[np.ndarray] = field(default_factory=list)
+    """Place of the tip [m]."""
+    moved: list[float] = field(default_factory=list)
+    """Largest displacement of the wall [m]."""
+    volume: list[tuple[float, float]] = field(default_factory=list)
+    """Smallest and largest volume ratio of the wall's tets."""
+
+    def late(self, values: list[float]) -> float:
+        """Mean over the second half of the push, when the tip is in the bend or beyond it."""
+        return float(np.mean(values[len(values) // 2 :]))
+
+
+def converged() -> dict[str, Any]:
+    """Settings near the limit of small steps, many iterations, and the scope's real mass."""
+    from arcgym.sim import WallSolverCfg
+
+    return {"dt": 1.0 / 1920.0, "wall": WallSolverCfg(repeats=10), "mass_scaling": 1.0}
+
+
+def tightest() -> dict[str, Any]:
+    """The shipped step with the wall solved ten times over."""
+    from arcgym.sim import WallSolverCfg
+
+    return {"wall": WallSolverCfg(repeats=10)}
+
+
+def push(run: Run, tube: Tube | None, depth: float, material: str = "paper", rest: float = 0.0, **cfg: Any) -> Trace:
+    """Push to a depth [m] and wait [s]. The same push is made only once a run; ``tube`` None is the shipped colon."""
+    key = ("push", tube, depth, material, rest, str(cfg))
+    if key not in run.shared:
+        run.shared[key] = _push(run, tube, depth, material, rest, **cfg)
+    return run.shared[key]
+
+
+def _push(run: Run, tube: Tube | None, depth: float, material: str, rest: float, **cfg: Any) -> Trace:
+    import torch
+
+    from arcgym.assets import PROXIMAL_CFG
+
+    sim = build(run, PROXIMAL_CFG, tube, colon={"material": material}, **cfg)
+    steps, trace, scope = round(CONTROL_STEP / sim.physics_dt), Trace(sim), sim.endoscope
+    still = torch.zeros(1, device=sim.device)
+    scope.set_insertion_command(still + SPEED, still)
+    for _ in range(round((depth - scope.rest_insertion) / (SPEED * CONTROL_STEP))):
+        sim.step(steps)
+        trace.inserted.append(scope.data.inserted_length.item())
+        trace.force.append(scope.data.base_force.item())
+        trace.tip.append(scope.data.tip_pos_w[0].cpu().numpy().copy())
+        trace.moved.append(sim.colon.data.nodal_displacement.max().item())
+        trace.volume.append(volume_ratios(sim))
+    scope.set_insertion_command(still, still)
+    for _ in range(round(rest / CONTROL_STEP)):
+        sim.step(steps)
+    return trace
+
+
+def volume_ratios(sim: Any) -> tuple[float, float]:
+    """Smallest and largest volume of a wall tet, relative to its rest volume."""
+    from arcgym.anatomy.measures import tet_volumes
+
+    wall = sim.colon.stage.wall
+    now = tet_volumes(sim.colon.data.nodal_pos_w[0].cpu().numpy().astype(float), wall.tets)
+    ratio = now / tet_volumes(wall.points.astype(float), wall.tets)
+    return float(ratio.min()), float(ratio.max())
+
+
+@check("straight_advance", quick=True)
+def straight_advance(run: Run) -> list[Row]:
+    """Advance of the tip for a given advance of the base in a straight tube."""
+    trace = push(run, STRAIGHT, DEPTH)
+    tip = float(trace.tip[-1][2] - trace.tip[0][2])
+    base = trace.inserted[-1] - trace.inserted[0]
+    return [relative("straight_advance", tip, base, 0.01, "m")]
+
+
+@check("volume_stiff", "volume_soft", quick=True)
+def volume(run: Run) -> list[Row]:
+    """Volume ratio of the wall's elements while the scope is pushed through the bend."""
+    rows = []
+    for name, material in PRESETS.items():
+        ratios = np.array(push(run, BEND, DEPTH, material, rest=2.0).volume).ravel()
+        worst = float(ratios[np.argmax(np.abs(ratios - 1.0))])
+        rows.append(absolute(f"volume_{name}", worst, 1.0, 0.05, "", f"{ratios.min():.3f} to {ratios.max():.3f}"))
+    return rows
+
+
+@check("bend_force", "bend_tip")
+def bend(run: Run) -> list[Row]:
+    """Push through a bend of 100 degrees against a converged run."""
+    return compare_pushes(run, "bend", BEND, DEPTH)
+
+
+@check("sigmoid_force", "sigmoid_tip")
+def sigmoid(run: Run) -> list[Row]:
+    """Push into the S of the shipped colon against a converged run."""
+    return compare_pushes(run, "sigmoid", None, SIGMOID_DEPTH)
+
+
+def compare_pushes(run: Run, name: str, tube: Tube | None, depth: float) -> list[Row]:
+    """Mean force of the second half of the push, and the farthest that the tips are apart in it."""
+    rest = 2.0 if tube == BEND else 0.0
+    ours, limit = push(run, tube, depth, rest=rest), push(run, tube, depth, **converged())
+    apart = np.linalg.norm(np.array(ours.tip) - np.array(limit.tip), axis=1)
+    plot = Plot(f"{name}_force", "inserted length [m]", "push on the base [N]")
+    plot.lines.append(("converged", limit.inserted, limit.force))
+    plot.points.append(("shipped settings", ours.inserted, ours.force))
+    run.plots.append(plot)
+    return [
+        relative(f"{name}_force", ours.late(ours.force), limit.late(limit.force), 0.10, "N"),
+        absolute(f"{name}_tip", float(apart[len(apart) // 2 :].max()), 0.0, 0.002, "m", "largest distance of the tips"),
+    ]
+
+
+@check("wall_motion_stiff", "wall_motion_soft")
+def wall_motion(run: Run) -> list[Row]:
+    """Largest wall displacement while pushing into the S of the shipped colon, against the tightest inner solve."""
+    rows, plot = [], Plot("wall_motion", "inserted length [m]", "largest displacement of the wall [mm]")
+    for name, material in PRESETS.items():
+        ours = push(run, None, SIGMOID_DEPTH, material)
+        tight = push(run, None, SIGMOID_DEPTH, material, **tightest())
+        value, reference = ours.late(ours.moved), tight.late(tight.moved)
+        rows.append(relative(f"wall_motion_{name}", value, reference, 0.10, "m"))
+        plot.lines.append((f"{name}, solved ten times", tight.inserted, [1.0e3 * m for m in tight.moved]))
+        plot.points.append((f"{name}, shipped settings", ours.inserted, [1.0e3 * m for m in ours.moved]))
+    run.plots.append(plot)
+    return rows

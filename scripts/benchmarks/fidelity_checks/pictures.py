@@ -1,0 +1,37 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the pictures of the checks. Needs matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+
+from fidelity_checks.table import Plot
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+
+def draw(plots: Sequence[Plot], folder: Path) -> list[Path]:
+    """Draw each plot into ``folder/<name>.png`` and return the paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    return [draw_one(plot, folder / f"{plot.name}.png") for plot in plots]
+
+
+def draw_one(plot: Plot, path: Path) -> Path:
+    """Draw references as lines and the shipped solver as points."""
+    figure, axes = plt.subplots(figsize=(5.0, 3.4), layout="constrained")
+    for label, x, y in plot.lines:
+        axes.plot(x, y, label=label, linewidth=1.2)
+    for label, x, y in plot.points:
+        axes.plot(x, y, "o", label=label, markersize=3.5, fillstyle="none")
+    axes.set_xlabel(plot.x_label)
+    axes.set_ylabel(plot.y_label)
+    axes.legend(frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path, dpi=110, metadata={"Software": None})
+    plt.close(figure)
+    return path

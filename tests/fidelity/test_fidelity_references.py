@@ -1,0 +1,59 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The references that the fidelity table trusts, against textbook values."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+
+def test_elastica_of_a_small_load_is_a_beam() -> None:
+    from fidelity_checks.references import elastica_deflection, small_deflection
+
+    assert elastica_deflection(1e-3, 0.5, 0.025) == pytest.approx(small_deflection(1e-3, 0.5, 0.025), rel=1e-4)
+
+
+@pytest.mark.parametrize(("load", "deflection"), [(1.0, 0.3017), (2.0, 0.4935), (4.0, 0.6700), (5.0, 0.7138)])
+def test_elastica_is_that_of_the_tables(load: float, deflection: float) -> None:
+    """Mattiasson 1981, Int. J. Numer. Methods Eng. 17: w/L of a cantilever by F L^2 / EI."""
+    from fidelity_checks.references import elastica_deflection
+
+    assert elastica_deflection(load, 1.0, 1.0) == pytest.approx(deflection, abs=1e-4)
+
+
+def test_clamped_and_guided_column() -> None:
+    from fidelity_checks.references import clamped_pinned_load
+
+    # 20.19 EI / L^2 (Timoshenko and Gere, Theory of Elastic Stability, section 2.1)
+    assert clamped_pinned_load(0.5, 0.025) == pytest.approx(20.19 * 0.025 / 0.25, rel=1e-3)
+
+
+def test_a_stretched_brick_tube_follows_hooke() -> None:
+    from fidelity_checks.references import TubeModel
+
+    tube = TubeModel(0.1, 0.02, 0.002, 5.0e6, 0.0, around=8, along=4)
+    z = tube.points()[:, 2]
+    stretch = np.zeros((len(z), 3))
+    stretch[:, 2] = 0.01 * z
+    force = (tube.stiffness() @ stretch.ravel()).reshape(-1, 3)
+    area = math.pi * (0.022**2 - 0.020**2)
+    # Without lateral contraction the force is E A strain; the bricks' outline is made of parabolas.
+    assert force[np.isclose(z, 0.1), 2].sum() == pytest.approx(5.0e6 * area * 0.01, rel=2e-3)
+    assert np.abs(force[(z > 1e-9) & (z < 0.1 - 1e-9)]).max() < 1e-6
+
+
+def test_a_long_brick_tube_bends_like_a_beam() -> None:
+    from fidelity_checks.references import TubeModel
+
+    length, radius = 1.0, 0.01
+    tube = TubeModel(length, radius, 0.002, 5.0e6, 0.3, around=8, along=40)
+    inertia = math.pi / 4.0 * (0.012**4 - 0.010**4)
+
+    def middle(angle: np.ndarray, z: np.ndarray) -> np.ndarray:
+        return np.exp(-(((z - 0.5 * length) / 0.03) ** 2))[:, None] * np.array([1.0, 0.0, 0.0])
+
+    # L^3 / 192 EI, and a few per cent for shear and for the load's width.
+    assert tube.compliance(middle) == pytest.approx(length**3 / (192.0 * 5.0e6 * inertia), rel=0.05)
