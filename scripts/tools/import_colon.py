@@ -1,0 +1,101 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Turns a CT segmentation or a surface of a colon into a stage that can be simulated."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+from pathlib import Path
+
+
+def main() -> None:
+    """Parses the command line and imports."""
+    args = _parser().parse_args()
+    logging.basicConfig(level=logging.INFO, format="%(message)s")
+    try:
+        import SimpleITK  # noqa: F401
+        import skimage  # noqa: F401
+        import vtkmodules  # noqa: F401
+
+        from arcgym.anatomy.importing import ColonImportError, import_to_folder
+    except ImportError as error:
+        sys.exit(f"{error}. The importer has dependencies of its own: pip install 'arcgym[importer]'")
+    try:
+        told = import_to_folder(args.input, args.out, _settings(args), args.overwrite)
+    except ColonImportError as error:
+        sys.exit(f"error: {error}")
+    failed = [check for check in told["checks"] if not check["ok"]]
+    for check in failed:
+        print(f"check not kept: {check['name']} is {check['value']:.4g}, bound {check['bound']:.4g}")
+    if told["orientation"]["mirrored"]:
+        print("warning: the mirror image is more like a colon; left and right may be exchanged in the file")
+    if told["guessed_landmarks"]:
+        print(f"warning: landmarks at typical places: {', '.join(told['guessed_landmarks'])}; correct with --landmark")
+    print(f"{args.out / 'colon.usda'}: {told['length_mm']:.0f} mm, least wall radius {told['least_wall_radius_mm']} mm")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("input", type=Path, help=".mha .mha.gz .nii .nii.gz .nrrd, or .stl .obj .ply .vtk .vtp .glb")
+    parser.add_argument("out", type=Path, help="folder that receives colon.usda, textures and report")
+    parser.add_argument("--overwrite", action="store_true", help="replace the folder if it exists")
+    parser.add_argument("--label", type=int, help="value of the colon in a volume with several labels")
+    parser.add_argument(
+        "--spacing", type=float, nargs=3, metavar=("X", "Y", "Z"), help="voxel spacing [mm], or factors"
+    )
+    parser.add_argument("--units", choices=("auto", "mm", "cm", "m"), default="auto", help="unit of a surface")
+    parser.add_argument("--frame", choices=("auto", "ras", "lps", "y-up", "y-up-lps"), default="auto", help="its axes")
+    parser.add_argument("--anus", type=_point, metavar="X,Y,Z", help="place of the anus [mm], see docs/importing.md")
+    parser.add_argument("--cecum", type=_point, metavar="X,Y,Z", help="place of the caecal pole [mm]")
+    parser.add_argument(
+        "--landmark", action="append", default=[], metavar="NAME=MM", help="arc length of a landmark [mm]"
+    )
+    parser.add_argument("--posture", choices=("supine", "prone"), default="supine", help="how the patient lay")
+    parser.add_argument("--licence", default="unknown", help="licence of the data, kept in the stage")
+    parser.add_argument("--patient", default="unknown", help="patient in words, kept in the stage")
+    parser.add_argument("--max-gap", type=float, default=30.0, help="longest gap to bridge [mm] (default: 30)")
+    parser.add_argument("--min-lumen", type=float, default=10.0, help="least radius of the wall [mm] (default: 10)")
+    parser.add_argument("--wall-thickness", type=float, default=2.0, help="thickness of the wall [mm] (default: 2)")
+    return parser
+
+
+def _settings(args: argparse.Namespace) -> object:
+    from arcgym.anatomy.importing import ImportSettings
+
+    return ImportSettings(
+        name=args.out.name,
+        label=args.label,
+        spacing=args.spacing and tuple(args.spacing),
+        units=args.units,
+        frame=args.frame,
+        anus=args.anus,
+        cecum=args.cecum,
+        landmarks=dict(_landmark(text) for text in args.landmark),
+        posture=args.posture,
+        licence=args.licence,
+        patient=args.patient,
+        max_gap=1e-3 * args.max_gap,
+        min_lumen_radius=1e-3 * args.min_lumen,
+        wall_thickness=1e-3 * args.wall_thickness,
+    )
+
+
+def _point(text: str) -> tuple[float, ...]:
+    values = tuple(float(value) for value in text.split(","))
+    if len(values) != 3:
+        raise argparse.ArgumentTypeError(f"'{text}' is no X,Y,Z")
+    return values
+
+
+def _landmark(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name, 1e-3 * float(value)
+    except ValueError:
+        sys.exit(f"error: --landmark {text}: expected NAME=MM, such as rectosigmoid=150")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,13 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an import that cannot succeed raises."""
+
+from __future__ import annotations
+
+
+class ColonImportError(ValueError):
+    """The input cannot become a colon; the message says what was found and what to pass."""
+
+    def __init__(self, found: str, mend: str) -> None:
+        """Joins what was found and what the caller can do about it."""
+        super().__init__(f"{found.rstrip('.')}. {mend}")

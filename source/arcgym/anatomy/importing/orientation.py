@@ -1,0 +1,100 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which end is the anus, and for surfaces which way the file's axes point: by likeness to a typical course."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import ColonImportError
+
+_TYPICAL_COURSE = np.array(
+    [
+        (0.000, 0.000, 0.000),
+        (0.001, -0.042, 0.088),
+        (0.036, -0.004, 0.154),
+        (0.020, 0.075, 0.205),
+        (-0.050, 0.075, 0.100),
+        (-0.144, -0.021, 0.171),
+        (-0.150, -0.048, 0.313),
+        (-0.110, -0.010, 0.395),
+        (-0.072, 0.073, 0.314),
+        (0.012, 0.117, 0.242),
+        (0.086, 0.058, 0.315),
+        (0.143, -0.023, 0.302),
+        (0.142, -0.020, 0.203),
+        (0.118, 0.018, 0.075),
+    ]
+)
+"""Course of a colon from the anal verge to the caecal pole [m], +X right, +Y anterior, +Z cranial (Gray's Anatomy)."""
+
+_TYPICAL_SHARE = np.array([0.0, 0.06, 0.115, 0.19, 0.29, 0.40, 0.487, 0.55, 0.63, 0.715, 0.79, 0.86, 0.917, 1.0])
+"""Share of the length at which each of these points lies."""
+
+_LEAST_MARGIN = 0.08
+_LEAST_LIKENESS = 0.25
+
+FRAMES = {
+    "ras": np.diag([1.0, 1.0, 1.0]),
+    "lps": np.diag([-1.0, -1.0, 1.0]),
+    "y-up": np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]]),
+    "y-up-lps": np.array([[-1.0, 0, 0], [0, 0, 1.0], [0, 1.0, 0]]),
+}
+"""Rotation from a file's axes to right, anterior, cranial."""
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """How a course lies in its file."""
+
+    frame: str
+    """Key of :data:`FRAMES`."""
+    reversed: bool
+    """Whether the course was found from caecum to anus."""
+    likeness: float
+    """Correlation with a typical course, 1 at best."""
+    margin: float
+    """By how much the other reading of the ends is less like it."""
+    mirrored: bool
+    """Whether the mirror image is more like a typical course: the file's left and right may be exchanged."""
+
+
+def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
+    """Tells the ends apart and finds the frame.
+
+    Args:
+        path: Course from one end to the other in the file's axes [m], shape (n, 3).
+        frame: A key of :data:`FRAMES`, or ``auto``.
+        ends_known: The caller gave an end; the path runs from anus to caecum.
+
+    Raises:
+        ColonImportError: Both readings of the ends, or no frame, are like a colon.
+    """
+    names = list(FRAMES) if frame == "auto" else [frame]
+    ways = [False] if ends_known else [False, True]
+    scores = {(name, way): _likeness(path, FRAMES[name], way) for name in names for way in ways}
+    name, way = max(scores, key=lambda key: scores[key])
+    best = scores[name, way]
+    other = max((score for (_, w), score in scores.items() if w != way), default=-1.0)
+    if not ends_known and (best - other < _LEAST_MARGIN or best < _LEAST_LIKENESS):
+        a, b = (", ".join(f"{1e3 * value:.0f}" for value in path[k]) for k in (0, -1))
+        raise ColonImportError(
+            f"The ends at ({a}) mm and ({b}) mm cannot be told apart: likeness to a typical course {best:.2f} one way, "
+            f"{other:.2f} the other",
+            "Pass --anus X,Y,Z with the one that is the anus (and --frame for a surface).",
+        )
+    mirror = _likeness(path * [-1, 1, 1], FRAMES[name], way)
+    return Orientation(name, way, best, best - other, mirror > best + _LEAST_MARGIN)
+
+
+def _likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:
+    """Returns the correlation of two courses at equal shares of their lengths."""
+    course = (path[::-1] if backwards else path) @ rotation.T
+    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(course, axis=0), axis=1))]
+    share = np.linspace(0.0, 1.0, 60)
+    a = np.stack([np.interp(share, arc / arc[-1], course[:, k]) for k in range(3)], 1)
+    b = np.stack([np.interp(share, _TYPICAL_SHARE, _TYPICAL_COURSE[:, k]) for k in range(3)], 1)
+    a, b = a - a.mean(0), b - b.mean(0)
+    return float((a * b).sum() / (np.linalg.norm(a) * np.linalg.norm(b)))

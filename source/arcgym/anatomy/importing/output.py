@@ -1,0 +1,49 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes an imported colon into a folder that appears when it is whole."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from arcgym.anatomy.stage import write_colon
+
+from .errors import ColonImportError
+from .pipeline import import_colon
+from .report import write_report
+from .settings import ImportSettings
+
+
+def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite: bool = False) -> dict[str, Any]:
+    """Imports a colon into a folder with ``colon.usda``, what it refers to, ``report.json`` and ``report.png``.
+
+    Everything is made in a folder beside it that is renamed at the end; when the import fails, nothing stays.
+
+    Args:
+        path: Label volume or surface.
+        out: Folder to make.
+        settings: What the caller knows better.
+        overwrite: Replaces a folder that exists.
+
+    Returns:
+        The figures of the report.
+
+    Raises:
+        ColonImportError: The input cannot become a colon, or the folder exists.
+    """
+    if out.exists() and not overwrite:
+        raise ColonImportError(f"{out} exists", "Pass another folder, or --overwrite.")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as place:
+        made = Path(place) / "colon"
+        made.mkdir()
+        imported = import_colon(path, settings, made)
+        write_colon(imported.stage, made / "colon.usda")
+        told = write_report(imported, made)
+        if out.exists():
+            shutil.rmtree(out)
+        made.rename(out)
+    return told

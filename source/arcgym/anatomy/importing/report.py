@@ -1,0 +1,126 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an import tells beside the stage: ``report.json`` and a page of pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from arcgym.anatomy.segments import SEGMENTS
+from arcgym.anatomy.stage_types import ColonStage
+from arcgym.anatomy.validate import ring_radii, validate_stage
+
+from .pipeline import ImportedColon
+
+REPORT_NAME = "report.json"
+PAGE_NAME = "report.png"
+
+_COLORS = ("#4c72b0", "#dd8452", "#55a868", "#c44e52", "#8172b3", "#937860", "#da8bc3", "#8c8c8c")
+
+
+def figures(imported: ImportedColon) -> dict[str, Any]:
+    """Returns everything there is to tell about an import, ready for JSON."""
+    stage = imported.stage
+    bounds = stage.segment_bounds()
+    radii = ring_radii(stage.wall)
+    return {
+        **imported.report,
+        "length_mm": _mm(stage.length),
+        "segment_length_mm": {name: _mm(end - start) for name, (start, end) in bounds.items()},
+        "landmark_mm": {name: _mm(arc) for name, arc in stage.landmarks.items()},
+        "lumen_radius_mm": {f"p{q}": _mm(np.quantile(stage.centerline.radius, q / 100)) for q in (5, 50, 95)},
+        "least_wall_radius_mm": _mm(radii.min()),
+        "share_widened": round(imported.fitted.widened, 4),
+        "share_narrowed": round(imported.fitted.narrowed, 4),
+        "vertices": {
+            "wall": len(stage.wall.points),
+            "visual": len(stage.visual.points),
+            "proxy": len(stage.visual_proxy.points),
+        },
+        "metadata": stage.metadata,
+        "checks": [
+            {"name": c.name, "value": float(c.value), "bound": float(c.bound), "ok": bool(c.ok)}
+            for c in validate_stage(stage)
+        ],
+    }
+
+
+def write_report(imported: ImportedColon, folder: Path) -> dict[str, Any]:
+    """Writes ``report.json`` and ``report.png`` and returns the figures."""
+    told = figures(imported)
+    (folder / REPORT_NAME).write_text(json.dumps(told, indent=2) + "\n")
+    _draw_page(imported, folder / PAGE_NAME)
+    return told
+
+
+def _mm(value: float) -> float:
+    return round(1e3 * float(value), 2)
+
+
+def _draw_page(imported: ImportedColon, path: Path) -> None:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(13, 11), layout="constrained")
+    FigureCanvasAgg(figure)
+    views = figure.add_gridspec(3, 3, height_ratios=(3, 1.3, 1.6))
+    for column, axes in enumerate(((0, 2), (1, 2), (0, 1))):
+        _draw_projection(figure.add_subplot(views[0, column]), imported, axes)
+    _draw_radius(figure.add_subplot(views[1, :]), imported.stage)
+    _draw_unrolled(figure.add_subplot(views[2, :]), imported.stage)
+    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm")
+    figure.savefig(path, dpi=110)
+
+
+def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) -> None:
+    """Draws the cleaned lumen seen through, with the centreline in the colours of its segments."""
+    grid = imported.grid
+    (hidden,) = set(range(3)) - set(axes)
+    depth = grid.values.sum(hidden) * grid.spacing
+    low, high = grid.origin, grid.origin + grid.spacing * (np.array(grid.values.shape) - 1)
+    extent = (low[axes[0]], high[axes[0]], low[axes[1]], high[axes[1]])
+    axis.imshow(depth.T, origin="lower", extent=extent, cmap="Greys", alpha=0.8)
+    path, line = imported.path, imported.stage.centerline
+    segment = np.interp(np.linspace(0, 1, len(path)), line.arc / line.arc[-1], line.segment).round().astype(int)
+    for k, name in enumerate(SEGMENTS):
+        part = path[segment == k]
+        axis.plot(part[:, axes[0]], part[:, axes[1]], color=_COLORS[k], lw=2, label=name)
+    names = ("right", "anterior", "cranial")
+    axis.set_xlabel(f"{names[axes[0]]} [m]")
+    axis.set_ylabel(f"{names[axes[1]]} [m]")
+    if axes == (0, 2):
+        axis.legend(fontsize=7)
+
+
+def _draw_radius(axis: Any, stage: ColonStage) -> None:
+    line, wall = stage.centerline, stage.wall
+    axis.plot(1e3 * line.arc, 1e3 * line.radius, color="black", label="mean measured radius")
+    axis.plot(1e3 * wall.ring_arc, 1e3 * ring_radii(wall), color="#c44e52", lw=1, label="least radius of the wall")
+    for name, arc in stage.landmarks.items():
+        axis.axvline(1e3 * arc, color="0.7", lw=0.8)
+        axis.text(1e3 * arc, axis.get_ylim()[1], name.replace("_", " "), rotation=20, fontsize=6)
+    axis.set_ylabel("radius [mm]")
+    axis.legend(fontsize=7)
+
+
+def _draw_unrolled(axis: Any, stage: ColonStage) -> None:
+    """Draws the visual surface cut open along its seam: distance from the centreline, dark on folds."""
+    visual, line = stage.visual, stage.centerline
+    columns = int(np.argmax(visual.uv[:, 0] >= 1.0 - 1e-6)) + 1
+    center = np.stack([np.interp(_row_arcs(visual.uv, columns), line.arc, line.points[:, k]) for k in range(3)], 1)
+    rows = visual.points.reshape(-1, columns, 3)
+    distance = np.linalg.norm(rows - center[:, None], axis=2)
+    shown = distance - distance.mean(1, keepdims=True)
+    axis.imshow(1e3 * shown.T, aspect="auto", cmap="copper", vmin=-8, vmax=8, extent=(0, _mm(stage.length), 0, 360))
+    axis.set_xlabel("arc length [mm]")
+    axis.set_ylabel("angle [deg]")
+
+
+def _row_arcs(uv: np.ndarray, columns: int) -> np.ndarray:
+    from arcgym.anatomy.visual import TEXTURE_LENGTH
+
+    return uv[::columns, 1] * TEXTURE_LENGTH

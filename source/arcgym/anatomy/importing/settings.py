@@ -1,0 +1,57 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an import may be told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ImportSettings:
+    """Settings of an import; every default suits a CT colonography."""
+
+    name: str = "imported"
+    """Name of the colon."""
+    label: int | None = None
+    """Value of the colon in a label volume; needed when there are several."""
+    spacing: tuple[float, float, float] | None = None
+    """Voxel spacing [mm] in place of the file's, or factors for a surface given in voxels."""
+    units: str = "auto"
+    """Unit of a surface: ``mm``, ``cm``, ``m``, or ``auto`` to tell by its size."""
+    frame: str = "auto"
+    """Axes of a surface, a key of :data:`arcgym.anatomy.importing.orientation.FRAMES`, or ``auto``."""
+    anus: tuple[float, float, float] | None = None
+    """Position of the anus [mm] on the patient's right, anterior and cranial axes, when it is not found."""
+    cecum: tuple[float, float, float] | None = None
+    """Position of the caecal pole [mm], likewise."""
+    landmarks: dict[str, float] = field(default_factory=dict)
+    """Arc length [m] of borders between segments that are known better than found."""
+    posture: str = "supine"
+    """How the patient lay; kept in the metadata."""
+    licence: str = "unknown"
+    """Licence of the data; kept in the metadata."""
+    patient: str = "unknown"
+    """Patient in words; kept in the metadata."""
+    voxel: float = 0.001
+    """Edge of the voxels that are worked on [m]. Smaller keeps finer folds and costs time and memory."""
+    max_gap: float = 0.03
+    """Longest collapsed or fluid-filled stretch to bridge [m]."""
+    ring_spacing: float = 0.0125
+    """Distance of the wall's rings [m]."""
+    sectors: int = 12
+    """Wall vertices around a ring."""
+    wall_thickness: float = 0.002
+    """Thickness of the simulated wall [m]."""
+    min_lumen_radius: float = 0.010
+    """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through everywhere."""
+    clearance: float = 0.003
+    """Least gap between the walls of two loops [m]."""
+    visual_spacing: float = 0.0022
+    """Distance of the cross-sections of the fine visual surface [m]."""
+    visual_columns: int = 72
+    """Points around the fine visual surface."""
+    proxy_spacing: float = 0.004
+    """Distance of the cross-sections of the surface drawn for policies [m]."""
+    proxy_columns: int = 28
+    """Points around the surface drawn for policies."""

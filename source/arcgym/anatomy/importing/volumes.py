@@ -1,0 +1,112 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads label volumes with SimpleITK and resamples the lumen onto a grid along the patient's axes."""
+
+from __future__ import annotations
+
+import gzip
+import itertools
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import ColonImportError
+from .grid import Grid
+
+VOLUME_SUFFIXES = (".mha", ".mha.gz", ".nii", ".nii.gz", ".nrrd")
+"""File names that are read as label volumes."""
+
+_PLAUSIBLE_SPACING = (0.2, 6.0)
+_MARGIN = 0.006
+
+
+def read_volume(path: Path, label: int | None, spacing: tuple[float, ...] | None, voxel: float) -> Grid:
+    """Reads a label volume.
+
+    Args:
+        path: File with one of :data:`VOLUME_SUFFIXES`.
+        label: Value of the colon; None takes everything above 0, if there is one such value only.
+        spacing: Voxel spacing [mm] along the file's axes in place of the file's own.
+        voxel: Edge of the voxels of the result [m].
+
+    Raises:
+        ColonImportError: The file is damaged, empty, has several labels, or impossible spacing.
+    """
+    image = _read_image(path)
+    if image.GetDimension() != 3:
+        raise ColonImportError(f"{path} has {image.GetDimension()} dimensions", "Pass a 3-D label volume.")
+    if spacing is not None:
+        image.SetSpacing([float(value) for value in spacing])
+    low, high = _PLAUSIBLE_SPACING
+    if not all(low <= value <= high for value in image.GetSpacing()):
+        found = " x ".join(f"{value:.4g}" for value in image.GetSpacing())
+        raise ColonImportError(
+            f"{path} has voxels of {found} mm; a CT has {low} to {high} mm", "Pass --spacing X Y Z in millimetres."
+        )
+    return _resample(_binarise(image, path, label), voxel)
+
+
+def _read_image(path: Path) -> Any:
+    import SimpleITK as sitk
+
+    if not path.name.endswith(".mha.gz"):
+        try:
+            return sitk.ReadImage(str(path))
+        except RuntimeError as error:
+            reason = str(error).strip().splitlines()[-1]
+            raise ColonImportError(f"{path} cannot be read: {reason}", "Check that the file is complete.") from error
+    with tempfile.TemporaryDirectory() as folder:
+        plain = Path(folder) / "volume.mha"
+        try:
+            with gzip.open(path, "rb") as packed, plain.open("wb") as out:
+                shutil.copyfileobj(packed, out)
+        except (EOFError, OSError) as error:
+            raise ColonImportError(f"{path} cannot be unpacked: {error}", "Check that the file is complete.") from error
+        return _read_image(plain)
+
+
+def _binarise(image: Any, path: Path, label: int | None) -> Any:
+    """Returns the lumen as a float image of 0 and 1, cut to its bounding box, in the same physical place."""
+    import SimpleITK as sitk
+
+    values = sitk.GetArrayViewFromImage(image)
+    if values.dtype.kind == "f" and not np.isfinite(values).all():
+        raise ColonImportError(f"{path} holds NaN or infinite values", "Pass a label volume (integers, 0 outside).")
+    found = np.unique(values[values != 0])
+    if label is None and len(found) > 1:
+        some = ", ".join(f"{value:g}" for value in found[:12])
+        raise ColonImportError(f"{path} holds {len(found)} labels ({some})", "Pass --label with the colon's value.")
+    lumen = values != 0 if label is None else values == label
+    if not lumen.any():
+        what = "no voxel above 0" if label is None else f"no voxel of label {label}, only {found[:12].tolist()}"
+        raise ColonImportError(f"{path} is empty: {what}", "Pass a colon segmentation, and --label if it has several.")
+    ranges = [np.flatnonzero(lumen.any(axis=tuple(k for k in range(3) if k != axis))) for axis in (2, 1, 0)]
+    start = [max(0, int(r[0]) - 1) for r in ranges]
+    stop = [min(size, int(r[-1]) + 2) for r, size in zip(ranges, image.GetSize(), strict=True)]
+    part = lumen[start[2] : stop[2], start[1] : stop[1], start[0] : stop[0]].astype(np.float32)
+    cut = sitk.GetImageFromArray(part)
+    cut.SetSpacing(image.GetSpacing())
+    cut.SetDirection(image.GetDirection())
+    cut.SetOrigin(image.TransformIndexToPhysicalPoint(start))
+    return cut
+
+
+def _resample(image: Any, voxel: float) -> Grid:
+    """Resamples onto axes right, anterior, cranial; ITK's are left, posterior, cranial and in millimetres."""
+    import SimpleITK as sitk
+
+    ends = [(0, size - 1) for size in image.GetSize()]
+    corners = np.array([image.TransformIndexToPhysicalPoint(c) for c in itertools.product(*ends)])
+    step, margin = 1e3 * voxel, 1e3 * _MARGIN
+    low = corners.min(0) - margin
+    size = np.ceil((corners.max(0) + margin - low) / step).astype(int) + 1
+    identity = sitk.Transform()
+    resampled = sitk.Resample(
+        image, size.tolist(), identity, sitk.sitkLinear, low.tolist(), [step] * 3, np.eye(3).ravel().tolist(), 0.0
+    )
+    values = sitk.GetArrayFromImage(resampled).transpose(2, 1, 0)[::-1, ::-1]
+    last = low + step * (size - 1)
+    return Grid(np.ascontiguousarray(values), 1e-3 * np.array([-last[0], -last[1], low[2]]), voxel)

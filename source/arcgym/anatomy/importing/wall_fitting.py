@@ -1,0 +1,134 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fits the simulated wall, a grid of rings and sectors, to the measured radii."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+from scipy.spatial import cKDTree
+
+from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.measures import tet_quality
+from arcgym.anatomy.stage_types import WallMesh
+from arcgym.anatomy.wall import LAST_RING_GAP, build_wall
+
+from .errors import ColonImportError
+from .polar import bounded
+from .settings import ImportSettings
+
+_LEAST_QUALITY = 0.06
+_ITERATIONS = 80
+_SHRINK = 0.93
+
+
+@dataclass(frozen=True)
+class FittedWall:
+    """A wall and how it differs from what was measured."""
+
+    wall: WallMesh
+    """The wall."""
+    shift: np.ndarray
+    """How far each inner vertex was moved outwards from the measured surface [m], shape (R, S)."""
+    widened: float
+    """Share of the inner vertices that were moved out to the least lumen radius."""
+    narrowed: float
+    """Share of them that were moved in by more than 1 mm, at bends and between loops."""
+
+
+def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSettings) -> FittedWall:
+    """Fits the wall.
+
+    Args:
+        curve: Centreline.
+        s: Arc length of the measured cross-sections [m], shape (n,).
+        radius: Measured radii [m], shape (n, k).
+        settings: Grid, thickness and bounds.
+
+    Raises:
+        ColonImportError: No wall without inverted elements was found.
+    """
+    end = curve.length - LAST_RING_GAP
+    arc = np.linspace(0.0, end, round(end / settings.ring_spacing) + 1)
+    measured = _on_rings(s, radius, arc, settings.sectors)
+    wanted = bounded(curve, arc, measured, settings.wall_thickness)
+    inner = np.maximum(wanted, settings.min_lumen_radius)
+    wall = _build(curve, arc, inner, settings)
+    for _ in range(_ITERATIONS):
+        tight = np.maximum(_crossing(wall, settings), _inverted(wall))
+        if not tight.any():
+            break
+        soft = gaussian_filter(tight, (0.6, 0.8), mode=("nearest", "wrap"))
+        floor = 0.7 * settings.min_lumen_radius
+        inner = np.maximum(inner * (1.0 - (1.0 - _SHRINK) * np.maximum(soft, tight)), floor)
+        wall = _build(curve, arc, inner, settings)
+    quality = float(tet_quality(wall.points, wall.tets).min())
+    if quality <= 0.0:
+        at = float(arc[wall.ring[wall.tets[tet_quality(wall.points, wall.tets).argmin()]].min()])
+        raise ColonImportError(
+            f"The wall folds over itself {1e3 * at:.0f} mm from the anal verge (element quality {quality:.3f})",
+            "Check the segmentation there, or pass a smaller --min-lumen or --wall-thickness.",
+        )
+    shift = inner - measured
+    return FittedWall(wall, shift, float((shift > 1e-3).mean()), float((shift < -1e-3).mean()))
+
+
+def _on_rings(s: np.ndarray, radius: np.ndarray, arc: np.ndarray, sectors: int) -> np.ndarray:
+    """Averages measured radii about each vertex of the ring grid: a coarse grid would turn sharp folds into spikes."""
+    step, columns = s[1] - s[0], radius.shape[1]
+    soft = gaussian_filter(
+        radius, (0.35 * (arc[1] - arc[0]) / step, 0.35 * columns / sectors), mode=("nearest", "wrap")
+    )
+    at = np.stack([np.interp(arc, s, soft[:, k]) for k in range(columns)], 1)
+    wanted = np.arange(sectors) * columns / sectors
+    wrapped = np.concatenate([at, at[:, :1]], 1)
+    low = np.floor(wanted).astype(int)
+    share = wanted - low
+    return (1 - share) * wrapped[:, low] + share * wrapped[:, low + 1]
+
+
+def _build(curve: Curve, arc: np.ndarray, inner: np.ndarray, settings: ImportSettings) -> WallMesh:
+    theta = np.arange(settings.sectors) * 2 * np.pi / settings.sectors
+    tangent, normal, binormal = curve.frame(arc)
+    outwards = np.cos(theta)[:, None] * normal[:, None] + np.sin(theta)[:, None] * binormal[:, None]
+    center = curve.position(arc)[:, None]
+    outer = center + (inner + settings.wall_thickness)[..., None] * outwards
+    outer[-2:] += settings.wall_thickness * np.array([0.5, 1.0])[:, None, None] * tangent[-2:, None]
+    layers = np.stack([center + inner[..., None] * outwards, outer])
+    return build_wall(layers, curve.segment(arc), arc)
+
+
+def _inverted(wall: WallMesh) -> np.ndarray:
+    """Marks the grid vertices of badly shaped elements with 1, shape (R, S)."""
+    bad = wall.tets[tet_quality(wall.points, wall.tets) < _LEAST_QUALITY]
+    grid = wall.num_rings * wall.num_sectors
+    mark = np.zeros(grid)
+    mark[bad.ravel() % grid] = 1.0
+    return mark.reshape(wall.num_rings, wall.num_sectors)
+
+
+def _crossing(wall: WallMesh, settings: ImportSettings) -> np.ndarray:
+    """Marks the grid vertices that are too near another loop with 1, shape (R, S)."""
+    shape = (wall.num_rings, wall.num_sectors)
+    outer = wall.points[wall.layer == 1].reshape(*shape, 3).astype(float)
+    middle = outer.mean(1)
+    width = np.linalg.norm(outer - middle[:, None], axis=2).max(1)
+    way = np.gradient(middle, axis=0)
+    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
+    points, ring = outer.reshape(-1, 3), np.repeat(np.arange(shape[0]), shape[1])
+    mark = np.zeros(len(points))
+    pairs = cKDTree(points).query_pairs(1.6 * settings.ring_spacing, output_type="ndarray")
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    a, b = pairs.T
+    other = np.abs(wall.ring_arc[ring[a]] - wall.ring_arc[ring[b]]) > 1.7 * (width[ring[a]] + width[ring[b]])
+    a, b = a[other], b[other]
+    near = np.linalg.norm(points[a] - points[b], axis=1) < settings.clearance
+    offset = points[a] - middle[ring[b]]
+    across = offset - np.einsum("ij,ij->i", offset, way[ring[b]])[:, None] * way[ring[b]]
+    own = np.linalg.norm(points[b] - middle[ring[b]], axis=1)
+    inside = np.linalg.norm(across, axis=1) < own + 0.5 * settings.clearance
+    mark[a[near | inside]] = 1.0
+    mark[b[near | inside]] = 1.0
+    return mark.reshape(shape)
