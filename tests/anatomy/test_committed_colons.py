@@ -27,7 +27,9 @@ def colon_1() -> ColonStage:
     return read_colon(ASSETS / "colon_1" / "colon.usda")
 
 
-@pytest.mark.parametrize("name", list(PATIENTS))
+@pytest.mark.parametrize(
+    "name", ["colon_1", *(pytest.param(name, marks=pytest.mark.slow) for name in PATIENTS if name != "colon_1")]
+)
 def test_committed_colon_is_what_the_generator_makes(name: str, tmp_path: Path) -> None:
     made = read_colon(write_colon(make_colon(PATIENTS[name](), tmp_path), tmp_path / "colon.usda"))
     kept = read_colon(ASSETS / name / "colon.usda")

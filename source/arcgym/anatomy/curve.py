@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -52,6 +54,13 @@ class Curve:
         normal -= (normal * tangent).sum(-1, keepdims=True) * tangent
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         return tangent, normal, np.cross(tangent, normal)
+
+    def turned(self, angle: np.ndarray) -> Curve:
+        """Returns the same curve with its frames turned about it by ``angle`` at the samples [rad], shape (n,)."""
+        curve = copy(self)
+        _, normal, binormal = self.frame(self.s)
+        curve._normal = np.cos(angle)[:, None] * normal + np.sin(angle)[:, None] * binormal
+        return curve
 
     def interpolate(self, s: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Interpolates values given at the samples, shape (n, k), linearly at ``s``."""

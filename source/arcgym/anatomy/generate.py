@@ -5,14 +5,15 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from .centerline import make_centerline
-from .curve import Curve
 from .landmarks import find_landmarks
-from .lesions import place_lesions
+from .lesions import Lesion, place_lesions
+from .posture import make_posed, repose
 from .spec import ColonSpec
 from .stage_types import Centerline, ColonStage
 from .surface import Surface
@@ -22,7 +23,11 @@ from .visual import sample_visual
 from .wall import sample_wall
 
 _LOGGER = logging.getLogger(__name__)
+POSTURE_TOLERANCE = 0.03
+"""Largest relative difference of arc lengths between postures."""
+
 _CENTERLINE_SPACING = 0.005
+_OPENINGS = {"valve": "ileocecal_valve", "appendix": "appendix_orifice"}
 
 
 class AnatomyError(ValueError):
@@ -43,10 +48,12 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     rejected = []
     for attempt in range(spec.max_attempts):
         seed = spec.seed + 1000 * attempt
-        rng = np.random.default_rng(seed)
-        curve = make_centerline(spec, rng)
-        surface = Surface(spec, curve, rng)
-        wall = sample_wall(surface)
+        try:
+            surface, lesions = draw_surface(spec, seed)
+        except AnatomyError as error:
+            rejected.append(f"seed {seed}: {error}")
+            continue
+        wall = sample_wall(surface, lesions)
         problems = failed([*validate_curve(spec, surface), *validate_wall(wall, spec)])
         if not problems:
             break
@@ -54,16 +61,16 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
         _LOGGER.info("Rejected %s", rejected[-1])
     else:
         raise AnatomyError(f"ColonSpec '{spec.name}' gave no usable anatomy.\n" + "\n".join(rejected))
-    lesions = place_lesions(surface, rng)
     folder.mkdir(parents=True, exist_ok=True)
-    albedo, detail = write_textures(folder, spec.seed)
+    albedo, detail = write_textures(folder, spec.seed, spec.mucosa)
+    openings = {_OPENINGS[lesion.kind]: lesion.s for lesion in lesions if lesion.kind in _OPENINGS}
     return ColonStage(
         name=spec.name,
         wall=wall,
-        visual=sample_visual(surface, wall, lesions, spec.visual_rows, spec.visual_columns, 3),
+        visual=sample_visual(surface, wall, lesions, spec.visual_rows, spec.visual_columns, spec.visual_refinements),
         visual_proxy=sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1),
-        centerline=_sample_centerline(surface, curve),
-        landmarks=find_landmarks(curve),
+        centerline=_sample_centerline(surface),
+        landmarks=find_landmarks(surface.curve, openings),
         material=spec.material,
         albedo_texture=albedo,
         detail_texture=detail,
@@ -71,7 +78,28 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     )
 
 
-def _sample_centerline(surface: Surface, curve: Curve) -> Centerline:
+def draw_surface(spec: ColonSpec, seed: int) -> tuple[Surface, list[Lesion]]:
+    """Draws a colon's surface and lesions; of another posture, the course differs and nothing else.
+
+    Raises:
+        AnatomyError: The course does not fit into the other posture.
+        ValueError: A segment has no room for its lesions.
+    """
+    rng = np.random.default_rng(seed)
+    supine = replace(spec, posture="supine")
+    surface = Surface(spec, make_centerline(supine, rng), rng)
+    lesions = place_lesions(surface, rng)
+    if spec.posture != "supine":
+        posed = make_posed(spec, surface.curve, seed)
+        error = float(np.abs(posed.ends / surface.curve.ends - 1.0).max())
+        if error > POSTURE_TOLERANCE:
+            raise AnatomyError(f"lengths of segments differ by {error:.2f} between postures")
+        surface = surface.reposed(repose(surface.curve, posed))
+    return surface, lesions
+
+
+def _sample_centerline(surface: Surface) -> Centerline:
+    curve = surface.curve
     s = np.linspace(0.0, curve.length, round(curve.length / _CENTERLINE_SPACING) + 1)
     return Centerline(
         points=curve.position(s).astype(np.float32),

@@ -21,10 +21,11 @@ LANDMARKS = (
 """Landmarks in the order in which a colonoscope meets them."""
 
 
-def find_landmarks(curve: Curve) -> dict[str, float]:
-    """Returns the arc length of each landmark [m]."""
+def find_landmarks(curve: Curve, openings: dict[str, float] | None = None) -> dict[str, float]:
+    """Returns the arc length of each landmark [m], in order; ``openings`` are those of the caecum."""
     start = {name: curve.bounds(name)[0] for name in ("sigmoid", "descending", "splenic", "transverse")}
     hepatic, ascending, cecum = (curve.bounds(name)[0] for name in ("hepatic", "ascending", "cecum"))
     arcs = [0.0, start["sigmoid"], start["descending"], start["splenic"], start["transverse"]]
     arcs += [0.5 * (start["transverse"] + hepatic), hepatic, ascending, cecum, curve.length]
-    return dict(zip(LANDMARKS, arcs, strict=True))
+    landmarks = {**dict(zip(LANDMARKS, arcs, strict=True)), **(openings or {})}
+    return dict(sorted(landmarks.items(), key=lambda item: item[1]))

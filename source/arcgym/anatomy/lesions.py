@@ -1,16 +1,30 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Diverticula and polyps: where they are and how they shape the visual surface."""
+"""Diverticula, polyps and the caecum's openings: where they are and how they shape the surface."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from .segments import SEGMENTS
-from .surface import Surface
+from .spec import PolypSpec
+from .surface import DOME_LENGTH, Surface
+
+WIDE_NECK = 0.005
+"""Neck radius from which a diverticulum is also in the simulated wall [m]: that of a 10 mm capsule."""
+
+_SEAM = 0.7
+"""Least angle from a lesion's middle to the texture's seam [rad]."""
+
+_MEDIAL = np.array([-0.8, -0.6, 0.0])
+"""Direction from the caecum to the ileum: the patient's left and back."""
+
+_PARIS = {"Ip": ("pedunculated", 1.2), "Is": ("sessile", 1.1), "IIa": ("flat", 0.45)}
+"""Kind of lesion, and its height over its radius, by Paris class."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +32,7 @@ class Lesion:
     """A round patch of the surface that bulges out (diverticulum) or in (polyp)."""
 
     kind: str
-    """``diverticulum``, ``sessile`` or ``pedunculated`` (Paris Is, Ip)."""
+    """``diverticulum``, ``sessile``, ``pedunculated`` or ``flat`` (Paris Is, Ip, IIa), ``valve`` or ``appendix``."""
     s: float
     """Arc length of its middle [m]."""
     theta: float
@@ -33,7 +47,7 @@ class Lesion:
     @property
     def patch(self) -> float:
         """Radius of the surface that it deforms [m]."""
-        return self.size * (1.9 if self.kind == "diverticulum" else 1.45)
+        return self.size * {"diverticulum": 1.9, "appendix": 2.4}.get(self.kind, 1.45)
 
 
 def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
@@ -42,27 +56,50 @@ def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
     Raises:
         ValueError: A segment has no room for its lesions.
     """
-    lesions: list[Lesion] = []
+    lesions = _openings(surface) if surface.spec.openings else []
+    for polyp in sorted(surface.spec.polyp_list, key=lambda polyp: -polyp.diameter):
+        lesions.append(_place(surface, polyp.segment, polyp, lesions, rng))
     for name in SEGMENTS:
         segment = surface.spec.segments[name]
-        for kind, count in (("diverticulum", segment.diverticula), ("polyp", segment.polyps)):
-            for _ in range(count):
-                lesions.append(_place(surface, name, kind, lesions, rng))
+        kinds = ["wide diverticulum"] * segment.wide_diverticula
+        kinds += ["diverticulum"] * (segment.diverticula - segment.wide_diverticula) + ["polyp"] * segment.polyps
+        for kind in kinds:
+            lesions.append(_place(surface, name, kind, lesions, rng))
     return lesions
 
 
-def _place(surface: Surface, name: str, kind: str, others: list[Lesion], rng: np.random.Generator) -> Lesion:
+def _openings(surface: Surface) -> list[Lesion]:
+    """Places the ileocaecal valve at the medial wall where the caecum begins, the appendix orifice 25 mm below."""
+    start, _ = surface.curve.bounds("cecum")
+    places = ("valve", start + 0.002, 0.011, 0.009), ("appendix", start + 0.026, 0.0028, 0.005)
+    found = []
+    for kind, s, size, depth in places:
+        s = min(s, surface.curve.length - DOME_LENGTH - 0.008)
+        _, normal, binormal = surface.curve.frame(np.array(s))
+        theta = float(np.arctan2(binormal @ _MEDIAL, normal @ _MEDIAL)) % (2 * np.pi)
+        found.append(Lesion(kind, s, float(np.clip(theta, _SEAM, 2 * np.pi - _SEAM)), size, depth, 1.0))
+    return found
+
+
+def _place(
+    surface: Surface, name: str, kind: str | PolypSpec, others: list[Lesion], rng: np.random.Generator
+) -> Lesion:
     start, end = surface.curve.bounds(name)
     for _ in range(4000):
         s = rng.uniform(start + 0.012, min(end - 0.012, surface.curve.length - 0.05))
-        lesion = _draw(surface, kind, s, rng.uniform(0.7, 2 * np.pi - 0.7), rng)
+        lesion = _draw(surface, kind, s, rng.uniform(_SEAM, 2 * np.pi - _SEAM), rng)
         if _off_folds(surface, lesion) and all(_apart(surface, lesion, other) for other in others):
             return lesion
     raise ValueError(f"ColonSpec.segments['{name}']: no room for another {kind}; ask for fewer.")
 
 
-def _draw(surface: Surface, kind: str, s: float, theta: float, rng: np.random.Generator) -> Lesion:
+def _draw(surface: Surface, kind: str | PolypSpec, s: float, theta: float, rng: np.random.Generator) -> Lesion:
     spec = surface.spec
+    if isinstance(kind, PolypSpec):
+        shape, height = _PARIS[kind.paris]
+        return Lesion(shape, s, theta, 0.5 * kind.diameter, 0.5 * kind.diameter * height, 1.0)
+    if kind == "wide diverticulum":
+        return Lesion("diverticulum", s, theta, rng.uniform(*spec.wide_neck), rng.uniform(0.010, 0.013), 1.2)
     if kind == "diverticulum":
         neck = rng.uniform(*spec.diverticulum_neck)
         return Lesion(kind, s, theta, neck, rng.uniform(0.006, 0.010), rng.uniform(1.25, 1.6))
@@ -123,6 +160,9 @@ def shape_lesion(
 
 def _profile(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Returns distance from the axis, height along the outward axis, tint and weight at shares ``t`` of the patch."""
+    if lesion.kind in ("valve", "appendix"):
+        spread, rise, tint = (_lips if lesion.kind == "valve" else _dimple)(lesion, t, angle)
+        return spread, rise, tint, 1.0 - _ramp(0.75, 1.0, t)
     if lesion.kind == "diverticulum":
         spread, rise = _sac(lesion, t)
         return spread, rise, -np.clip(1.3 * rise / lesion.depth, 0.0, 1.0), 1.0 - _ramp(0.85, 1.0, t)
@@ -165,6 +205,31 @@ def _dome(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     spread = lesion.patch * t * (1 - 0.25 * np.sin(np.pi * np.clip(t, 0, 1)))
     cap = np.sqrt(np.clip(1 - (t / 0.85) ** 2, 0, 1))
     return spread, -lesion.depth * (0.75 * cap + 0.05 * np.clip(1 - t, 0, 1))
+
+
+def _lips(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Two lips across the lumen's length with a slit between them, as the ileocaecal valve shows them from below."""
+    along, around = t * np.cos(angle), t * np.sin(angle)
+    slit = np.exp(-((along / 0.12) ** 2)) * (1.0 - _ramp(0.45, 0.75, np.abs(around)))
+    mound = np.sqrt(np.clip(1.0 - (along / 0.75) ** 2 - (around / 0.95) ** 2, 0.0, 1.0))
+    return lesion.patch * t, -lesion.depth * mound * (1.0 - 0.85 * slit), -0.45 * slit
+
+
+def _dimple(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A narrow pit with a crescent of mucosa round half of it: the appendix orifice."""
+    pit = np.exp(-((t / 0.32) ** 2))
+    rim = np.exp(-(((t - 0.55) / 0.14) ** 2)) * (0.6 + 0.4 * np.cos(angle))
+    return lesion.patch * t, lesion.depth * pit - 0.0013 * rim, -0.45 * pit
+
+
+def wall_bulge(surface: Surface, lesions: Sequence[Lesion], s: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    """Returns how far diverticula that a tip can enter push the simulated wall out [m], shape like ``s``."""
+    bulge = np.zeros_like(s)
+    for lesion in lesions:
+        if lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK:
+            share = distance_to(surface, lesion, s, theta) / lesion.patch
+            bulge = np.maximum(bulge, lesion.depth * np.clip(1.0 - share**2, 0.0, 1.0))
+    return bulge
 
 
 def _ramp(low: float, high: float, x: np.ndarray) -> np.ndarray:

@@ -39,7 +39,44 @@ class SegmentSpec:
     diverticula: int = 0
     """Number of diverticula. None occur in the rectum, which has no gaps in its muscle coat."""
     polyps: int = 0
-    """Number of polyps."""
+    """Number of polyps of random size and shape; for given ones see :attr:`ColonSpec.polyps`."""
+    wide_diverticula: int = 0
+    """How many of the diverticula are wide enough to pass for the lumen; the wall that the scope touches has them."""
+
+
+@dataclass(frozen=True)
+class PolypSpec:
+    """One polyp to place."""
+
+    segment: str
+    """Segment that it grows in."""
+    diameter: float
+    """Diameter [m]; up to 5 mm is diminutive, 10 mm and more large."""
+    paris: str = "Is"
+    """Shape by the Paris classification: Ip (stalked), Is (sessile) or IIa (flat elevated)."""
+
+
+@dataclass(frozen=True)
+class MucosaSpec:
+    """Look of the mucosa."""
+
+    width: int = 1024
+    """Pixels of the textures around the lumen; they are twice as long. Halve it for files a quarter the size."""
+    paleness: float = 0.45
+    """Share of paler mucosa, 0 to 1."""
+    redness: float = 0.20
+    """Share of redder mucosa, 0 to 1."""
+    vessels: float = 1.0
+    """How clearly vessels shine through; 0 hides them."""
+    stool: float = 0.0
+    """Share of the mucosa under residual stool, 0 to 0.5."""
+
+
+PARIS = ("Ip", "Is", "IIa")
+"""Shapes of polyps that can be made."""
+
+POSTURES = ("supine", "prone")
+"""Postures that a colon can be made in."""
 
 
 def default_segments() -> dict[str, SegmentSpec]:
@@ -73,8 +110,12 @@ class ColonSpec:
     """Seed of everything random. Change it for another colon of the same kind."""
     segments: dict[str, SegmentSpec] = field(default_factory=default_segments)
     """Size and features of each segment."""
+    posture: str = "supine"
+    """``supine`` or ``prone``: the same spec gives the same wall in both, mobile segments lying elsewhere."""
     sigmoid_shape: str = "plain"
     """Course of the sigmoid, a key of :data:`arcgym.anatomy.routes.SIGMOID_SHAPES`."""
+    transverse_shape: str = "plain"
+    """Course of the transverse colon, a key of :data:`arcgym.anatomy.routes.TRANSVERSE_SHAPES`."""
     transverse_sag: float = 0.10
     """How far the middle of the transverse colon hangs below its ends [m]."""
     jitter: float = 0.004
@@ -85,6 +126,14 @@ class ColonSpec:
     """Least gap between the walls of two loops [m]. Larger than the contact gap, or loops would touch at rest."""
     polyp_radius: tuple[float, float] = (0.0030, 0.0065)
     """Smallest and largest polyp radius [m] (diminutive to 13 mm)."""
+    polyp_list: tuple[PolypSpec, ...] = ()
+    """Polyps of given size and shape, besides those that segments ask for."""
+    openings: bool = True
+    """Whether the caecum has an ileocaecal valve and an appendix orifice."""
+    mucosa: MucosaSpec = MucosaSpec()
+    """Look of the mucosa."""
+    wide_neck: tuple[float, float] = (0.0052, 0.0062)
+    """Smallest and largest neck radius of diverticula that pass for the lumen [m]."""
     diverticulum_neck: tuple[float, float] = (0.0026, 0.0042)
     """Smallest and largest radius of a diverticulum's neck [m]; sacs are 5-10 mm wide."""
     wall_thickness: float = 0.002
@@ -105,6 +154,8 @@ class ColonSpec:
     """Cross sections of the fine visual surface."""
     visual_columns: int = 68
     """Points around the fine visual surface."""
+    visual_refinements: int = 3
+    """How often triangles on lesions are split for the fine surface. 2 makes smaller files of many lesions."""
     proxy_rows: int = 430
     """Cross sections of the surface drawn for policies."""
     proxy_columns: int = 28
@@ -126,12 +177,24 @@ class ColonSpec:
             self._check(f"segments['{name}'].length", segment.length, 0.02, 1.5)
             self._check(f"segments['{name}'].start_diameter", segment.start_diameter, 0.02, 0.12)
             self._check(f"segments['{name}'].middle_diameter", segment.middle_diameter, 0.02, 0.12)
+            self._check(f"segments['{name}'].diverticula", segment.diverticula, segment.wide_diverticula, 60)
         self._check("wall_thickness", self.wall_thickness, 0.0005, 0.006)
         self._check("ring_spacing", self.ring_spacing, 0.004, 0.03)
         self._check("sectors", self.sectors, 6, 64)
+        self._check("mucosa.stool", self.mucosa.stool, 0.0, 0.5)
+        self._check("mucosa.width", self.mucosa.width, 64, 4096)
+        self._check_choice("posture", self.posture, POSTURES)
+        for k, polyp in enumerate(self.polyp_list):
+            self._check_choice(f"polyp_list[{k}].segment", polyp.segment, SEGMENTS)
+            self._check_choice(f"polyp_list[{k}].paris", polyp.paris, PARIS)
+            self._check(f"polyp_list[{k}].diameter", polyp.diameter, 0.002, 0.025)
         if self.segments["rectum"].diverticula:
             raise ValueError("ColonSpec.segments['rectum'].diverticula must be 0: the rectum has no diverticula.")
 
     def _check(self, name: str, value: float, low: float, high: float) -> None:
         if not low <= value <= high:
             raise ValueError(f"ColonSpec.{name} = {value:g} is out of range; expected {low:g} to {high:g}.")
+
+    def _check_choice(self, name: str, value: str, known: tuple[str, ...]) -> None:
+        if value not in known:
+            raise ValueError(f"ColonSpec.{name} = '{value}' is unknown; expected one of {', '.join(known)}.")

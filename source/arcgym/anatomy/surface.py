@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
@@ -28,6 +30,12 @@ class Surface:
         self.taenia = rng.uniform(0, 2 * np.pi)
         self.rows = make_fold_rows(spec, curve, rng)
         self.valves = make_valves(curve, rng)
+
+    def reposed(self, curve: Curve) -> Surface:
+        """Returns the same surface along another course of the same length, see :mod:`arcgym.anatomy.posture`."""
+        surface = copy(self)
+        surface.curve = curve
+        return surface
 
     def lumen_radius(self, s: np.ndarray) -> np.ndarray:
         """Returns the mean radius between folds at ``s`` [m], without the dome of the caecum."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from .spec import MucosaSpec
 from .vessels import draw_vessels
 
 WIDTH, HEIGHT = 1024, 2048
@@ -27,22 +28,35 @@ _PIXEL = 0.12
 """Size of a pixel [mm]."""
 
 
-def write_textures(folder: Path, seed: int) -> tuple[Path, Path]:
+def write_textures(folder: Path, seed: int, look: MucosaSpec | None = None) -> tuple[Path, Path]:
     """Writes ``mucosa_albedo.jpg`` (RGB) and ``mucosa_detail.png`` (RGBA) and returns their paths."""
-    albedo, detail = make_textures(seed)
+    look = look or MucosaSpec()
+    albedo, detail = make_textures(seed, look=look)
+    if look.width != WIDTH:
+        albedo, detail = (_resize(image, look.width) for image in (albedo, detail))
+        detail &= _DETAIL_BITS
     paths = folder / "mucosa_albedo.jpg", folder / "mucosa_detail.png"
     Image.fromarray(albedo).save(paths[0], quality=92, subsampling=0)
     Image.fromarray(detail).save(paths[1], compress_level=7)
     return paths
 
 
-def make_textures(seed: int, width: int = WIDTH, height: int = HEIGHT) -> tuple[np.ndarray, np.ndarray]:
+def _resize(image: np.ndarray, width: int) -> np.ndarray:
+    """Averages each channel over larger pixels; one by one, or Pillow would weight colour by the last as by opacity."""
+    channels = [Image.fromarray(image[..., k]) for k in range(image.shape[2])]
+    return np.stack([np.array(channel.resize((width, 2 * width), Image.Resampling.BOX)) for channel in channels], -1)
+
+
+def make_textures(
+    seed: int, width: int = WIDTH, height: int = HEIGHT, look: MucosaSpec | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Makes the two textures.
 
     Args:
         seed: Pattern; another seed is another patient.
         width: Pixels around the lumen.
         height: Pixels along the colon.
+        look: What it shall look like; its width is left to :func:`write_textures`.
 
     Returns:
         Albedo, shape (height, width, 3), and detail, shape (height, width, 4), both uint8.
@@ -52,7 +66,9 @@ def make_textures(seed: int, width: int = WIDTH, height: int = HEIGHT) -> tuple[
     scale = width / WIDTH
     trunks = draw_vessels(rng, height, width, count=round(26 * scale**2), trunk=5.5, steps=46)
     fine = draw_vessels(rng, height, width, count=round(150 * scale**2), trunk=2.4, steps=24)
-    return _albedo(noise, trunks, fine), _detail(noise, trunks)
+    look = look or MucosaSpec()
+    albedo, detail = _albedo(noise, trunks, fine, look), _detail(noise, trunks)
+    return _soil(noise, albedo, detail, look.stool) if look.stool else (albedo, detail)
 
 
 class _Noise:
@@ -72,18 +88,18 @@ class _Noise:
         return image / image.std()
 
 
-def _albedo(noise: _Noise, trunks: np.ndarray, fine: np.ndarray) -> np.ndarray:
+def _albedo(noise: _Noise, trunks: np.ndarray, fine: np.ndarray, look: MucosaSpec) -> np.ndarray:
     """Salmon mucosa with paler and redder patches; vessels show where the mucosa is thin."""
     base, pale, red = np.array([[0.850, 0.470, 0.390], [0.905, 0.610, 0.500], [0.790, 0.340, 0.300]])
-    paleness = np.clip(0.45 + 0.26 * noise(60, 700, 1.3), 0, 1)[..., None]
-    redness = np.clip(0.20 + 0.20 * noise(30, 320, 1.2), 0, 0.7)[..., None]
+    paleness = np.clip(look.paleness + 0.26 * noise(60, 700, 1.3), 0, 1)[..., None]
+    redness = np.clip(look.redness + 0.20 * noise(30, 320, 1.2), 0, 0.7)[..., None]
     color = base + paleness * (pale - base)
     color += redness * (red - color)
     color *= 1.0 + 0.022 * noise(2, 12, 0.4)[..., None] + 0.02 * noise(14, 60, 0.8)[..., None]
     thin = 1.0 / (1.0 + np.exp(-1.5 * noise(160, 900)))
     for vessels, strength, ink in (
-        (fine, 0.42 * thin, [0.66, 0.20, 0.17]),
-        (trunks, 0.62 * (0.35 + 0.65 * thin), [0.55, 0.15, 0.16]),
+        (fine, look.vessels * 0.42 * thin, [0.66, 0.20, 0.17]),
+        (trunks, look.vessels * 0.62 * (0.35 + 0.65 * thin), [0.55, 0.15, 0.16]),
     ):
         color += (vessels * strength)[..., None] * (np.array(ink) - color)
     return _bytes(color)
@@ -99,6 +115,19 @@ def _detail(noise: _Noise, trunks: np.ndarray) -> np.ndarray:
     slopes = [0.5 + 0.5 * slope / SLOPE_RANGE for slope in (around, along)]
     detail = _bytes(np.stack([*slopes, 0.5 + height / HEIGHT_RANGE, wetness], -1))
     return detail & _DETAIL_BITS
+
+
+def _soil(noise: _Noise, albedo: np.ndarray, detail: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """Covers a share of the mucosa with patches of turbid film and lumps of stool."""
+    patches = noise(45, 420, 1.2) + 0.25 * noise(10, 40, 0.8)
+    cover = np.clip((patches - np.quantile(patches, 1.0 - share)) / 0.5, 0.0, 1.0)[..., None]
+    lumps = np.clip(0.5 + 0.5 * noise(5, 22, 0.8), 0.0, 1.0)[..., None]
+    color = np.array([0.58, 0.37, 0.15]) * (0.70 + 0.45 * lumps)
+    opacity = cover * (0.55 + 0.4 * lumps)
+    soiled = albedo / 255 + opacity * (color - albedo / 255)
+    relief = detail.astype(float)
+    relief[..., 3:] *= 1.0 - 0.6 * cover
+    return _bytes(soiled), np.rint(relief).astype(np.uint8) & _DETAIL_BITS
 
 
 def _bytes(image: np.ndarray) -> np.ndarray:

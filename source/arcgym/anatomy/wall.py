@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from .lesions import Lesion, wall_bulge
 from .measures import tet_volumes
 from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from .stage_types import WallMesh
@@ -127,8 +130,8 @@ def _frame_neighbors(layers: int, rings: int, sectors: int) -> np.ndarray:
     return np.stack([x.ravel() for x in neighbors], 1)
 
 
-def sample_wall(surface: Surface) -> WallMesh:
-    """Samples a surface on the ring grid of its spec and gives it thickness.
+def sample_wall(surface: Surface, lesions: Sequence[Lesion] = ()) -> WallMesh:
+    """Samples a surface on the ring grid of its spec and gives it thickness; of the lesions, wide diverticula show.
 
     The last ring stands a few millimetres short of the caecal pole, where the dome is still wide, and is closed.
     """
@@ -138,7 +141,7 @@ def sample_wall(surface: Surface) -> WallMesh:
     theta = np.arange(spec.sectors) * 2 * np.pi / spec.sectors
     s, angle = np.meshgrid(arc, theta, indexing="ij")
     radius = surface.radius(s, angle, spec.wall_fold_depth, spec.wall_fold_width)
-    radius = np.maximum(radius, spec.min_lumen_radius)[..., None]
+    radius = (np.maximum(radius, spec.min_lumen_radius) + wall_bulge(surface, lesions, s, angle))[..., None]
     center, outwards = curve.position(s), surface.outwards(s, angle)
     outer = center + (radius + spec.wall_thickness) * outwards
     tangent, _, _ = curve.frame(s[-2:])
