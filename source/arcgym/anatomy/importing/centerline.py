@@ -16,6 +16,7 @@ _WIDE = 0.010
 
 _END_CLEARANCE = 0.004
 _SHORTEST = 0.4
+_WIDEST = 0.065
 _OUTSIDE = -1.0
 
 
@@ -37,6 +38,12 @@ def find_path(grid: Grid, ends: list[np.ndarray | None]) -> np.ndarray:
     """
     coarse = _coarse_clearance(grid)
     clearance = coarse.values
+    if clearance.max() > _WIDEST:
+        raise ColonImportError(
+            f"No colon-like component: a ball of {2e3 * clearance.max():.0f} mm fits in; a colon is below "
+            f"{2e3 * _WIDEST:.0f} mm wide",
+            "Pass the mask of the colon's lumen, and --label and the units (--spacing, --units) if they are wrong.",
+        )
     cost = np.where(clearance > 0, 1.0 + np.minimum((_WIDE / np.maximum(clearance, 1e-6)) ** 4, 2e3), _OUTSIDE)
     wide = clearance >= min(_END_CLEARANCE, 0.5 * float(clearance.max()))
     first, last = (None if end is None else _nearest_voxel(coarse, wide, end) for end in ends)

@@ -53,7 +53,7 @@ def _load_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
     import trimesh
 
     try:
-        mesh = trimesh.load(path, force="mesh")
+        mesh = trimesh.load(path, force="mesh", process=False)
         return np.asarray(mesh.vertices, float), np.asarray(mesh.faces, int)
     except Exception as error:  # readers of seven formats raise what they like on damaged files
         raise ColonImportError(f"{path} cannot be read: {error}", "Check that the file is complete.") from error

@@ -8,6 +8,7 @@ import gzip
 import itertools
 import shutil
 import tempfile
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -52,20 +53,43 @@ def read_volume(path: Path, label: int | None, spacing: tuple[float, ...] | None
 def _read_image(path: Path) -> Any:
     import SimpleITK as sitk
 
+    if path.name.endswith(".nii.gz"):
+        _check_packing(path)
     if not path.name.endswith(".mha.gz"):
         try:
-            return sitk.ReadImage(str(path))
+            image = sitk.ReadImage(str(path))
+            if path.suffix == ".nii":
+                _check_size(path, image)
+            return image
         except RuntimeError as error:
             reason = str(error).strip().splitlines()[-1]
             raise ColonImportError(f"{path} cannot be read: {reason}", "Check that the file is complete.") from error
     with tempfile.TemporaryDirectory() as folder:
         plain = Path(folder) / "volume.mha"
-        try:
-            with gzip.open(path, "rb") as packed, plain.open("wb") as out:
-                shutil.copyfileobj(packed, out)
-        except (EOFError, OSError) as error:
-            raise ColonImportError(f"{path} cannot be unpacked: {error}", "Check that the file is complete.") from error
+        _check_packing(path)
+        with gzip.open(path, "rb") as packed, plain.open("wb") as out:
+            shutil.copyfileobj(packed, out)
         return _read_image(plain)
+
+
+def _check_size(path: Path, image: Any) -> None:
+    expected = image.GetNumberOfPixels() * image.GetSizeOfPixelComponent() * image.GetNumberOfComponentsPerPixel()
+    found = path.stat().st_size
+    if found < expected:
+        raise ColonImportError(
+            f"{path} cannot be read: it has {found} bytes, its header says more than {expected}",
+            "Check that the file is complete.",
+        )
+
+
+def _check_packing(path: Path) -> None:
+    """Unpacks a file to its end: ITK fills what is missing with zeros and says nothing."""
+    try:
+        with gzip.open(path, "rb") as packed:
+            while packed.read(1 << 24):
+                pass
+    except (EOFError, OSError, zlib.error) as error:
+        raise ColonImportError(f"{path} cannot be unpacked: {error}", "Check that the file is complete.") from error
 
 
 def _binarise(image: Any, path: Path, label: int | None) -> Any:

@@ -1,0 +1,83 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A tube of known course, imported from label volumes and surfaces."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from label_volumes import DIRECTIONS, RADIUS, course, write_volume
+from scipy.spatial import cKDTree
+
+from arcgym.anatomy import read_colon
+from arcgym.anatomy.importing import ImportSettings, import_to_folder
+from arcgym.anatomy.importing.cleaning import keep_colon
+from arcgym.anatomy.importing.volumes import read_volume
+from arcgym.anatomy.validate import failed, validate_stage
+from arcgym.sim.wall_topology import lumen_topology
+
+COARSE = ImportSettings(voxel=0.0025, visual_spacing=0.006, visual_columns=32, proxy_spacing=0.01, proxy_columns=16)
+
+
+@pytest.mark.parametrize("kind", DIRECTIONS)
+def test_directions_put_the_lumen_where_it_is(kind: str, tmp_path: Path) -> None:
+    """Every lumen voxel is within the radius (and a voxel) of the true course, whatever the file's axes."""
+    grid = read_volume(write_volume(tmp_path / "tube.mha", DIRECTIONS[kind], voxel=4.0), None, None, 0.004)
+    distance, nearest = cKDTree(course()[0]).query(grid.points(np.argwhere(grid.mask)))
+    assert distance.max() < RADIUS + 0.004
+    assert len(np.unique(nearest)) > 0.5 * len(course()[0])
+
+
+@pytest.fixture(scope="module")
+def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The tube with a gap of 15 mm and, beside it, a loop that is no colon."""
+    folder = tmp_path_factory.mktemp("colon")
+    loop = np.array([0.0, 0.02, 0.42]) + np.linspace(0, 0.1, 60)[:, None] * [1.0, 0.0, 0.0]
+    volume = write_volume(folder / "tube.nii.gz", DIRECTIONS["flipped_xy"], gap=0.015 + 2 * RADIUS, extra=loop)
+    told = import_to_folder(volume, folder / "tube", COARSE)
+    assert len(told["cleaning"]["bridges"]) == 1
+    assert len(told["cleaning"]["dropped"]) == 1
+    assert {path.name for path in folder.iterdir()} == {"tube.nii.gz", "tube"}
+    return folder / "tube"
+
+
+def test_length_and_course_are_the_tubes(imported: Path) -> None:
+    stage = read_colon(imported / "colon.usda")
+    line, length = course()
+    assert stage.length == pytest.approx(length + 2 * RADIUS, rel=0.02)
+    offset = np.array(stage.metadata["translationAfterRotation"])
+    beyond = stage.centerline.points[stage.centerline.arc > 0.08] - offset
+    assert np.quantile(cKDTree(line).query(beyond)[0], 0.95) < 0.006
+
+
+def test_stage_passes_its_checks(imported: Path) -> None:
+    assert failed(validate_stage(read_colon(imported / "colon.usda"))) == []
+
+
+def test_canal_rises_from_the_origin(imported: Path) -> None:
+    stage = read_colon(imported / "colon.usda")
+    start = stage.centerline.points[:3]
+    assert np.abs(start[0]).max() < 1e-6
+    assert (start[2] - start[0])[2] == pytest.approx(0.01, abs=0.001)
+
+
+def test_simulator_takes_the_wall(imported: Path) -> None:
+    """Tets join adjacent rings only and every ring has lumen faces."""
+    from arcgym.anatomy import inner_faces
+
+    wall = read_colon(imported / "colon.usda").wall
+    assert np.ptp(wall.ring[wall.tets], axis=1).max() == 1
+    topology = lumen_topology(inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
+    assert topology.rings.shape == (wall.num_rings, wall.num_sectors)
+
+
+def test_report_and_pictures_are_beside_the_stage(imported: Path) -> None:
+    assert {"colon.usda", "colon.usdc", "report.json", "report.png"} <= {path.name for path in imported.iterdir()}
+
+
+def test_gap_longer_than_allowed_is_not_bridged(tmp_path: Path) -> None:
+    volume = write_volume(tmp_path / "tube.mha", gap=0.03 + 2 * RADIUS, voxel=4.0)
+    _, cleaning = keep_colon(read_volume(volume, None, None, 0.004), max_gap=0.01)
+    assert len(cleaning.dropped) == 1 and not cleaning.bridges
