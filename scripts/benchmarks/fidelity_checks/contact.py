@@ -27,7 +27,7 @@ SHOVE = 20.0
 """Sideways force on a link [N]."""
 
 
-@check("action_reaction", "base_force", quick=True)
+@check("action_reaction", "base_force")
 def balance(run: Run) -> list[Row]:
     """Forces on scope, wall and base once the scope rests in the bend, mean over a control step."""
     sim = push(run, BEND, DEPTH, rest=2.0).sim
@@ -138,7 +138,7 @@ def pull_rope(sim: Any, loads: LinkLoads, speed: float = 0.05) -> tuple[np.ndarr
     return np.mean(pulls, axis=0), np.mean(angles, axis=0)
 
 
-@check("tunnelling", quick=True)
+@check("tunnelling")
 def tunnelling(run: Run) -> list[Row]:
     """Links outside the lumen while 20 N push one of them sideways against the softest preset, for a second.
 

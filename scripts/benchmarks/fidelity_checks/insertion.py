@@ -114,7 +114,7 @@ def straight_advance(run: Run) -> list[Row]:
     return [relative("straight_advance", tip, base, 0.01, "m")]
 
 
-@check("volume_stiff", "volume_soft", quick=True)
+@check("volume_stiff", "volume_soft")
 def volume(run: Run) -> list[Row]:
     """Volume ratio of the wall's elements while the scope is pushed through the bend."""
     rows = []

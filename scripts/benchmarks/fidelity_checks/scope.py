@@ -23,7 +23,7 @@ IN_AIR = {"stiffness": 0.0, "damping": 0.0}
 """Introducer that does nothing."""
 DEPTH = 0.4
 """How far the tip is below the colon [m]; the base may be withdrawn by half a metre."""
-LINKS = 24
+LINKS = 20
 """Links of the shaft; even, so that the last hinge bends in the Y-Z plane."""
 PLANES = ("X", "Y")
 """Directions of the sideways load. Hinges about Y bend towards X, hinges about X towards Y."""
@@ -75,7 +75,7 @@ def end_places(sim: Any, offsets: list[float]) -> np.ndarray:
 @check("cantilever_small", "cantilever_large", quick=True)
 def cantilever(run: Run) -> list[Row]:
     """End deflection under a dead load across the shaft, in both planes."""
-    sizes = (0.05, 0.5, 1.0, 2.0, 3.0, 4.0)
+    sizes = (0.05, 1.0, 2.0, 4.0)
     sim, loads = shaft_in_air(run, 2 * len(sizes))
     stiff = rigidity(sim)
     beams = [beam(sim, plane, LINKS) for plane in (0, 1) for _ in sizes]
