@@ -27,6 +27,8 @@ class Cleaning:
 
     pieces: int = 0
     """Separate pieces in the input."""
+    specks: int = 0
+    """Pieces below 0.5 ml, which are always dropped."""
     bridges: list[dict[str, float]] = field(default_factory=list)
     """Gap [mm] and volume [ml] of each piece that was joined."""
     dropped: list[dict[str, float]] = field(default_factory=list)
@@ -57,6 +59,7 @@ def keep_colon(grid: Grid, max_gap: float) -> tuple[Grid, Cleaning]:
         )
     done = Cleaning(pieces=count)
     pieces = [k + 1 for k in np.argsort(-volume) if volume[k] > _SMALLEST_PIECE]
+    done.specks = count - len(pieces)
     boxes = ndimage.find_objects(labels)
     shells = {k: _shell(labels, boxes[k - 1], k) for k in pieces}
     kept, bridges = _join(grid, shells, volume, max_gap, done)
@@ -100,11 +103,13 @@ def _join(
                 kept.append(k)
                 waiting.remove(k)
                 bridges.append(gaps[k][1:])
-                done.bridges.append({"gap_mm": round(1e3 * gaps[k][0], 1), "volume_ml": round(1e6 * volume[k - 1], 1)})
+                done.bridges.append(
+                    {"gap_mm": round(1e3 * gaps[k][0], 1), "volume_ml": round(1e6 * float(volume[k - 1]), 1)}
+                )
                 newest = k
                 break
     for k in sorted(waiting, key=lambda name: -volume[name - 1])[:20]:
-        done.dropped.append({"gap_mm": round(1e3 * gaps[k][0], 1), "volume_ml": round(1e6 * volume[k - 1], 1)})
+        done.dropped.append({"gap_mm": round(1e3 * gaps[k][0], 1), "volume_ml": round(1e6 * float(volume[k - 1]), 1)})
     return kept, bridges
 
 
