@@ -65,7 +65,7 @@ def test_prone_and_supine_are_the_same_wall(stages: dict[str, ColonStage]) -> No
     prone, supine = stages["colon_2"], stages["colon_3"]
     assert np.array_equal(prone.wall.tets, supine.wall.tets)
     assert prone.wall.ring_arc == pytest.approx(supine.wall.ring_arc, abs=1e-5)
-    assert np.allclose(prone.visual.skin_weights, supine.visual.skin_weights, atol=1e-3)
+    assert (prone.visual.skin_indices == supine.visual.skin_indices).mean() > 0.999
     assert prone.metadata["seed"] == supine.metadata["seed"]
     moved = np.linalg.norm(prone.centerline.points - supine.centerline.points, axis=1)
     by_segment = {name: moved[supine.centerline.segment == k].max() for k, name in enumerate(SEGMENTS)}

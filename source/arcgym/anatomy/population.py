@@ -1,0 +1,107 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random patients after published statistics of the adult colon on CT colonography."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .segments import SEGMENTS
+from .spec import ColonSpec, MucosaSpec
+
+LENGTH_MEAN, LENGTH_DEVIATION = 1.895, 0.263
+"""Length of the colon [m], n = 505 (Khashab et al., Endoscopy 2009)."""
+
+LENGTH_RANGE = 1.40, 2.25
+"""Lengths that are drawn [m]; the tails beyond hold 12 % of people, do not fit the course or need other ones."""
+
+REGULAR_LENGTH, LONG_LENGTH = 1.670, 2.108
+"""Mean length of colons with complete and with incomplete colonoscopy [m] (Hanson et al., AJR 2007)."""
+
+REGULAR_SIGMOID, LONG_SIGMOID = 0.487, 0.668
+"""Mean length of the sigmoid in the two groups [m] (Hanson et al.)."""
+
+REGULAR_TRANSVERSE, LONG_TRANSVERSE = 0.492, 0.663
+"""Mean length of the transverse colon in the two groups, flexures included by halves [m] (Hanson et al.)."""
+
+DIVERTICULA_PREVALENCE, DIVERTICULA_MEAN = 0.42, 14.0
+"""Share of people with diverticula, and their mean number in those (Peery et al., CGH 2016)."""
+
+DIVERTICULA_SITES = {"sigmoid": 0.75, "descending": 0.11, "transverse": 0.06, "ascending": 0.08}
+"""Where diverticula are (Peery et al.)."""
+
+_MOST_DIVERTICULA = 24
+
+
+def draw_spec(seed: int) -> ColonSpec:
+    """Draws one patient; the same seed always gives the same spec."""
+    rng = np.random.default_rng([seed, 2009])
+    total = draw_length(rng)
+    lengths = segment_lengths(total)
+    default = ColonSpec()
+    diverticula = _draw_diverticula(rng)
+    width = rng.normal(1.0, 0.06)
+    segments = {}
+    for name in SEGMENTS:
+        base = default.segments[name]
+        scale = 1.0 if name == "rectum" else float(np.clip(width, 0.88, 1.12))
+        segments[name] = replace(
+            base,
+            length=round(lengths[name], 4),
+            start_diameter=round(base.start_diameter * scale, 4),
+            middle_diameter=round(base.middle_diameter * scale, 4),
+            diverticula=diverticula.get(name, 0),
+            polyps=int(rng.random() < 0.15),
+        )
+    return replace(
+        default,
+        name=f"patient_{seed}",
+        patient=f"random adult, seed {seed}, {total:.2f} m; supine",
+        seed=seed,
+        segments=segments,
+        sigmoid_shape=_draw_sigmoid(rng, lengths["sigmoid"]),
+        transverse_sag=float(np.clip(0.10 + 0.45 * (lengths["transverse"] - 0.40), 0.07, 0.17)),
+        mucosa=MucosaSpec(paleness=rng.uniform(0.3, 0.6), redness=rng.uniform(0.1, 0.3), vessels=rng.uniform(0.7, 1.3)),
+    )
+
+
+def draw_length(rng: np.random.Generator) -> float:
+    """Draws the length of a colon [m] from the normal distribution cut to :data:`LENGTH_RANGE`."""
+    while True:
+        length = float(rng.normal(LENGTH_MEAN, LENGTH_DEVIATION))
+        if LENGTH_RANGE[0] <= length <= LENGTH_RANGE[1]:
+            return length
+
+
+def segment_lengths(total: float) -> dict[str, float]:
+    """Returns the length of each segment [m]: sigmoid and transverse on the line through Hanson's two groups.
+
+    Rectum and caecum are the default spec's; the others share the rest in its proportions.
+    """
+    share = (total - REGULAR_LENGTH) / (LONG_LENGTH - REGULAR_LENGTH)
+    default = {name: segment.length for name, segment in ColonSpec().segments.items()}
+    halves = 0.5 * (default["splenic"] + default["hepatic"])
+    lengths = {
+        "sigmoid": REGULAR_SIGMOID + share * (LONG_SIGMOID - REGULAR_SIGMOID),
+        "transverse": REGULAR_TRANSVERSE + share * (LONG_TRANSVERSE - REGULAR_TRANSVERSE) - halves,
+    }
+    lengths |= {name: default[name] for name in ("rectum", "cecum")}
+    rest = [name for name in SEGMENTS if name not in lengths]
+    scale = (total - sum(lengths.values())) / sum(default[name] for name in rest)
+    return {name: lengths[name] if name in lengths else default[name] * scale for name in SEGMENTS}
+
+
+def _draw_sigmoid(rng: np.random.Generator, length: float) -> str:
+    if length > 0.62:
+        return "redundant"
+    return str(rng.choice(("plain", "angulated") if length < 0.55 else ("angulated", "looped")))
+
+
+def _draw_diverticula(rng: np.random.Generator) -> dict[str, int]:
+    if rng.random() > DIVERTICULA_PREVALENCE:
+        return {}
+    count = min(int(rng.geometric(1.0 / DIVERTICULA_MEAN)), _MOST_DIVERTICULA)
+    sites = rng.choice(list(DIVERTICULA_SITES), size=count, p=list(DIVERTICULA_SITES.values()))
+    return {str(site): int((sites == site).sum()) for site in np.unique(sites)}
