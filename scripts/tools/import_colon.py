@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import logging
 import sys
+import webbrowser
 from pathlib import Path
 
 
@@ -33,6 +34,8 @@ def main() -> None:
         print("warning: the mirror image is more like a colon; left and right may be exchanged in the file")
     if told["guessed_landmarks"]:
         print(f"warning: landmarks at typical places: {', '.join(told['guessed_landmarks'])}; correct with --landmark")
+    if args.preview:
+        webbrowser.open((args.out / "report.png").resolve().as_uri())
     print(f"{args.out / 'colon.usda'}: {told['length_mm']:.0f} mm, least wall radius {told['least_wall_radius_mm']} mm")
 
 
@@ -41,6 +44,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("input", type=Path, help=".mha .mha.gz .nii .nii.gz .nrrd, or .stl .obj .ply .vtk .vtp .glb")
     parser.add_argument("out", type=Path, help="folder that receives colon.usda, textures and report")
     parser.add_argument("--overwrite", action="store_true", help="replace the folder if it exists")
+    parser.add_argument("--preview", action="store_true", help="open the page of pictures when done")
     parser.add_argument("--label", type=int, help="value of the colon in a volume with several labels")
     parser.add_argument(
         "--spacing", type=float, nargs=3, metavar=("X", "Y", "Z"), help="voxel spacing [mm], or factors"
