@@ -14,8 +14,8 @@ from .spec import ColonSpec, MucosaSpec
 LENGTH_MEAN, LENGTH_DEVIATION = 1.895, 0.263
 """Length of the colon [m], n = 505 (Khashab et al., Endoscopy 2009)."""
 
-LENGTH_RANGE = 1.40, 2.25
-"""Lengths that are drawn [m]; the tails beyond hold 12 % of people, do not fit the course or need other ones."""
+LENGTH_RANGE = 1.40, 2.10
+"""Lengths that are drawn [m]; longer colons do not fit into the courses at hand; 25 % of people lie beyond."""
 
 REGULAR_LENGTH, LONG_LENGTH = 1.670, 2.108
 """Mean length of colons with complete and with incomplete colonoscopy [m] (Hanson et al., AJR 2007)."""
