@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws a training run's curves beside the zero-action agent's figures, and writes both as JSON.
 
-python scripts/benchmarks/plot_training.py logs/rsl_rl/arc_sigmoid_magnetic/<run> OUT.png --zero zero.json
+python scripts/benchmarks/plot_training.py logs/rsl_rl/arc_sigmoid_magnetic/<run> --out OUT.png --zero zero.json
 
+Several folders are one run that was resumed: their curves follow each other.
 ``zero.json`` holds the line that ``scripts/zero_agent.py --json`` or ``play.py --policy zero --json`` prints last. The
 curves go to ``OUT.json`` beside the picture. Needs matplotlib (``pip install arcgym[dev]``).
 """
@@ -33,12 +34,12 @@ PANELS = {
 def main() -> None:
     """Read the log, draw, write."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", type=Path, help="folder of the run, or its events file")
-    parser.add_argument("out", type=Path, help="picture to write")
+    parser.add_argument("runs", type=Path, nargs="+", help="folder of the run, or its events file, in order")
+    parser.add_argument("--out", type=Path, required=True, help="picture to write")
     parser.add_argument("--zero", type=Path, help="JSON of the zero-action agent")
     parser.add_argument("--title", default="", help="title of the picture")
     args = parser.parse_args()
-    curves = read_curves(args.run)
+    curves = read_curves(args.runs)
     zero = json.loads(args.zero.read_text().strip().splitlines()[-1]) if args.zero else None
     args.out.with_suffix(".json").write_text(
         json.dumps({"title": args.title, "curves": curves, "zero": zero}, indent=1)
@@ -46,19 +47,19 @@ def main() -> None:
     draw(curves, zero, args.title, args.out)
 
 
-def read_curves(run: Path) -> dict[str, list[float]]:
-    """Return transitions, hours of wall clock and one list a panel, each with an entry an iteration."""
-    log = EventAccumulator(str(run))
-    log.Reload()
-    curves = {title: [round(e.value, 5) for e in log.Scalars(tag)] for title, (tag, _) in PANELS.items()}
-    events = log.Scalars("Perf/total_fps")
-    seconds = [
-        c.value + u.value
-        for c, u in zip(log.Scalars("Perf/collection_time"), log.Scalars("Perf/learning_time"), strict=True)
-    ]
-    steps = [e.value * s for e, s in zip(events, seconds, strict=True)]
+def read_curves(runs: list[Path]) -> dict[str, list[float]]:
+    """Return the transitions so far and one list a panel, each with an entry an iteration."""
+    curves: dict[str, list[float]] = {title: [] for title in [*PANELS, "transitions"]}
     total = 0.0
-    curves["transitions"] = [round(total := total + s) for s in steps]
+    for run in runs:
+        log = EventAccumulator(str(run))
+        log.Reload()
+        for title, (tag, _) in PANELS.items():
+            curves[title] += [round(event.value, 5) for event in log.Scalars(tag)]
+        names = ("Perf/total_fps", "Perf/collection_time", "Perf/learning_time")
+        for rate, collection, learning in zip(*(log.Scalars(name) for name in names), strict=True):
+            total += rate.value * (collection.value + learning.value)
+            curves["transitions"].append(round(total))
     return curves
 
 
