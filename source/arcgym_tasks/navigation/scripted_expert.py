@@ -56,7 +56,7 @@ class PullExpert:
 
         Args:
             scene: The scene.
-            speed: Speed where the tip looks along the lumen [m/s]; a third of it where it looks across.
+            speed: Speed where the tip looks along the lumen [m/s]; 35 % of it where it looks across.
             ahead: Distance looked ahead [m].
             turn_gain: Angular velocity per sine of the angle to the target [rad/s].
         """
