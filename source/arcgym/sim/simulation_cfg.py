@@ -24,8 +24,9 @@ class ContactCfg:
     slip_velocity: float = 0.01
     """Speed under which friction is viscous [m/s]. Lower it to hold a parked scope more firmly."""
     friction_cap: float = 1.0
-    """Largest explicit friction coefficient, in link masses per substep. 1 is exact up to friction 0.2; above,
-    use more ``SimulationCfg.scope_substeps``."""
+    """Largest explicit friction coefficient, in link masses per substep; where Coulomb's law asks for more, friction is
+    viscous. It keeps light links stable and costs some friction: see the row ``capstan`` of
+    ``scripts/benchmarks/fidelity.py``. More ``SimulationCfg.scope_substeps`` raise it."""
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
     search_gap: float = 0.003
@@ -70,7 +71,7 @@ class SimulationCfg:
     """Wall solver and coupling: ``two_level`` (ring correction + vertex block descent, own coupling loop) or ``newton``
     (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
     scope_substeps: int = 2
-    """Scope substeps a physics step; even. Raise it for lighter links or friction above 0.2."""
+    """Scope substeps a physics step; even. Raise it for lighter links or more friction."""
     scope_iterations: int = 10
     """Constraint iterations of MuJoCo a substep."""
     mass_scaling: float = 3.0
