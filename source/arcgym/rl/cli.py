@@ -90,3 +90,29 @@ def place(env_cfg: Any, agent_cfg: Any, device: str | None, distributed: bool = 
     env_cfg.seed = agent_cfg.seed
     torch.manual_seed(agent_cfg.seed)
     return device
+
+
+def run_untrained(description: str, policy: str) -> None:
+    """Parse the command line of a script that runs a policy without training, run it and print its figures.
+
+    Args:
+        description: What ``--help`` says.
+        policy: Function of :mod:`arcgym.rl.rollout` that makes the policy: ``zero_policy`` or ``random_policy``.
+    """
+    parser = make_parser(description)
+    parser.add_argument("--steps", type=int, default=100, help="control steps (default: 100)")
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON on the last line")
+    args, overrides = parse(parser)
+    env_cfg, agent_cfg = load_cfgs(parser, args, overrides)
+    place(env_cfg, agent_cfg, args.device)
+
+    import gymnasium as gym
+
+    from arcgym.rl import RslRlVecEnvWrapper, rollout
+
+    env = RslRlVecEnvWrapper(gym.make(args.task, cfg=env_cfg))
+    result = rollout.run_policy(env, getattr(rollout, policy)(env), args.steps)
+    print(result)
+    if args.json:
+        print(result.to_json())
+    env.close()

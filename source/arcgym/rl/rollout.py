@@ -46,8 +46,9 @@ class RolloutResult:
     """Mean of each ``Episode_Metrics/…`` over the episodes that ended."""
 
     def to_json(self) -> str:
-        """Return all figures as one line of JSON."""
-        return json.dumps(asdict(self))
+        """Return all figures as one line of JSON; what no episode gave is null."""
+        figures = {name: None if value != value else value for name, value in asdict(self).items()}
+        return json.dumps(figures)
 
     def __str__(self) -> str:
         """Return the figures in one line."""
