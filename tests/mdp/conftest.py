@@ -12,6 +12,7 @@ import pytest
 import torch
 
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
+RING_READOUTS = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
 
 
 class FakeEndoscope:
@@ -34,6 +35,9 @@ class FakeEndoscope:
             bending=zeros(num_envs, 2),
             inserted_length=zeros(num_envs),
             wall_force_w=zeros(num_envs, num_links, 3),
+            wall_force_peak=zeros(num_envs, num_links),
+            tip_force=zeros(num_envs),
+            tip_force_peak=zeros(num_envs),
             joint_pos=zeros(num_envs, 2 + num_links - 1),
         )
 
@@ -56,7 +60,11 @@ class FakeColon:
     def __init__(self, num_envs: int) -> None:
         arc = torch.linspace(0.0, 0.5, 6)
         points = torch.stack([torch.zeros(6), torch.zeros(6), arc], dim=1)
-        self.data = SimpleNamespace(centerline_arc=arc, centerline_pos_w=points.expand(num_envs, 6, 3))
+        self.data = SimpleNamespace(
+            centerline_arc=arc,
+            centerline_pos_w=points.expand(num_envs, 6, 3),
+            **{name: torch.zeros(num_envs, 6) for name in RING_READOUTS},
+        )
         self.stage = SimpleNamespace(segment_bounds=lambda: {"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.5)})
         self.commands: dict[str, Any] = {}
 

@@ -79,6 +79,16 @@ class EndoscopeData:
         self._segment_codes = torch.tensor([code for code, _ in bounds], device=sim.device)
 
     @property
+    def tip_force(self) -> torch.Tensor:
+        """Force of the wall on the tip, the last link, mean over the control step [N], shape (N,)."""
+        return self.wall_force_w[:, -1].norm(dim=-1)
+
+    @property
+    def tip_force_peak(self) -> torch.Tensor:
+        """Largest force of the wall on the tip within the control step (mean over one physics step) [N], shape (N,)."""
+        return self.wall_force_peak[:, -1]
+
+    @property
     def inserted_length(self) -> torch.Tensor:
         """Length of scope inside the anus [m], shape (N,); for a free capsule its arc length."""
         return self.joint_pos[:, 0] + self._rest_insertion if self._has_shaft else self.tip_arc_length

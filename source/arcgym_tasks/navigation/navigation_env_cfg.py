@@ -89,7 +89,7 @@ class RewardsCfg:
     lumen = RewTerm(func=mdp.lumen_reward, weight=1.0)
     progress = RewTerm(func=mdp.progress, weight=100.0)
     success = RewTerm(func=mdp.success, weight=50.0)
-    wall_force = RewTerm(func=mdp.excess_wall_force, weight=-0.02, params={"threshold": 2.0})
+    wall_force = RewTerm(func=mdp.excess_wall_force, weight=-0.02, params={"limit": "comfort"})
     action_rate = RewTerm(func=mdp.action_rate_l2, weight=-0.01)
 
 
@@ -103,9 +103,9 @@ class TerminationsCfg:
     lumen_lost: DoneTerm | None = None
     """Off. Ends hopeless episodes early, but keeps the policy from learning to find the lumen again:
     ``DoneTerm(func=mdp.lumen_lost, params={"threshold": -0.4, "steps": 5})``."""
-    excess_force: DoneTerm | None = None
-    """Off. Ends the episode at a force that may perforate: ``DoneTerm(func=mdp.excess_force, params={"limit": 14.0})``.
-    """
+    perforation: DoneTerm | None = None
+    """Off, as in the paper. Ends the episode at a tip force that may perforate, 14.1 N by default:
+    ``DoneTerm(func=mdp.perforation)``."""
 
 
 @configclass
@@ -125,7 +125,7 @@ class EventsCfg:
 class CostsCfg:
     """What a constrained policy keeps low; plain PPO ignores it."""
 
-    tip_force = CostTerm(func=mdp.tip_force_above, params={"limit": 5.0})
+    tip_force = CostTerm(func=mdp.tip_force_above, params={"limit": "unsafe"})
     view_blocked = CostTerm(func=mdp.view_blocked)
 
 
@@ -142,6 +142,14 @@ class MetricsCfg:
     visible_rate = MetricsTerm(func=mdp.visible_rate, reduce="mean")
     centerline_distance = MetricsTerm(func=mdp.centerline_distance, reduce="mean")
     max_wall_force = MetricsTerm(func=mdp.max_wall_force, reduce="max")
+    max_tip_force = MetricsTerm(func=mdp.mean_tip_force, reduce="max")
+    mean_tip_force = MetricsTerm(func=mdp.mean_tip_force, reduce="mean")
+    p95_tip_force = MetricsTerm(func=mdp.tip_force_percentile, reduce="last", params={"percentile": 95.0})
+    tip_impulse = MetricsTerm(func=mdp.tip_impulse, reduce="sum")
+    time_above_comfort = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "comfort"})
+    time_above_unsafe = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "unsafe"})
+    time_above_perforation = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "perforation"})
+    inserted_length = MetricsTerm(func=mdp.inserted_scope, reduce="max")
     looping_ratio = MetricsTerm(func=mdp.looping_ratio, reduce="last")
 
 
@@ -164,6 +172,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     lumen: str | mdp.LumenCfg = "paper"
     """Constants of the lumen reward: ``paper``, ``metric`` or your own :class:`arcgym.envs.mdp.LumenCfg`. ``metric``
     tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's."""
+
+    force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
+    """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
 
     scene: NavigationSceneCfg = NavigationSceneCfg()
     """Colon, endoscope, camera."""

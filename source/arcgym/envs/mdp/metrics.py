@@ -5,6 +5,7 @@
 
 The config says how the steps of an episode are reduced. Reward terms of the same signature serve as metrics too, such
 as :func:`~arcgym.envs.mdp.rewards.success` (reduce: max) and :func:`~arcgym.envs.mdp.rewards.lumen_centering` (mean).
+Metrics of force and strain are in :mod:`arcgym.envs.mdp.force_metrics`.
 """
 
 from __future__ import annotations
@@ -15,12 +16,9 @@ import torch
 
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress, segment_span
-from arcgym.managers import SceneEntityCfg
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
-
-_ENDOSCOPE = SceneEntityCfg("endoscope")
 
 
 def time_to_success(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
@@ -49,9 +47,9 @@ def centerline_distance(env: ManagerBasedRLEnv) -> torch.Tensor:
     return env.scene["endoscope"].data.tip_centerline_distance
 
 
-def max_wall_force(env: ManagerBasedRLEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
-    """Largest force of a link on the wall [N], mean over the control step (reduce: max)."""
-    return env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1).amax(dim=1)
+def inserted_scope(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """Length of scope inside the anus [m] (reduce: max, or last)."""
+    return env.scene["endoscope"].data.inserted_length.clone()
 
 
 def looping_ratio(env: ManagerBasedRLEnv) -> torch.Tensor:

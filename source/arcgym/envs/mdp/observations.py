@@ -26,6 +26,7 @@ LOOK_AHEAD = (0.01, 0.02, 0.04, 0.08)
 """Arc lengths ahead of the tip [m] at which :class:`centerline_ahead` looks: half to four scope diameters."""
 
 _CAMERA = SceneEntityCfg("camera")
+_ENDOSCOPE = SceneEntityCfg("endoscope")
 
 
 def rgb(env: ManagerBasedEnv, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
@@ -104,6 +105,37 @@ def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
     """``log(1 + F / 1 N)`` of the push at the base and of the pull at the tip, shape (N, 2)."""
     data = env.scene["endoscope"].data
     return torch.log1p(torch.stack((data.base_force.abs(), data.tip_pull_force_w.norm(dim=-1)), dim=1))
+
+
+def tip_force(env: ManagerBasedEnv) -> torch.Tensor:
+    """Force between tip and wall [N], mean over the control step, shape (N, 1)."""
+    return env.scene["endoscope"].data.tip_force.unsqueeze(1)
+
+
+def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
+    """Force of the wall on the tip in its frame [N], as a sensor in the tip feels it, shape (N, 3)."""
+    data = env.scene["endoscope"].data
+    return quat_apply_inverse(data.tip_quat_w, data.wall_force_w[:, -1])
+
+
+def link_forces(env: ManagerBasedEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
+    """Force between each link and the wall [N], mean over the control step, shape (N, L)."""
+    return env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+
+
+def base_force(env: ManagerBasedEnv) -> torch.Tensor:
+    """Push on the base [N], negative for a pull, mean over the control step, shape (N, 1)."""
+    return env.scene["endoscope"].data.base_force.unsqueeze(1)
+
+
+def wall_strain(env: ManagerBasedEnv) -> torch.Tensor:
+    """Largest principal strain of each ring of the wall, mean over the control step, shape (N, R)."""
+    return env.scene["colon"].data.wall_strain.clone()
+
+
+def anchor_tension(env: ManagerBasedEnv) -> torch.Tensor:
+    """Pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
+    return env.scene["colon"].data.anchor_tension.clone()
 
 
 def last_action(env: ManagerBasedEnv) -> torch.Tensor:

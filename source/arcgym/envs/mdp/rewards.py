@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, RewardTermCfg, SceneEntityCfg
@@ -62,15 +63,27 @@ def success(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
     return (segment_progress(env, segment) >= 1.0).float()
 
 
-def excess_wall_force(
-    env: ManagerBasedRLEnv, threshold: float = 2.0, asset_cfg: SceneEntityCfg = _ENDOSCOPE
-) -> torch.Tensor:
-    """Largest force between a link and the wall above the comfort tier ``threshold`` [N], mean over the control step.
+def tip_force_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """Squared force between tip and wall [N^2], mean over the control step."""
+    return env.scene["endoscope"].data.tip_force.square()
 
-    The tier of 2 N is a proposal, well below the 14.1 N at which a tip perforated porcine colon (Johnson et al. 2019).
-    """
+
+def excess_tip_force(env: ManagerBasedRLEnv, limit: float | str = "comfort") -> torch.Tensor:
+    """Force between tip and wall above ``limit`` ([N] or a tier) [N], mean over the control step."""
+    return (env.scene["endoscope"].data.tip_force - force_limit(env, limit)).clamp(min=0.0)
+
+
+def excess_wall_force(
+    env: ManagerBasedRLEnv, limit: float | str = "comfort", asset_cfg: SceneEntityCfg = _ENDOSCOPE
+) -> torch.Tensor:
+    """Largest force between a link and the wall above ``limit`` ([N] or a tier) [N], mean over the control step."""
     force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
-    return (force.amax(dim=1) - threshold).clamp(min=0.0)
+    return (force.amax(dim=1) - force_limit(env, limit)).clamp(min=0.0)
+
+
+def excess_wall_strain(env: ManagerBasedRLEnv, limit: float = 0.2) -> torch.Tensor:
+    """Largest strain of the wall above ``limit``, mean over the control step."""
+    return (env.scene["colon"].data.wall_strain.amax(dim=1) - limit).clamp(min=0.0)
 
 
 def action_rate_l2(env: ManagerBasedRLEnv) -> torch.Tensor:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, SceneEntityCfg, TerminationTermCfg
@@ -29,14 +30,23 @@ def segment_passed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.
     return segment_progress(env, segment) >= 1.0
 
 
-def excess_force(env: ManagerBasedRLEnv, limit: float = 14.0, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
-    """Some link presses on the wall with more than ``limit`` [N], mean over the control step.
+def perforation(env: ManagerBasedRLEnv, limit: float | str = "perforation") -> torch.Tensor:
+    """The tip presses on the wall with a force that may perforate it (``limit``: [N] or a tier).
 
-    The default is the force at which the straight tip of a colonoscope perforated porcine colon, 14.1 N (Johnson et al.
-    2019). Choose links by ``asset_cfg.body_names``.
+    Mean over the control step: the limit was measured in slow pushes, and a peak of 2 ms is contact noise as well.
+    """
+    return env.scene["endoscope"].data.tip_force > force_limit(env, limit)
+
+
+def excess_force(
+    env: ManagerBasedRLEnv, limit: float | str = "perforation", asset_cfg: SceneEntityCfg = _ENDOSCOPE
+) -> torch.Tensor:
+    """Some link presses on the wall with more than ``limit`` ([N] or a tier), mean over the control step.
+
+    Choose links by ``asset_cfg.body_names``. A bent shaft spreads its force and perforates later than a straight tip.
     """
     force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
-    return force.amax(dim=1) > limit
+    return force.amax(dim=1) > force_limit(env, limit)
 
 
 class lumen_lost(ManagerTermBase):

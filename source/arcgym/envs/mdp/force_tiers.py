@@ -1,0 +1,69 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Tiers of contact force: one place for the limits that terms, metrics and pictures share."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from arcgym.utils.configclass import configclass
+from arcgym.utils.string import did_you_mean
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+
+@configclass
+class ForceTiersCfg:
+    """Limits of the force between scope and wall [N], ascending.
+
+    A task that has a field ``force_tiers`` of this type changes them for all its terms and for its pictures.
+    """
+
+    comfort: float = 2.0
+    """End of the comfortable tier. A choice of this benchmark: no clinical threshold of pain in newtons is published.
+    Lower it to train gentler policies."""
+
+    unsafe: float = 5.0
+    """Start of the unsafe tier. A choice of this benchmark: about a third of the perforation force."""
+
+    perforation: float = 14.1
+    """Start of the tier in which the wall may tear. A straight, large colonoscope head loaded at an angle perforated
+    porcine colon at 14.1 N, one bent by 90 degrees at 46.5 N (Johnson et al. 2019, J. Mech. Behav. Biomed. Mater. 91,
+    139-148). Diseased or thinned walls may tear earlier."""
+
+    def validate_config(self) -> None:
+        """Check the order.
+
+        Raises:
+            ValueError: If the limits do not rise from a positive one.
+        """
+        if not 0.0 < self.comfort < self.unsafe < self.perforation:
+            raise ValueError(
+                "ForceTiersCfg: 0 < comfort < unsafe < perforation must hold, got "
+                f"{self.comfort}, {self.unsafe} and {self.perforation} N."
+            )
+
+
+FORCE_TIERS = ForceTiersCfg()
+"""Tiers of tasks that define none."""
+
+
+def tiers_of(env: ManagerBasedEnv) -> ForceTiersCfg:
+    """Tiers of the task: its field ``force_tiers``, or the defaults where it has none."""
+    return getattr(env.cfg, "force_tiers", None) or FORCE_TIERS
+
+
+def force_limit(env: ManagerBasedEnv, limit: float | str) -> float:
+    """A limit of force [N], given as a number or by the name of a tier: ``comfort``, ``unsafe`` or ``perforation``.
+
+    Raises:
+        ValueError: If there is no such tier, with those there are.
+    """
+    if not isinstance(limit, str):
+        return limit
+    tiers = vars(tiers_of(env))
+    if limit not in tiers:
+        raise ValueError(f"There is no force tier '{limit}'. {did_you_mean(limit, tiers)}")
+    return tiers[limit]
