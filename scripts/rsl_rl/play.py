@@ -3,10 +3,10 @@
 
 """Run a trained policy, record it and export it.
 
-    python scripts/rsl_rl/play.py --task ARC-Splenic-Proximal --video
+    python scripts/rsl_rl/play.py --task ARC-Splenic-Proximal --video --record logs/episodes
 
 Uses the ``-Play`` variant of the task. The video goes to ``videos/play`` of the run, the policy to ``exported``.
-``--policy zero`` and ``--policy random`` need no checkpoint.
+``--policy zero`` and ``--policy random`` need no checkpoint. ``--record`` writes every episode's trajectory to a file.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ def main() -> None:
     parser = cli.make_parser("Run a trained policy, record it and export it.")
     parser.add_argument("--policy", choices=("trained", "zero", "random"), default="trained", help="what acts")
     parser.add_argument("--steps", type=int, help="control steps (default: the video's, else one episode)")
+    parser.add_argument("--record", metavar="PATH", help="record trajectories: a folder, or a file ending in .hdf5")
     parser.add_argument("--json", action="store_true", help="print the figures as JSON on the last line")
     cli.add_run_arguments(parser)
     cli.add_video_arguments(parser)
@@ -41,6 +42,7 @@ def play(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any) -> None:
     checkpoint = find_policy(args, agent_cfg)
     folder = checkpoint.parent if checkpoint else Path("logs/rsl_rl") / agent_cfg.experiment_name / args.policy
     device = cli.place(env_cfg, agent_cfg, args.device)
+    records = record_to(args, env_cfg)
     env, videos = make_env(args, env_cfg, agent_cfg, folder.resolve())
     policy = make_policy(args, env, agent_cfg, checkpoint, device)
     steps = args.steps or (args.video_length if args.video else int(env.max_episode_length))
@@ -51,6 +53,8 @@ def play(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any) -> None:
         env.close()
     for path in videos:
         print(f"video: {path}")
+    if records:
+        print(f"recorded: {finish_records(args, records)}")
     if args.json:
         print(result.to_json())
 
@@ -83,6 +87,29 @@ def make_env(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any, folder: Pat
         )
         videos = recorder.paths
     return RslRlVecEnvWrapper(env, clip_actions=agent_cfg.clip_actions), videos
+
+
+def record_to(args: argparse.Namespace, env_cfg: Any) -> Path | None:
+    """Switch recording on where the command line asks for it, and return the folder of the episodes."""
+    if not args.record:
+        return None
+    from arcgym.envs import mdp
+
+    path = Path(args.record).resolve()
+    folder = path.with_suffix("") if path.suffix == ".hdf5" else path
+    env_cfg.recorders = env_cfg.recorders or mdp.TrajectoryRecorderCfg()
+    env_cfg.recorders.dataset_export_dir_path = str(folder)
+    return folder
+
+
+def finish_records(args: argparse.Namespace, folder: Path) -> str:
+    """Copy the episodes into one file where the command line asks for it, and say where they are."""
+    from arcgym.managers import episode_paths, export_hdf5
+
+    count = len(episode_paths(folder))
+    if args.record.endswith(".hdf5"):
+        count = export_hdf5(folder, args.record, {"env_name": args.task, "type": "arcgym"})
+    return f"{count} episodes in {args.record}"
 
 
 def make_policy(args: argparse.Namespace, env: Any, agent_cfg: Any, checkpoint: Path | None, device: str) -> Any:

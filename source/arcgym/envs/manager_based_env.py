@@ -13,7 +13,7 @@ import torch
 
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.spaces import batched, observation_space
-from arcgym.managers import ActionManager, EventManager, ObservationManager
+from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.configclass import validate
 from arcgym.utils.seed import set_seed
@@ -103,6 +103,7 @@ class ManagerBasedEnv(gym.Env):
         self.event_manager = EventManager(self.cfg.events, self)
         self.action_manager = ActionManager(self.cfg.actions, self)
         self.observation_manager = ObservationManager(self.cfg.observations, self)
+        self.recorder_manager = RecorderManager(self.cfg.recorders, self)
 
     def seed(self, seed: int = -1) -> int:
         """Seeds every random number generator and returns the seed; a negative one draws one."""
@@ -125,8 +126,10 @@ class ManagerBasedEnv(gym.Env):
         if seed is not None:
             self.seed(seed)
         self.extras = {"log": {}}
-        self._reset_idx(torch.arange(self.num_envs, device=self.device))
+        env_ids = torch.arange(self.num_envs, device=self.device)
+        self._reset_idx(env_ids)
         self._refresh_all()
+        self.recorder_manager.record_post_reset(env_ids)
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
 
@@ -143,6 +146,7 @@ class ManagerBasedEnv(gym.Env):
         """
         self.extras = {"log": {}}
         self._advance(action)
+        self.recorder_manager.record_post_step()
         self.event_manager.apply("interval", dt=self.step_dt)
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
@@ -158,14 +162,15 @@ class ManagerBasedEnv(gym.Env):
         return self._view.frame(env_id=self.cfg.viewer.env_id)
 
     def close(self) -> None:
-        """Lets go of the view. The simulation is freed with the environment."""
+        """Writes the episodes being recorded and lets go of the view. The simulation is freed with the environment."""
+        self.recorder_manager.close()
         self._view = None
 
     def _init_buffers(self) -> None:
         """Makes what terms may read while the managers are built."""
 
     def _managers(self) -> list[Any]:
-        return [self.event_manager, self.action_manager, self.observation_manager]
+        return [self.event_manager, self.action_manager, self.observation_manager, self.recorder_manager]
 
     def _advance(self, action: torch.Tensor) -> None:
         """Applies an action for a control step of physics and updates the sensors.
@@ -174,6 +179,7 @@ class ManagerBasedEnv(gym.Env):
         """
         self.action_manager.process_action(action.to(self.device))
         self.action_manager.apply_action()
+        self.recorder_manager.record_pre_step()
         self.sim.step(self.cfg.decimation)
         self.scene.update(self.step_dt)
         self.common_step_counter += 1
@@ -184,6 +190,7 @@ class ManagerBasedEnv(gym.Env):
         Args:
             env_ids: World indices, int64, shape (n,).
         """
+        self.recorder_manager.record_pre_reset(env_ids)
         self.scene.reset(env_ids)
         self.event_manager.apply("reset", env_ids, global_env_step_count=self.common_step_counter)
         for manager in self._managers():

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from arcgym.managers import RecorderManagerBaseCfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.sim import SimulationCfg
 from arcgym.utils import MISSING, configclass
@@ -37,6 +38,10 @@ class ManagerBasedEnvCfg:
 
     events: Any = None
     """Event terms: a configuration class, or a dict, of :class:`EventTermCfg`; None for none."""
+
+    recorders: RecorderManagerBaseCfg | None = None
+    """What to record and where to, such as :class:`arcgym.envs.mdp.TrajectoryRecorderCfg`; None for nothing, which
+    costs nothing."""
 
     viewer: ViewerCfg = ViewerCfg()
     """What videos show."""

@@ -97,6 +97,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self._advance(action)
         self.episode_length_buf += 1
         self._judge()
+        self.recorder_manager.record_post_step()
         self.event_manager.apply("interval", dt=self.step_dt)
         env_ids = self.reset_buf.nonzero().flatten()
         if len(env_ids) > 0:
@@ -105,6 +106,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
             self._reset_idx(env_ids)
             self.sim.forward()
             self.scene.update(0.0, env_mask=self.reset_buf)
+            self.recorder_manager.record_post_reset(env_ids)
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.reward_buf, self.reset_terminated, self.reset_time_outs, self.extras
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Managers: observations, actions, rewards, costs, terminations, events, curricula and metrics made of terms.
+"""Managers: observations, actions, rewards, costs, terminations, events, curricula, metrics and records made of terms.
 
 They know nothing of colons or scopes; terms do.
 """
@@ -13,6 +13,10 @@ from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.metrics_manager import MetricsManager
 from arcgym.managers.noise import ConstantNoiseCfg, GaussianNoiseCfg, NoiseCfg, UniformNoiseCfg
 from arcgym.managers.observation_manager import ObservationManager
+from arcgym.managers.recorder_cfg import RecorderManagerBaseCfg, RecorderTermCfg
+from arcgym.managers.recorder_files import Episode, episode_paths, export_hdf5, load_episodes
+from arcgym.managers.recorder_manager import RecorderManager
+from arcgym.managers.recorder_term import RecorderTerm
 from arcgym.managers.reward_manager import RewardManager
 from arcgym.managers.scene_entity_cfg import SceneEntityCfg
 from arcgym.managers.term_base import ManagerTermBase
@@ -39,6 +43,7 @@ __all__ = [
     "CostTermCfg",
     "CurriculumManager",
     "CurriculumTermCfg",
+    "Episode",
     "EventManager",
     "EventTermCfg",
     "GaussianNoiseCfg",
@@ -51,10 +56,17 @@ __all__ = [
     "ObservationGroupCfg",
     "ObservationManager",
     "ObservationTermCfg",
+    "RecorderManager",
+    "RecorderManagerBaseCfg",
+    "RecorderTerm",
+    "RecorderTermCfg",
     "RewardManager",
     "RewardTermCfg",
     "SceneEntityCfg",
     "TerminationManager",
     "TerminationTermCfg",
     "UniformNoiseCfg",
+    "episode_paths",
+    "export_hdf5",
+    "load_episodes",
 ]

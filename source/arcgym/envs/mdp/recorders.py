@@ -1,0 +1,141 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Recorder terms: actions, observations, rewards, costs, forces, wall and poses of every step, and the initial state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+
+from arcgym.managers import RecorderManagerBaseCfg, RecorderTerm, RecorderTermCfg
+from arcgym.managers.recorder_term import Record
+from arcgym.utils.configclass import configclass
+
+
+class PreStepActionsRecorder(RecorderTerm):
+    """``actions``: the raw action, shape (T, A)."""
+
+    def record_pre_step(self) -> Record:
+        """Return the action that the step is about to apply."""
+        return "actions", self._env.action_manager.action
+
+
+class PreStepObservationsRecorder(RecorderTerm):
+    """``obs/<group>``: what the action was chosen from, shape (T, ...); images stay uint8."""
+
+    cfg: PreStepObservationsRecorderCfg
+
+    def record_pre_step(self) -> Record:
+        """Return the chosen groups of the last observation."""
+        return "obs", {group: self._env.obs_buf[group] for group in self.cfg.groups}
+
+
+class PostStepRewardsRecorder(RecorderTerm):
+    """``rewards/total`` and ``rewards/<term>``, shape (T,)."""
+
+    def record_post_step(self) -> Record:
+        """Return the reward and what each term added to it."""
+        env: Any = self._env
+        return "rewards", {"total": env.reward_buf, **env.reward_manager.step_values}
+
+
+class PostStepCostsRecorder(RecorderTerm):
+    """``costs/<term>``, shape (T,)."""
+
+    def record_post_step(self) -> Record:
+        """Return what each term added to the cost."""
+        env: Any = self._env
+        return "costs", dict(env.cost_manager.step_values)
+
+
+class PostStepForcesRecorder(RecorderTerm):
+    """``forces/...`` [N] over the control step.
+
+    ``link`` (T, L, 3) and ``link_peak`` (T, L) of the wall on the links, ``base`` (T,) and ``tip_pull`` (T, 3) of the
+    drives on the scope.
+    """
+
+    def record_post_step(self) -> Record:
+        """Return the forces on the endoscope."""
+        data = self._env.scene["endoscope"].data
+        return "forces", {
+            "link": data.wall_force_w,
+            "link_peak": data.wall_force_peak,
+            "base": data.base_force,
+            "tip_pull": data.tip_pull_force_w,
+        }
+
+
+class PostStepWallRecorder(RecorderTerm):
+    """``wall/strain``, ``wall/strain_peak``, ``wall/anchor_tension``, ``wall/anchor_tension_peak`` [N], shape (T, R).
+
+    With ``positions`` also ``wall/positions`` [m], shape (T, V, 3).
+    """
+
+    cfg: PostStepWallRecorderCfg
+
+    def record_post_step(self) -> Record:
+        """Return what the wall's rings bear."""
+        data = self._env.scene["colon"].data
+        names = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
+        values = {name.removeprefix("wall_"): getattr(data, name) for name in names}
+        return "wall", values | ({"positions": data.nodal_pos_w} if self.cfg.positions else {})
+
+
+class PostStepPosesRecorder(RecorderTerm):
+    """``poses/...``: the scope after the step, in world coordinates."""
+
+    NAMES = ("joint_pos", "body_pos_w", "body_quat_w", "tip_pos_w", "tip_quat_w", "tip_arc_length", "inserted_length")
+    """Attributes of :class:`arcgym.assets.endoscope_data.EndoscopeData`."""
+
+    def record_post_step(self) -> Record:
+        """Return joint coordinates and poses."""
+        data = self._env.scene["endoscope"].data
+        return "poses", {name: getattr(data, name) for name in self.NAMES}
+
+
+class InitialStateRecorder(RecorderTerm):
+    """``initial_state/...``: everything that the episode's future depends on, for starting it again.
+
+    The names are those of :meth:`arcgym.sim.Simulation.world_arrays`.
+    """
+
+    def record_post_reset(self, env_ids: torch.Tensor) -> Record:
+        """Return the complete state of the worlds that start."""
+        return "initial_state", {name: array[env_ids] for name, array in self._env.sim.world_arrays().items()}
+
+
+@configclass
+class PreStepObservationsRecorderCfg(RecorderTermCfg):
+    """Records observations; images make files large."""
+
+    class_type: Any = PreStepObservationsRecorder
+    groups: tuple[str, ...] = ("policy",)
+    """Observation groups to record; their terms must be concatenated or a dict of tensors."""
+
+
+@configclass
+class PostStepWallRecorderCfg(RecorderTermCfg):
+    """Records strain and anchor tension."""
+
+    class_type: Any = PostStepWallRecorder
+    positions: bool = False
+    """Whether every wall vertex is recorded too: some 20 kB a step and world, for drawing an episode again."""
+
+
+@configclass
+class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
+    """Everything but images; a step and world is some 4 kB before compression."""
+
+    initial_state = RecorderTermCfg(class_type=InitialStateRecorder)
+    actions = RecorderTermCfg(class_type=PreStepActionsRecorder)
+    observations: PreStepObservationsRecorderCfg | None = None
+    """Off: ``PreStepObservationsRecorderCfg()`` records the group ``policy``."""
+    rewards = RecorderTermCfg(class_type=PostStepRewardsRecorder)
+    costs = RecorderTermCfg(class_type=PostStepCostsRecorder)
+    forces = RecorderTermCfg(class_type=PostStepForcesRecorder)
+    wall: PostStepWallRecorderCfg | None = PostStepWallRecorderCfg()
+    """Strain and anchor tension."""
+    poses = RecorderTermCfg(class_type=PostStepPosesRecorder)

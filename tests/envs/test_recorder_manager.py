@@ -1,0 +1,194 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Recording of the counter's episodes: two worlds, positions grow by twice the action, five steps each."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from arcgym.envs import ManagerBasedRLEnv, mdp
+from arcgym.managers import (
+    MetricsTermCfg,
+    RecorderManagerBaseCfg,
+    RecorderTerm,
+    RecorderTermCfg,
+    TerminationTermCfg,
+    episode_paths,
+    export_hdf5,
+    load_episodes,
+)
+from arcgym.utils import configclass
+
+
+class PositionRecorder(RecorderTerm):
+    """The position after each step, and where the episode started and ended."""
+
+    def record_post_step(self):
+        return "state", {"position": self._env.scene["counter"].position}
+
+    def record_pre_reset(self, env_ids):
+        return "end", self._env.scene["counter"].position[env_ids]
+
+    def record_post_reset(self, env_ids):
+        return "start", self._env.scene["counter"].position[env_ids]
+
+
+@configclass
+class RecorderCfg(RecorderManagerBaseCfg):
+    position = RecorderTermCfg(class_type=PositionRecorder)
+    actions = RecorderTermCfg(class_type=mdp.PreStepActionsRecorder)
+    rewards = RecorderTermCfg(class_type=mdp.PostStepRewardsRecorder)
+    observations: Any = None
+
+
+def beyond(env, limit: float) -> torch.Tensor:
+    return env.scene["counter"].position > limit
+
+
+@pytest.fixture
+def recording(cfg, tmp_path: Path):
+    """Builds environments that record to a folder; world 1 succeeds above 5."""
+
+    def build(**changes: Any) -> ManagerBasedRLEnv:
+        recorders = RecorderCfg(dataset_export_dir_path=str(tmp_path))
+        for name, value in changes.items():
+            setattr(recorders, name, value)
+        cfg.recorders = recorders
+        cfg.terminations["success"] = TerminationTermCfg(func=beyond, params={"limit": 5.0})
+        cfg.metrics = {"top": MetricsTermCfg(func=lambda env: env.scene["counter"].position, reduce="max")}
+        env = ManagerBasedRLEnv(cfg)
+        env.reset()
+        return env
+
+    return build
+
+
+def run(env: ManagerBasedRLEnv, steps: int, actions: tuple[float, float] = (0.5, 1.0)) -> None:
+    for _ in range(steps):
+        env.step(torch.tensor(actions).view(2, 1))
+
+
+def test_an_episode_is_written_when_it_ends(recording, tmp_path) -> None:
+    env = recording()
+    run(env, 2)
+    assert episode_paths(tmp_path) == []
+    run(env, 1)
+    # World 1 moves by 2 a step and passes 5 in its third.
+    (episode,) = load_episodes(tmp_path)
+    np.testing.assert_allclose(episode.data["state/position"], [2.0, 4.0, 6.0])
+    np.testing.assert_allclose(episode.data["actions"], [[1.0]] * 3)
+    np.testing.assert_allclose(episode.data["rewards/total"], [0.4, 0.8, 1.2], rtol=1e-5)
+    assert (float(episode.data["start"]), float(episode.data["end"])) == (0.0, 6.0)
+
+
+def test_info_says_how_it_ended(recording, tmp_path) -> None:
+    run(recording(), 5)
+    first, second = (episode.info for episode in load_episodes(tmp_path))
+    assert (first["env_id"], first["length"], first["success"], first["ended_by"]) == (1, 3, True, ["success"])
+    assert (second["env_id"], second["length"], second["time_out"], second["terminated"]) == (0, 5, True, False)
+    assert second["complete"] and not second["success"]
+    assert first["metrics"] == {"top": 6.0} and first["step_dt"] == pytest.approx(0.1)
+
+
+def test_worlds_keep_their_episodes_apart(recording, tmp_path) -> None:
+    run(recording(), 10)
+    by_world = {0: [], 1: []}
+    for episode in load_episodes(tmp_path):
+        by_world[episode.info["env_id"]].append(episode.data["state/position"].tolist())
+    assert by_world == {0: [[1.0, 2.0, 3.0, 4.0, 5.0]] * 2, 1: [[2.0, 4.0, 6.0]] * 3}
+
+
+def test_close_and_reset_write_unfinished_episodes(recording, tmp_path) -> None:
+    env = recording()
+    run(env, 2)
+    env.reset()
+    run(env, 1)
+    env.close()
+    infos = [episode.info for episode in load_episodes(tmp_path)]
+    assert [(info["length"], info["complete"]) for info in infos] == [(2, False)] * 2 + [(1, False)] * 2
+
+
+def test_a_step_that_fails_is_not_recorded_and_the_ones_before_are(recording, tmp_path, monkeypatch) -> None:
+    env = recording()
+    run(env, 2)
+    monkeypatch.setattr(env.sim, "step", lambda n: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        run(env, 1)
+    env.close()
+    assert [len(episode.data["actions"]) for episode in load_episodes(tmp_path)] == [2, 2]
+
+
+def test_only_successes(recording, tmp_path) -> None:
+    env = recording(dataset_export_mode="succeeded_only")
+    run(env, 7)
+    env.close()
+    assert [episode.info["env_id"] for episode in load_episodes(tmp_path)] == [1, 1]
+
+
+def test_chosen_worlds(recording, tmp_path) -> None:
+    run(recording(env_ids=(0,)), 5)
+    (episode,) = load_episodes(tmp_path)
+    assert episode.info["env_id"] == 0
+    np.testing.assert_allclose(episode.data["state/position"], [1.0, 2.0, 3.0, 4.0, 5.0])
+
+
+def test_observations_are_those_the_action_was_chosen_from(recording, tmp_path) -> None:
+    run(recording(observations=mdp.PreStepObservationsRecorderCfg(groups=("critic",))), 3)
+    (episode,) = load_episodes(tmp_path)
+    np.testing.assert_allclose(episode.data["obs/critic"][:, 0], [0.0, 2.0, 4.0])
+
+
+def test_files_are_never_overwritten(recording, tmp_path) -> None:
+    for _ in range(2):
+        env = recording()
+        run(env, 3)
+        env.close()
+    assert [path.name for path in episode_paths(tmp_path)] == [f"episode_{k:06d}.npz" for k in range(4)]
+    assert not list(tmp_path.glob("*.partial"))
+
+
+def test_nothing_is_asked_or_written_without_recorders(env, cfg, monkeypatch) -> None:
+    assert not env.recorder_manager.active
+    monkeypatch.setattr(type(env.recorder_manager), "_record_step", lambda *args: pytest.fail("asked"))
+    run(env, 6)
+    env.close()
+
+
+def test_terms_that_answer_in_some_steps_only_are_told(recording) -> None:
+    class Sometimes(RecorderTerm):
+        def record_post_step(self):
+            return ("now", self._env.reward_buf) if self._env.common_step_counter != 2 else (None, None)
+
+    env = recording(observations=RecorderTermCfg(class_type=Sometimes))
+    with pytest.raises(ValueError, match=r"\['now'\] come in some steps only"):
+        run(env, 3)
+
+
+def test_configuration_mistakes_are_named(cfg) -> None:
+    cfg.recorders = {"actions": RecorderTermCfg(class_type=mdp.PreStepActionsRecorder)}
+    with pytest.raises(TypeError, match="type dict, expected a RecorderManagerBaseCfg"):
+        ManagerBasedRLEnv(cfg)
+    cfg.recorders = RecorderCfg(env_ids=(0, 2))
+    with pytest.raises(IndexError, match="from 0 to 1"):
+        ManagerBasedRLEnv(cfg)
+    cfg.recorders = RecorderCfg(dataset_export_mode="some")
+    with pytest.raises(ValueError, match="expected all, succeeded_only or none"):
+        ManagerBasedRLEnv(cfg)
+
+
+def test_hdf5_has_the_layout_of_isaac_lab(recording, tmp_path) -> None:
+    h5py = pytest.importorskip("h5py")
+    run(recording(), 5)
+    assert export_hdf5(tmp_path, tmp_path / "all.hdf5", {"task": "counter"}) == 2
+    with h5py.File(tmp_path / "all.hdf5") as file:
+        demo = file["data/demo_0"]
+        np.testing.assert_allclose(demo["state/position"], [2.0, 4.0, 6.0])
+        assert demo.attrs["num_samples"] == 3 and demo.attrs["success"]
+        assert file["data"].attrs["total"] == 8
+        assert json.loads(file["data"].attrs["env_args"]) == {"task": "counter"}
