@@ -44,12 +44,14 @@ class RestingScene(dict):
 
         super().__init__()
         self.num_envs, self.device = num_envs, device
-        nodes = np.tile(stage.wall.points, (num_envs, 1))
+        nodes = np.repeat(stage.wall.points[:, None], num_envs, axis=1)
         optics = SimpleNamespace(
             camera=CameraSpec(position=(0.0, 0.0, 0.0)), lights=np.array([[-0.004, 0.001, 0.0], [0.004, 0.001, 0.0]])
         )
         poses = centerline_poses(stage.centerline, num_envs)
-        self["colon"] = SimpleNamespace(stage=stage, nodal_pos_wp=wp.array(nodes, dtype=wp.vec3, device=device))
+        self["colon"] = SimpleNamespace(
+            stage=stage, wall=stage.wall, nodal_pos_wp=wp.array(nodes, dtype=wp.vec3, device=device)
+        )
         self["endoscope"] = SimpleNamespace(
             stage=optics, camera_pose_wp=wp.array(poses, dtype=wp.transform, device=device)
         )

@@ -104,7 +104,8 @@ class TubeScene(dict):
             stage=SimpleNamespace(
                 wall=wall, visual=visual, visual_proxy=visual, albedo_texture=albedo, detail_texture=detail
             ),
-            nodal_pos_wp=wp.array(np.tile(wall.points, (num_envs, 1)), dtype=wp.vec3, device=device),
+            wall=wall,
+            nodal_pos_wp=wp.array(np.repeat(wall.points[:, None], num_envs, axis=1), dtype=wp.vec3, device=device),
         )
         camera = CameraSpec((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.radians(150.0), (0.001, 0.6))
         pose = np.array([*MIDDLE, *FORWARD], dtype=np.float32)
@@ -115,8 +116,7 @@ class TubeScene(dict):
 
     def move_wall(self, world: int, points: np.ndarray) -> None:
         """Puts the wall of one world at `points` [m], shape (V, 3)."""
-        nodes = wp.to_torch(self["colon"].nodal_pos_wp).view(self.num_envs, -1, 3)
-        nodes[world] = torch.as_tensor(points, dtype=torch.float32)
+        wp.to_torch(self["colon"].nodal_pos_wp)[:, world] = torch.as_tensor(points, dtype=torch.float32)
 
     def move_camera(self, world: int, pose: Sequence[float]) -> None:
         """Puts the camera of one world at `pose`: position [m] and quaternion (x, y, z, w)."""

@@ -14,7 +14,6 @@ from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation
 from arcgym.sim.contact_kernels import link_forces
-from arcgym.sim.wall_kernels import residual
 
 APOTHEM = 0.020 * math.cos(math.pi / 8)
 """Distance of the tube's flat sides from its axis [m]."""
@@ -53,10 +52,10 @@ def force_on_wall(sim: Simulation) -> np.ndarray:
     """Force on each wall vertex at rest [N], shape (V, 3): contact alone, friction left out."""
     wall, contact = sim.wall, sim.contact
     out = wp.zeros_like(sim.nodal_pos)
-    args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+    args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
     args += [contact.links, contact.law, 1, sim.state.body_q, sim.nodal_pos, out]
-    wp.launch(residual, (1, sim.colon.num_nodes), args, device="cpu")
-    return out.numpy()
+    wp.launch(wall.kernels.residual, out.shape, args, device="cpu")
+    return out.numpy()[:, 0]
 
 
 def count(sim: Simulation) -> int:
@@ -92,7 +91,7 @@ def test_each_touch_lies_on_the_lumen_surface(sim: Simulation) -> None:
     place(sim, depth=1.0e-4)
     records = sim.contact.records
     faces, bary = records.face.numpy()[: count(sim)], records.bary.numpy()[: count(sim)]
-    points = np.einsum("nk,nki->ni", bary, sim.nodal_pos.numpy()[faces])
+    points = np.einsum("nk,nki->ni", bary, sim.nodal_pos.numpy()[:, 0][faces])
     np.testing.assert_allclose(points @ SIDE, APOTHEM, atol=1e-6)
     np.testing.assert_allclose(bary.sum(axis=1), 1.0, atol=1e-5)
 

@@ -11,7 +11,6 @@ import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation
-from arcgym.sim.wall_kernels import residual
 
 SOFT = {"youngs_modulus": 5.0e5}
 
@@ -59,10 +58,10 @@ def force_on_wall(sim: Simulation, with_contact: bool) -> np.ndarray:
     if not with_contact:
         contact.records.vertex_head.fill_(-1)
     out = wp.zeros_like(sim.nodal_pos)
-    args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+    args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
     args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
-    wp.launch(residual, (1, sim.colon.num_nodes), args, device="cpu")
-    return out.numpy()
+    wp.launch(wall.kernels.residual, out.shape, args, device="cpu")
+    return out.numpy()[:, 0]
 
 
 @pytest.fixture(scope="module")
@@ -101,8 +100,8 @@ def test_no_link_is_outside_the_wall(two_level: Simulation) -> None:
 
 
 def test_no_wall_element_is_inverted(two_level: Simulation) -> None:
-    x, tets = two_level.nodal_pos.numpy().astype(float), two_level.colon.stage.wall.tets
-    rest = two_level.colon.stage.wall.points.astype(float)
+    x, tets = two_level.nodal_pos.numpy()[:, 0].astype(float), two_level.colon.wall.tets
+    rest = two_level.colon.wall.points.astype(float)
     volume = [np.linalg.det(p[tets[:, 1:]] - p[tets[:, :1]]) for p in (x, rest)]
     ratio = volume[0] / volume[1]
     assert 0.7 < ratio.min() and ratio.max() < 1.3

@@ -11,7 +11,6 @@ import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation, WallSolverCfg
-from arcgym.sim.wall_kernels import residual
 
 SOFT = {"youngs_modulus": 5.0e5}
 FREE = {**SOFT, "anchor_stiffness": dict.fromkeys(("rectum", "sigmoid", "descending", "splenic", "transverse"), 0.0)}
@@ -30,14 +29,14 @@ def force_on_wall(sim: Simulation) -> np.ndarray:
     """Elastic, anchor and contact force on each vertex that moves [N], shape (V, 3)."""
     wall, contact = sim.wall, sim.contact
     out = wp.zeros_like(sim.nodal_pos)
-    args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+    args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
     args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
-    wp.launch(residual, (sim.num_envs, sim.colon.num_nodes), args, device="cpu")
-    return out.numpy()
+    wp.launch(wall.kernels.residual, out.shape, args, device="cpu")
+    return out.numpy()[:, 0]
 
 
 def held(sim: Simulation) -> np.ndarray:
-    return np.isin(sim.colon.stage.wall.ring, HELD_RINGS)
+    return np.isin(sim.colon.wall.ring, HELD_RINGS)
 
 
 def press(sim: Simulation) -> None:
@@ -62,14 +61,14 @@ def test_turning_the_whole_wall_gives_no_elastic_force(tiny_sim: TinySim) -> Non
 def test_anchors_pull_back_by_their_share_of_the_ring(tiny_sim: TinySim) -> None:
     sim = tiny_sim("capsule", colon={"anchor_stiffness": {"rectum": 800.0}})
     sim.colon.data.nodal_pos_w[..., 0] += 0.001
-    ring_3 = sim.colon.stage.wall.ring == 3  # the first one that moves, 37.5 mm in, still in the rectum
+    ring_3 = sim.colon.wall.ring == 3  # the first one that moves, 37.5 mm in, still in the rectum
     # Moved as a whole the wall is unstrained; 800 N/m^2 * 12.5 mm of tube * 1 mm = 10 mN.
     assert force_on_wall(sim)[ring_3].sum(axis=0) == pytest.approx([-0.010, 0.0, 0.0], abs=5e-4)
 
 
 def test_anchors_sit_on_the_outer_layer(tiny_sim: TinySim) -> None:
     springs = tiny_sim("capsule").colon.anchor_springs()
-    layer = tiny_sim("capsule").colon.stage.wall.layer
+    layer = tiny_sim("capsule").colon.wall.layer
     assert not springs[layer == 0].any() and springs[layer == 1].all()
 
 
@@ -97,7 +96,7 @@ def test_nothing_moves_beyond_mobile_until(tiny_sim: TinySim) -> None:
     press(sim)
     step_wall(sim, 20)
     moved = sim.colon.data.nodal_displacement[0].numpy()
-    ring = sim.colon.stage.wall.ring
+    ring = sim.colon.wall.ring
     assert (moved[ring > 8] == 0.0).all()  # ring 8 lies at 100 mm
     assert moved[ring == 8].max() > 0.0
 
@@ -107,7 +106,7 @@ def pressed(tiny_sim: TinySim, steps: int, **wall: object) -> tuple[np.ndarray, 
     sim = tiny_sim("capsule", colon=SOFT, wall=WallSolverCfg(**wall), contact=ContactCfg(friction=0.0))
     press(sim)
     step_wall(sim, steps)
-    return sim.nodal_pos.numpy(), force_on_wall(sim)
+    return sim.nodal_pos.numpy()[:, 0], force_on_wall(sim)
 
 
 def test_coarse_correction_leaves_the_equilibrium_where_it_is(tiny_sim: TinySim) -> None:

@@ -28,8 +28,8 @@ class FakeCamera:
 
 def make_env(with_camera: bool = True) -> SimpleNamespace:
     stage = tiny_colon_stage()
-    points = wp.array(np.tile(stage.wall.points, (2, 1)), dtype=wp.vec3)
-    colon = SimpleNamespace(stage=stage, nodal_pos_wp=points, points=wp.to_torch(points))
+    points = wp.array(np.repeat(stage.wall.points[:, None], 2, axis=1), dtype=wp.vec3)
+    colon = SimpleNamespace(stage=stage, wall=stage.wall, nodal_pos_wp=points, points=wp.to_torch(points))
     position = torch.zeros(2, LINKS, 3)
     position[:, :, 2] = torch.arange(LINKS) * 0.02 - 0.05
     data = SimpleNamespace(

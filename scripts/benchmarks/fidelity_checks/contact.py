@@ -51,16 +51,15 @@ def contact_force_on_wall(sim: Any) -> np.ndarray:
     """
     import warp as wp
 
-    from arcgym.sim.wall_kernels import residual
-
+    
     contact, wall, forces = sim.contact, sim.wall, []
     mobile = wp.clone(wall.elements.mobile)
     wall.elements.mobile.fill_(1)
     for _ in range(2):
         out = wp.zeros_like(sim.nodal_pos)
-        args = [wall.elements, wall.stiffness_scale, sim.cfg.dt, sim.nodal_pos, sim.nodal_pos, contact.records]
+        args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
         args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
-        wp.launch(residual, (1, sim.colon.num_nodes), args, device=sim.device)
+        wp.launch(wall.kernels.residual, out.shape, args, device=sim.device)
         forces.append(out.numpy().astype(float))
         contact.records.vertex_head.fill_(-1)
     wp.copy(wall.elements.mobile, mobile)
@@ -176,7 +175,7 @@ def links_outside(sim: Any, world: int) -> int:
     """
     from arcgym.anatomy.wall import inner_faces
 
-    wall, data, margin = sim.colon.stage.wall, sim.endoscope.data, 4
+    wall, data, margin = sim.colon.wall, sim.endoscope.data, 4
     if bool(sim.non_finite[world]):
         return sim.endoscope.num_bodies
     points = sim.colon.data.nodal_pos_w[world].cpu().numpy().astype(float)

@@ -13,10 +13,12 @@ import torch
 import warp as wp
 
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.anatomy.stage import read_colon
+from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
+from arcgym.anatomy.stage import WallMesh, read_colon
 from arcgym.assets.colon_cfg import ColonCfg
-from arcgym.assets.materials import tissue_preset
-from arcgym.assets.usd_loading import add_colon_usd, lame_parameters
+from arcgym.assets.materials import Value, shell_moduli, solid_moduli, tissue_preset
+from arcgym.assets.shell_loading import add_shell
+from arcgym.assets.usd_loading import add_colon_usd
 from arcgym.utils.paths import resolve_asset
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ class Colon:
 
         Raises:
             StageError: If the stage cannot be used.
-            ValueError: If the material is unknown or a segment has no such name.
+            ValueError: If the material or the kind of wall is unknown, or a segment has no such name.
         """
         self.cfg = cfg
         self.path = resolve_asset(cfg.usd_path)
@@ -43,22 +45,38 @@ class Colon:
         unknown = sorted(set(cfg.anchor_stiffness) - set(SEGMENTS))
         if unknown:
             raise ValueError(f"ColonCfg.anchor_stiffness names {unknown}; the segments are {list(SEGMENTS)}.")
+        if cfg.wall_model not in ("shell", "solid"):
+            raise ValueError(f"ColonCfg.wall_model is {cfg.wall_model!r}; choose 'shell' or 'solid'.")
+        if cfg.wall_model == "solid" and cfg.wall_thickness is not None:
+            raise ValueError("ColonCfg.wall_thickness is for wall_model='shell'; a solid is as thick as its stage.")
+        self.thickness = self._thickness()
+        self.wall: WallMesh | ShellMesh = self.stage.wall
+        if cfg.wall_model == "shell":
+            self.wall = mid_surface(self.stage.wall, self.thickness)
+
+    def _thickness(self) -> float:
+        """Thickness of the wall in use [m]."""
+        chosen = (self.cfg.wall_thickness, self.tissue.thickness if self.cfg.wall_model == "shell" else None)
+        return next((value for value in chosen if value is not None), wall_thickness(self.stage.wall))
 
     @property
     def num_nodes(self) -> int:
         """Number of wall vertices V."""
-        return len(self.stage.wall.points)
+        return len(self.wall.points)
 
     @property
     def num_rings(self) -> int:
         """Number of rings R along the centreline."""
-        return len(self.stage.wall.ring_arc)
+        return len(self.wall.ring_arc)
 
     def add_to(self, builder: newton.ModelBuilder) -> None:
         """Load the wall into ``builder`` and apply the material overrides."""
+        if isinstance(self.wall, ShellMesh):
+            add_shell(builder, self.wall, self._value("density"), self.moduli(*self.elasticity()))
+            return
         first_tet = len(builder.tet_indices)
         particles = add_colon_usd(builder, self.path, self.stage)
-        mu, lam = lame_parameters(*self.elasticity())
+        mu, lam, _ = solid_moduli(*self.elasticity())
         for tet in range(first_tet, len(builder.tet_indices)):
             builder.tet_materials[tet] = (mu, lam, builder.tet_materials[tet][2])
         ratio = self._value("density") / self.stage.material.density
@@ -69,6 +87,17 @@ class Colon:
         """Young's modulus [Pa] and Poisson's ratio in use."""
         return self._value("youngs_modulus"), self._value("poissons_ratio")
 
+    def moduli(self, youngs_modulus: Value, poissons_ratio: Value) -> tuple[Value, Value, Value]:
+        """Shear, second Lamé parameter and bending of the wall: solid [Pa, Pa, -] or shell [N/m, N/m, N m]."""
+        if isinstance(self.wall, ShellMesh):
+            return shell_moduli(youngs_modulus, poissons_ratio, self.thickness)
+        return solid_moduli(youngs_modulus, poissons_ratio)
+
+    @property
+    def surface_offset(self) -> float:
+        """Distance of the lumen's surface from the wall's innermost vertices, towards the lumen [m]."""
+        return 0.5 * self.thickness if isinstance(self.wall, ShellMesh) else 0.0
+
     def _value(self, name: str) -> float:
         """Material value: the configuration's, else the preset's, else the stage's."""
         values = [getattr(source, name) for source in (self.cfg, self.tissue, self.stage.material)]
@@ -76,15 +105,17 @@ class Colon:
 
     def mobile(self) -> np.ndarray:
         """Whether each wall vertex moves, shape (V,), bool."""
-        wall = self.stage.wall
+        wall = self.wall
+        if self.cfg.rigid:
+            return np.zeros(self.num_nodes, bool)
         free = wall.anchor != FIXED
         if self.cfg.mobile_until is not None:
             free &= wall.ring_arc[wall.ring] <= self.cfg.mobile_until
         return free
 
     def anchor_springs(self) -> np.ndarray:
-        """Spring of each vertex to its rest position [N/m], shape (V,): the outer layer carries its ring's share."""
-        wall = self.stage.wall
+        """Spring of each vertex to its rest position [N/m], shape (V,): the outermost carry their ring's share."""
+        wall = self.wall
         per_length = {**self.tissue.anchor_stiffness, **self.cfg.anchor_stiffness}
         stiffness = np.array([per_length[name] for name in SEGMENTS])[wall.segment]
         outer = wall.layer == wall.layer.max()
@@ -118,8 +149,25 @@ class Colon:
     def write_stiffness_scale_to_sim(
         self, scale: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None
     ) -> None:
-        """Multiply the wall's Young's modulus in the worlds ``env_ids``, shape (n,); 1 is the configured one."""
-        self._sim.stiffness_scale[self._worlds(env_ids)] = scale
+        """Multiply the configured Young's modulus in the worlds ``env_ids``, shape (n,)."""
+        modulus, ratio = self.elasticity()
+        self.write_material_to_sim(scale * modulus, torch.full_like(scale, ratio), env_ids)
+
+    def write_material_to_sim(
+        self,
+        youngs_modulus: torch.Tensor,
+        poissons_ratio: torch.Tensor,
+        env_ids: Sequence[int] | torch.Tensor | None = None,
+    ) -> None:
+        """Set Young's modulus [Pa] and Poisson's ratio, shape (n,), of the worlds ``env_ids`` (all by default)."""
+        moduli = torch.stack(self.moduli(youngs_modulus, poissons_ratio), dim=-1)
+        self._sim.moduli[self._worlds(env_ids)] = moduli.to(self._sim.moduli)
+
+    def write_anchor_scale_to_sim(
+        self, scale: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None
+    ) -> None:
+        """Multiply the configured stiffness of the attachments in the worlds ``env_ids``, shape (n,)."""
+        self._sim.anchor_scale[self._worlds(env_ids)] = scale.to(self._sim.anchor_scale)
 
     @staticmethod
     def _worlds(env_ids: Sequence[int] | torch.Tensor | None) -> slice | torch.Tensor | Sequence[int]:
@@ -132,13 +180,13 @@ class ColonData:
     def __init__(self, colon: Colon, sim: Simulation):
         """Make views on the simulation's arrays."""
         n, v = sim.num_envs, colon.num_nodes
-        self.nodal_pos_w: torch.Tensor = wp.to_torch(sim.nodal_pos).view(n, v, 3)
+        self.nodal_pos_w: torch.Tensor = wp.to_torch(sim.nodal_pos).transpose(0, 1)
         """Positions of the wall vertices [m], shape (N, V, 3)."""
-        self.nodal_vel_w: torch.Tensor = wp.to_torch(sim.nodal_vel).view(n, v, 3)
+        self.nodal_vel_w: torch.Tensor = wp.to_torch(sim.nodal_vel).transpose(0, 1)
         """Velocities of the wall vertices [m/s], shape (N, V, 3)."""
         self.centerline_pos_w: torch.Tensor = wp.to_torch(sim.ring_centres)
         """Centres of the deformed rings [m], shape (N, R, 3)."""
-        wall = colon.stage.wall
+        wall = colon.wall
         self.centerline_arc = torch.tensor(wall.ring_arc, dtype=torch.float32, device=sim.device)
         """Arc length of the rings at rest [m], shape (R,)."""
         rest = torch.tensor(wall.points, dtype=torch.float32, device=sim.device)

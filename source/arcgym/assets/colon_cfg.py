@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from arcgym.utils.configclass import configclass
 
@@ -19,6 +19,14 @@ class ColonCfg:
     """Stage of the colon: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`)."""
     material: str = "paper"
     """Tissue preset: ``paper`` (5 MPa) or ``in_situ`` (0.7 MPa, moves visibly), see :mod:`arcgym.assets.materials`."""
+    wall_model: Literal["shell", "solid"] = "shell"
+    """What the wall is made of: ``shell``, triangles and hinges half way through the wall, or ``solid``, the stage's one
+    layer of tetrahedra. Linear tetrahedra lock in bending: pinched, the solid is an order of magnitude too stiff (see
+    the row ``wall_ring`` of ``scripts/benchmarks/fidelity.py``); choose it to compare with other tetrahedral models."""
+    wall_thickness: float | None = None
+    """Thickness of a shell [m], over the preset's; ``None`` without a preset's takes the stage's."""
+    rigid: bool = False
+    """Hold the whole wall still: contact as with a rigid colon, and no cost of the wall."""
     youngs_modulus: float | None = None
     """Young's modulus [Pa], over the preset's."""
     poissons_ratio: float | None = None

@@ -5,6 +5,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TypeVar
+
+import torch
+
+Value = TypeVar("Value", float, torch.Tensor)
+"""A number, or one for each world."""
 
 ANCHOR_STIFFNESS = {
     "rectum": 2.0e4,
@@ -31,6 +37,8 @@ class TissuePreset:
     """Poisson's ratio."""
     density: float | None = None
     """Mass density [kg/m^3]."""
+    thickness: float | None = None
+    """Thickness of the wall [m], where it is a shell."""
     anchor_stiffness: dict[str, float] = field(default_factory=lambda: dict(ANCHOR_STIFFNESS))
     """Attachment stiffness per length of colon [N/m^2], by segment."""
 
@@ -41,6 +49,23 @@ TISSUE_PRESETS = {
 }
 """``paper``: 5 MPa and 0.49, the ARCGym paper (human rectum and sigmoid: 5.18 MPa, Christensen et al. 2015).
 ``in_situ``: 0.7 MPa, between the quasi-static moduli of Massalou et al. (1.76 lengthwise, 0.63 around)."""
+
+
+def solid_moduli(youngs_modulus: Value, poissons_ratio: Value) -> tuple[Value, Value, Value]:
+    """Lamé parameters (mu, lambda) [Pa] of an isotropic solid; the third value is 0."""
+    mu = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
+    return mu, 2.0 * mu * poissons_ratio / (1.0 - 2.0 * poissons_ratio), 0.0 * mu
+
+
+def shell_moduli(youngs_modulus: Value, poissons_ratio: Value, thickness: float) -> tuple[Value, Value, Value]:
+    """Shear and second Lamé parameter of the membrane in plane stress [N/m] and flexural rigidity [N m].
+
+    mu t = E t / (2 (1 + nu)), lambda t = E t nu / (1 - nu^2), D = E t^3 / (12 (1 - nu^2)) (Timoshenko and
+    Woinowsky-Krieger, Theory of Plates and Shells).
+    """
+    plane = youngs_modulus * thickness / (1.0 - poissons_ratio * poissons_ratio)
+    shear = youngs_modulus * thickness / (2.0 * (1.0 + poissons_ratio))
+    return shear, poissons_ratio * plane, plane * (thickness * thickness / 12.0)
 
 
 def tissue_preset(name: str) -> TissuePreset:

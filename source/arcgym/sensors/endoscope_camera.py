@@ -73,7 +73,7 @@ class EndoscopeCamera(SensorBase):
         stage = self._colon.stage
         self._looks = WorldLooks.neutral(scene.num_envs, self._device)
         self._drawn = wp.full(scene.num_envs, True, dtype=wp.bool, device=self._device)
-        surface = SkinnedSurface(stage.visual_proxy, stage.wall, scene.num_envs, self._device)
+        surface = SkinnedSurface(stage.visual_proxy, self._colon.wall, scene.num_envs, self._device)
         textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device)
         size = (self.cfg.width, self.cfg.height)
         self._renderer = SurfaceRenderer(surface, stage.visual_proxy, textures, self._optics(), size, self.cfg.samples)
@@ -153,9 +153,8 @@ class EndoscopeCamera(SensorBase):
             Colour, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
         """
         renderer = self._snapshot_renderer(size, samples)
-        first = env_id * renderer.surface.num_nodes
         renderer.gain.zero_()
-        renderer.surface.update(self._colon.nodal_pos_wp[first : first + renderer.surface.num_nodes])
+        renderer.surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
         renderer.draw(
             self._endoscope.camera_pose_wp[env_id : env_id + 1], self._looks.of_world(env_id), self._one_world
         )
@@ -173,7 +172,7 @@ class EndoscopeCamera(SensorBase):
     def _fine_surface(self) -> tuple[VisualMesh, SkinnedSurface, MucosaTextures]:
         """The fine visual mesh of one world with its textures."""
         stage = self._colon.stage
-        surface = SkinnedSurface(stage.visual, stage.wall, 1, self._device)
+        surface = SkinnedSurface(stage.visual, self._colon.wall, 1, self._device)
         textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device, smooth_levels=True)
         return stage.visual, surface, textures
 

@@ -14,6 +14,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 from .skinning_kernels import group_roots, skin_vertices, wall_frames
 
 if TYPE_CHECKING:
+    from arcgym.anatomy.shell import ShellMesh
     from arcgym.anatomy.stage import VisualMesh, WallMesh
 
 
@@ -35,7 +36,7 @@ class SkinnedSurface:
     roots: wp.array
     """Where ray queries of a world start, shape (num_envs,), int32."""
 
-    def __init__(self, visual: VisualMesh, wall: WallMesh, num_envs: int, device: str) -> None:
+    def __init__(self, visual: VisualMesh, wall: WallMesh | ShellMesh, num_envs: int, device: str) -> None:
         """Binds `visual` to the rest shape of `wall`, once for all `num_envs` worlds."""
         _check_binding(visual, wall)
         self.num_envs = num_envs
@@ -45,12 +46,12 @@ class SkinnedSurface:
         self._device = wp.get_device(device)
         self._everywhere = wp.full(num_envs, True, dtype=wp.bool, device=device)
         self._neighbors = wp.array(wall.frame_neighbors, dtype=wp.vec4i, device=device)
-        self._frames = wp.zeros(num_envs * self.num_nodes, dtype=wp.mat33, device=device)
+        self._frames = wp.zeros((self.num_nodes, num_envs), dtype=wp.mat33, device=device)
         self._bind(visual, wall)
         count = num_envs * self.num_vertices
         self.points = wp.zeros(count, dtype=wp.vec3, device=device)
         self.normals = wp.zeros(count, dtype=wp.vec3, device=device)
-        rest = wp.array(np.tile(wall.points, (num_envs, 1)), dtype=wp.vec3, device=device)
+        rest = wp.array(np.repeat(wall.points[:, None], num_envs, axis=1), dtype=wp.vec3, device=device)
         self._skin(rest, self._everywhere)
         self.mesh = self._build_mesh(visual.faces)
         self.roots = wp.zeros(num_envs, dtype=int, device=device)
@@ -60,7 +61,7 @@ class SkinnedSurface:
         """Moves the surface to the wall's present shape.
 
         Args:
-            nodal_pos: Wall vertices of all worlds [m], shape (num_envs * V,), vec3.
+            nodal_pos: Wall vertices of all worlds [m], shape (V, num_envs), vec3.
             drawn: Worlds to move, shape (num_envs,), bool; the others keep their vertices bit for bit. None: all.
 
         Raises:
@@ -78,31 +79,31 @@ class SkinnedSurface:
         """Launches the two skinning kernels."""
         wp.launch(
             wall_frames,
-            (self.num_envs, self.num_nodes),
+            (self.num_nodes, self.num_envs),
             inputs=[nodal_pos, self._neighbors, drawn],
             outputs=[self._frames],
             device=self.device,
         )
         wp.launch(
             skin_vertices,
-            (self.num_envs, self.num_vertices),
-            inputs=[nodal_pos, self._frames, self.num_nodes, *self._binding, drawn],
+            (self.num_vertices, self.num_envs),
+            inputs=[nodal_pos, self._frames, *self._binding, drawn],
             outputs=[self.points, self.normals],
             device=self.device,
         )
 
-    def _bind(self, visual: VisualMesh, wall: WallMesh) -> None:
+    def _bind(self, visual: VisualMesh, wall: WallMesh | ShellMesh) -> None:
         """Stores offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
-        rest = wp.array(wall.points, dtype=wp.vec3, device=self.device)
+        rest = wp.array(wall.points[:, None], dtype=wp.vec3, device=self.device)
         wp.launch(
             wall_frames,
-            (1, self.num_nodes),
+            (self.num_nodes, 1),
             inputs=[rest, self._neighbors, self._everywhere],
             outputs=[self._frames],
             device=self.device,
         )
         index = visual.skin_indices
-        frames = self._frames.numpy()[: self.num_nodes][index]
+        frames = self._frames.numpy()[:, 0][index]
         offsets = np.einsum("vkji,vkj->vki", frames, visual.points[:, None] - wall.points[index])
         normals = np.einsum("vkji,vj->vki", frames, visual.normals)
         self._binding = (
@@ -125,7 +126,7 @@ class SkinnedSurface:
         )
 
 
-def _check_binding(visual: VisualMesh, wall: WallMesh) -> None:
+def _check_binding(visual: VisualMesh, wall: WallMesh | ShellMesh) -> None:
     """Raises where the skin does not fit the wall."""
     top = int(visual.skin_indices.max())
     if top >= len(wall.points):

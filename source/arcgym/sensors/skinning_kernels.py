@@ -10,31 +10,29 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.kernel
 def wall_frames(
-    nodes: wp.array[wp.vec3],
+    nodes: wp.array2d[wp.vec3],
     neighbors: wp.array[wp.vec4i],
     drawn: wp.array[wp.bool],
-    frames: wp.array[wp.mat33],
+    frames: wp.array2d[wp.mat33],
 ):
-    """Orthonormal frame of every wall vertex, columns along the colon, around it and across the wall."""
-    world, node = wp.tid()
+    """Orthonormal frame of every wall vertex, columns along the colon, around it and across the wall. Launch (V, W)."""
+    node, world = wp.tid()
     if not drawn[world]:
         return
-    base = world * neighbors.shape[0]
     near = neighbors[node]
-    along = wp.normalize(nodes[base + near[0]] - nodes[base + near[1]])
-    around = nodes[base + near[2]] - nodes[base + near[3]]
+    along = wp.normalize(nodes[near[0], world] - nodes[near[1], world])
+    around = nodes[near[2], world] - nodes[near[3], world]
     across = wp.normalize(wp.cross(along, around))
     frame = wp.identity(n=3, dtype=float)
     if wp.length_sq(across) > 0.5:
         frame = wp.matrix_from_cols(along, wp.cross(across, along), across)
-    frames[base + node] = frame
+    frames[node, world] = frame
 
 
 @wp.kernel
 def skin_vertices(
-    nodes: wp.array[wp.vec3],
-    frames: wp.array[wp.mat33],
-    num_nodes: int,
+    nodes: wp.array2d[wp.vec3],
+    frames: wp.array2d[wp.mat33],
     skin_indices: wp.array[wp.vec4i],
     skin_weights: wp.array[wp.vec4],
     rest_offsets: wp.array2d[wp.vec3],
@@ -43,8 +41,8 @@ def skin_vertices(
     points: wp.array[wp.vec3],
     normals: wp.array[wp.vec3],
 ):
-    """Linear blend skinning: p = sum_k w_k (x_k + F_k o_k), and the normals alike."""
-    world, vertex = wp.tid()
+    """Linear blend skinning: p = sum_k w_k (x_k + F_k o_k), and the normals alike. Launch (M, W)."""
+    vertex, world = wp.tid()
     if not drawn[world]:
         return
     index = skin_indices[vertex]
@@ -52,9 +50,8 @@ def skin_vertices(
     point = wp.vec3(0.0)
     normal = wp.vec3(0.0)
     for k in range(4):
-        node = world * num_nodes + index[k]
-        frame = frames[node]
-        point += weight[k] * (nodes[node] + frame * rest_offsets[vertex, k])
+        frame = frames[index[k], world]
+        point += weight[k] * (nodes[index[k], world] + frame * rest_offsets[vertex, k])
         normal += weight[k] * (frame * rest_normals[vertex, k])
     points[world * skin_indices.shape[0] + vertex] = point
     normals[world * skin_indices.shape[0] + vertex] = wp.normalize(normal)

@@ -1,95 +1,98 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Block-tridiagonal systems of 9x9 blocks by cyclic reduction (Golub and Van Loan, Matrix Computations, section 4.5).
+"""Block-tridiagonal systems by cyclic reduction (Golub and Van Loan, Matrix Computations, section 4.5).
 
 Row i reads U_{i-h}^T x_{i-h} + D_i x_i + U_i x_{i+h} = b_i, with the distance h of neighbours doubling from level to
 level. A level eliminates every odd row (i = h, 3h, 5h, ...), all at once; the even rows are the next level's system.
-Launch dimensions: W worlds, then the level's odd or even rows.
+Blocks have the shape (R, M, M, W), right-hand sides (R, M, W): neighbouring threads work on neighbouring worlds.
 """
 
 import warp as wp
 
+from arcgym.sim.ring_modes import MODES as RING_MODES
 from arcgym.utils import warp_setup  # noqa: F401
 
-Block = wp.types.matrix(shape=(9, 9), dtype=float)
-Unknowns = wp.types.vector(length=9, dtype=float)
+MODES = wp.constant(RING_MODES)
+Unknowns = wp.types.vector(length=RING_MODES, dtype=float)
+Block = wp.types.matrix(shape=(RING_MODES, RING_MODES), dtype=float)
 
 
 @wp.kernel
-def factor_odd(first: int, step: int, diagonal: wp.array2d(dtype=Block)):
-    """Cholesky factor of each odd row's block, in place (lower triangle). Launch (W, odd rows)."""
-    w, m = wp.tid()
+def factor_odd(first: int, step: int, diagonal: wp.array4d(dtype=float)):
+    """Cholesky factor of each odd row's block, in place (lower triangle). Launch (odd rows, W)."""
+    m, w = wp.tid()
     r = first + m * step
-    a = diagonal[w, r]
     out = Block()
-    for j in range(9):
-        d = a[j, j]
+    for j in range(MODES):
+        d = diagonal[r, j, j, w]
         for k in range(j):
             d -= out[j, k] * out[j, k]
         d = wp.sqrt(wp.max(d, 1.0e-6))
         out[j, j] = d
-        for i in range(j + 1, 9):
-            e = a[i, j]
+        diagonal[r, j, j, w] = d
+        for i in range(j + 1, MODES):
+            e = diagonal[r, i, j, w]
             for k in range(j):
                 e -= out[i, k] * out[j, k]
-            out[i, j] = e / d
-    diagonal[w, r] = out
+            e = e / d
+            out[i, j] = e
+            diagonal[r, i, j, w] = e
 
 
 @wp.func
-def forward_solve(lower: Block, b: Unknowns) -> Unknowns:
-    """Solve ``lower x = b``."""
+def forward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -> Unknowns:
+    """Solve ``lower[r] x = b`` in world ``w``."""
     out = Unknowns()
-    for j in range(9):
+    for j in range(MODES):
         s = b[j]
         for k in range(j):
-            s -= lower[j, k] * out[k]
-        out[j] = s / lower[j, j]
+            s -= lower[r, j, k, w] * out[k]
+        out[j] = s / lower[r, j, j, w]
     return out
 
 
 @wp.func
-def backward_solve(lower: Block, b: Unknowns) -> Unknowns:
-    """Solve ``lower^T x = b``."""
+def backward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -> Unknowns:
+    """Solve ``lower[r]^T x = b`` in world ``w``."""
     out = Unknowns()
-    for back in range(9):
-        j = 8 - back
+    for back in range(MODES):
+        j = MODES - 1 - back
         s = b[j]
-        for k in range(j + 1, 9):
-            s -= lower[k, j] * out[k]
-        out[j] = s / lower[j, j]
+        for k in range(j + 1, MODES):
+            s -= lower[r, k, j, w] * out[k]
+        out[j] = s / lower[r, j, j, w]
     return out
 
 
 @wp.kernel
 def eliminate_odd(
     h: int,
-    diagonal: wp.array2d(dtype=Block),
+    diagonal: wp.array4d(dtype=float),
     upper: wp.array4d(dtype=float),
     left: wp.array4d(dtype=float),
     right: wp.array4d(dtype=float),
     rhs: wp.array3d(dtype=float),
 ):
-    """Columns of P = L^-1 U_{j-h}^T and Q = L^-1 U_j, and y = L^-1 b. Launch (W, odd rows, 19)."""
-    w, m, c = wp.tid()
+    """Columns of P = L^-1 U_{j-h}^T and Q = L^-1 U_j, and y = L^-1 b. Launch (odd rows, 2 M + 1, W)."""
+    m, c, w = wp.tid()
     r = h * (2 * m + 1)
     b = Unknowns()
-    for k in range(9):
-        if c < 9:
-            b[k] = upper[w, r - h, c, k]
-        elif c < 18:
-            if r + h < diagonal.shape[1]:
-                b[k] = upper[w, r, k, c - 9]
+    for k in range(MODES):
+        if c < MODES:
+            b[k] = upper[r - h, c, k, w]
+        elif c < 2 * MODES:
+            if r + h < diagonal.shape[0]:
+                b[k] = upper[r, k, c - MODES, w]
         else:
-            b[k] = rhs[w, r, k]
-    x = forward_solve(diagonal[w, r], b)
-    for k in range(9):
-        if c < 9:
-            left[w, r, k, c] = x[k]
-        elif c < 18:
-            right[w, r, k, c - 9] = x[k]
+            b[k] = rhs[r, k, w]
+    x = forward_solve(diagonal, r, w, b)
+    for k in range(MODES):
+        if c < MODES:
+            left[r, k, c, w] = x[k]
+        elif c < 2 * MODES:
+            right[r, k, c - MODES, w] = x[k]
         else:
-            rhs[w, r, k] = x[k]
+            rhs[r, k, w] = x[k]
 
 
 @wp.kernel
@@ -101,54 +104,71 @@ def reduce_even(
     upper: wp.array4d(dtype=float),
     rhs: wp.array3d(dtype=float),
 ):
-    """Row ``a`` of each even row's new block, coupling and right-hand side. Launch (W, even rows, 9)."""
-    w, m, a = wp.tid()
+    """Row ``a`` of each even row's new block, coupling and right-hand side. Launch (even rows, M, W)."""
+    m, a, w = wp.tid()
     r = 2 * h * m
-    rows = diagonal.shape[1]
+    rows = diagonal.shape[0]
     before = r - h
     after = r + h
-    b = rhs[w, r, a]
-    for c in range(9):
-        d = diagonal[w, r, a, c]
-        u = float(0.0)
-        if before >= 0:
-            for k in range(9):
-                d -= right[w, before, k, a] * right[w, before, k, c]
-        if after < rows:
-            for k in range(9):
-                p = left[w, after, k, a]
-                d -= p * left[w, after, k, c]
-                u -= p * right[w, after, k, c]
-        diagonal[w, r, a, c] = d
-        upper[w, r, a, c] = u
+    own = Unknowns()
+    new = Unknowns()
+    for c in range(MODES):
+        own[c] = diagonal[r, a, c, w]
+    b = rhs[r, a, w]
     if before >= 0:
-        for k in range(9):
-            b -= right[w, before, k, a] * rhs[w, before, k]
+        for k in range(MODES):
+            q = right[before, k, a, w]
+            b -= q * rhs[before, k, w]
+            for c in range(MODES):
+                own[c] = own[c] - q * right[before, k, c, w]
     if after < rows:
-        for k in range(9):
-            b -= left[w, after, k, a] * rhs[w, after, k]
-    rhs[w, r, a] = b
+        for k in range(MODES):
+            p = left[after, k, a, w]
+            b -= p * rhs[after, k, w]
+            for c in range(MODES):
+                own[c] = own[c] - p * left[after, k, c, w]
+                new[c] = new[c] - p * right[after, k, c, w]
+    for c in range(MODES):
+        diagonal[r, a, c, w] = own[c]
+        upper[r, a, c, w] = new[c]
+    rhs[r, a, w] = b
 
 
 @wp.kernel
-def solve_root(diagonal: wp.array2d(dtype=Block), rhs: wp.array2d(dtype=Unknowns)):
+def solve_root(diagonal: wp.array4d(dtype=float), rhs: wp.array3d(dtype=float)):
     """The one row that is left, its block already factored. Launch (W,)."""
     w = wp.tid()
-    rhs[w, 0] = backward_solve(diagonal[w, 0], forward_solve(diagonal[w, 0], rhs[w, 0]))
+    b = Unknowns()
+    for k in range(MODES):
+        b[k] = rhs[0, k, w]
+    x = backward_solve(diagonal, 0, w, forward_solve(diagonal, 0, w, b))
+    for k in range(MODES):
+        rhs[0, k, w] = x[k]
 
 
 @wp.kernel
 def back_substitute(
     h: int,
-    diagonal: wp.array2d(dtype=Block),
-    left: wp.array2d(dtype=Block),
-    right: wp.array2d(dtype=Block),
-    rhs: wp.array2d(dtype=Unknowns),
+    diagonal: wp.array4d(dtype=float),
+    left: wp.array4d(dtype=float),
+    right: wp.array4d(dtype=float),
+    rhs: wp.array3d(dtype=float),
 ):
-    """Odd rows from their even neighbours: x = L^-T (y - P x_{j-h} - Q x_{j+h}). Launch (W, odd rows)."""
-    w, m = wp.tid()
+    """Odd rows from their even neighbours: x = L^-T (y - P x_{j-h} - Q x_{j+h}). Launch (odd rows, W)."""
+    m, w = wp.tid()
     r = h * (2 * m + 1)
-    y = rhs[w, r] - left[w, r] * rhs[w, r - h]
-    if r + h < rhs.shape[1]:
-        y -= right[w, r] * rhs[w, r + h]
-    rhs[w, r] = backward_solve(diagonal[w, r], y)
+    y = Unknowns()
+    for k in range(MODES):
+        y[k] = rhs[r, k, w]
+    for c in range(MODES):
+        before = rhs[r - h, c, w]
+        for k in range(MODES):
+            y[k] = y[k] - left[r, k, c, w] * before
+    if r + h < rhs.shape[0]:
+        for c in range(MODES):
+            after = rhs[r + h, c, w]
+            for k in range(MODES):
+                y[k] = y[k] - right[r, k, c, w] * after
+    x = backward_solve(diagonal, r, w, y)
+    for k in range(MODES):
+        rhs[r, k, w] = x[k]

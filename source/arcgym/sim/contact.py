@@ -25,6 +25,7 @@ class ContactSearch:
     def __init__(
         self,
         cfg: ContactCfg,
+        surface_offset: float,
         topology: LumenTopology,
         vertex_ring: np.ndarray,
         half_length: np.ndarray,
@@ -36,6 +37,7 @@ class ContactSearch:
 
         Args:
             cfg: Contact settings.
+            surface_offset: Distance of the lumen from its faces, towards the axis [m].
             topology: Lumen faces of one world.
             vertex_ring: Ring of each wall vertex, shape (V,).
             half_length: Half the length of each link's axis [m], shape (L,).
@@ -50,6 +52,7 @@ class ContactSearch:
         self.links.half_length = wp.array(half_length, dtype=float, device=device)
         self.links.radius = wp.array(radius, dtype=float, device=device)
         self.law = self._law(cfg)
+        self.law.wall_radius += surface_offset
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
         self.centres = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
@@ -63,7 +66,6 @@ class ContactSearch:
         for name in ("rings", "faces", "neighbors", "vertex_owner", "ring_start"):
             setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
         surface.reach = reach
-        surface.vertices = self.vertex_count
         return surface
 
     def _law(self, cfg: ContactCfg) -> kernels.ContactLaw:
@@ -80,14 +82,14 @@ class ContactSearch:
         records.face = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
         records.bary = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
         records.normal = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
-        records.vertex_head = wp.full(self.num_envs * self.vertex_count, -1, dtype=int, device=self.device)
+        records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
         records.vertex_next = wp.full(3 * rows * capacity, -1, dtype=int, device=self.device)
-        records.ring_head = wp.full(self.num_envs * self.ring_count, -1, dtype=int, device=self.device)
+        records.ring_head = wp.full((self.ring_count, self.num_envs), -1, dtype=int, device=self.device)
         records.ring_next = wp.full(rows * capacity, -1, dtype=int, device=self.device)
         return records
 
     def update_centres(self, x: wp.array) -> None:
-        """Recompute the ring centres from the wall positions ``x`` [m], shape (W*V,)."""
+        """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W)."""
         wp.launch(
             kernels.ring_centres, (self.num_envs, self.ring_count), [x, self.surface, self.centres], device=self.device
         )
@@ -98,7 +100,7 @@ class ContactSearch:
         wp.launch(kernels.track_rings, shape, [self.centres, body_q, SPAN, self.ring], device=self.device)
 
     def detect(self, x: wp.array, body_q: wp.array) -> None:
-        """Fill the contact records for wall positions ``x`` (W*V,) and link poses ``body_q`` (W*L,)."""
+        """Fill the contact records for wall positions ``x`` (V, W) and link poses ``body_q`` (W*L,)."""
         self.update_centres(x)
         self.track(body_q)
         wp.launch(
@@ -118,6 +120,6 @@ class ContactSearch:
         wp.launch(
             kernels.build_lists,
             self.num_envs,
-            [self.vertex_ring, self.vertex_count, self.ring_count, self.link_count, self.records],
+            [self.vertex_ring, self.link_count, self.records],
             device=self.device,
         )

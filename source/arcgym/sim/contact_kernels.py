@@ -7,7 +7,7 @@ Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candi
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, triangle_point
+from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
@@ -33,7 +33,6 @@ class LumenSurface:
     vertex_owner: wp.array(dtype=int)  # lowest face around each wall vertex, shape (V,)
     ring_start: wp.array(dtype=int)  # first face of each ring, shape (R + 1,)
     reach: int  # rings searched on either side of a link's own
-    vertices: int  # V
 
 
 @wp.struct
@@ -42,12 +41,12 @@ class ContactRecords:
 
     capacity: int
     count: wp.array(dtype=int)  # shape (W*L,)
-    face: wp.array(dtype=wp.vec3i)  # the three wall vertices, global, shape (W*L*capacity,)
+    face: wp.array(dtype=wp.vec3i)  # the three wall vertices, shape (W*L*capacity,)
     bary: wp.array(dtype=wp.vec3)
     normal: wp.array(dtype=wp.vec3)  # wall's outward face normal at detection
-    vertex_head: wp.array(dtype=int)  # first entry of each vertex's list, shape (W*V,); entry e = 3 * record + corner
+    vertex_head: wp.array2d(dtype=int)  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
-    ring_head: wp.array(dtype=int)  # first record whose lowest ring is this one, shape (W*R,)
+    ring_head: wp.array2d(dtype=int)  # first record whose lowest ring is this one, shape (R, W)
     ring_next: wp.array(dtype=int)  # shape (W*L*capacity,)
 
 
@@ -64,13 +63,13 @@ class ContactLaw:
 
 
 @wp.kernel
-def ring_centres(x: wp.array(dtype=wp.vec3), surface: LumenSurface, centres: wp.array2d(dtype=wp.vec3)):
+def ring_centres(x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, centres: wp.array2d(dtype=wp.vec3)):
     """Mean of each ring's inner vertices. Launch (W, R)."""
     w, r = wp.tid()
     n = surface.rings.shape[1]
     total = wp.vec3(0.0)
     for k in range(n):
-        total += x[w * surface.vertices + surface.rings[r, k]]
+        total += x[surface.rings[r, k], w]
     centres[w, r] = total / float(n)
 
 
@@ -99,7 +98,7 @@ def track_rings(
 
 @wp.kernel
 def face_distances(
-    x: wp.array(dtype=wp.vec3),
+    x: wp.array2d(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
     links: LinkShapes,
     surface: LumenSurface,
@@ -113,10 +112,9 @@ def face_distances(
     face = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)] + m
     d = float(FAR)
     if face < surface.ring_start[wp.min(nr, ring[w, link] + surface.reach + 1)]:
-        base = w * surface.vertices
-        a = x[base + surface.faces[face, 0]]
-        b = x[base + surface.faces[face, 1]]
-        c = x[base + surface.faces[face, 2]]
+        a = x[surface.faces[face, 0], w]
+        b = x[surface.faces[face, 1], w]
+        c = x[surface.faces[face, 2], w]
         pose = body_q[w * ring.shape[1] + link]
         centre = wp.transform_get_translation(pose)
         axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
@@ -171,7 +169,7 @@ def lowest_around(
 
 @wp.kernel
 def select_contacts(
-    x: wp.array(dtype=wp.vec3),
+    x: wp.array2d(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
     links: LinkShapes,
     surface: LumenSurface,
@@ -187,7 +185,6 @@ def select_contacts(
     w, link = wp.tid()
     row = w * ring.shape[1] + link
     first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
-    base = w * surface.vertices
     pose = body_q[row]
     centre = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
@@ -195,23 +192,23 @@ def select_contacts(
     for m in range(distance.shape[2]):
         if distance[w, link, m] < FAR and n < records.capacity:
             face = first + m
-            i = base + surface.faces[face, 0]
-            j = base + surface.faces[face, 1]
-            k = base + surface.faces[face, 2]
-            c = segment_triangle(centre - axis, centre + axis, x[i], x[j], x[k])
+            i = surface.faces[face, 0]
+            j = surface.faces[face, 1]
+            k = surface.faces[face, 2]
+            c = segment_triangle(centre - axis, centre + axis, x[i, w], x[j, w], x[k, w])
             u = wp.vec3(c[0], c[1], c[2])
             inside = wp.min(u) > EDGE
             if inside or (lowest_around(surface, distance, w, link, m, first) and owns_contact(surface, face, u)):
                 slot = row * records.capacity + n
                 records.face[slot] = wp.vec3i(i, j, k)
                 records.bary[slot] = u
-                records.normal[slot] = wp.normalize(wp.cross(x[j] - x[i], x[k] - x[i]))
+                records.normal[slot] = wp.normalize(wp.cross(x[j, w] - x[i, w], x[k, w] - x[i, w]))
                 n += 1
     records.count[row] = n
 
 
 @wp.kernel
-def build_lists(vertex_ring: wp.array(dtype=int), vertices: int, ring_count: int, links: int, records: ContactRecords):
+def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRecords):
     """Thread each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
 
     One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
@@ -223,15 +220,15 @@ def build_lists(vertex_ring: wp.array(dtype=int), vertices: int, ring_count: int
         for back in range(n):
             slot = row * records.capacity + n - 1 - back
             face = records.face[slot]
-            lowest = ring_count
+            lowest = records.ring_head.shape[0]
             for k in range(3):
                 entry = 3 * slot + k
                 v = face[k]
-                records.vertex_next[entry] = records.vertex_head[v]
-                records.vertex_head[v] = entry
-                lowest = wp.min(lowest, vertex_ring[v - w * vertices])
-            records.ring_next[slot] = records.ring_head[w * ring_count + lowest]
-            records.ring_head[w * ring_count + lowest] = slot
+                records.vertex_next[entry] = records.vertex_head[v, w]
+                records.vertex_head[v, w] = entry
+                lowest = wp.min(lowest, vertex_ring[v])
+            records.ring_next[slot] = records.ring_head[lowest, w]
+            records.ring_head[lowest, w] = slot
 
 
 @wp.struct
@@ -278,8 +275,8 @@ def link_forces(
     body_q: wp.array(dtype=wp.transform),
     body_qd: wp.array(dtype=wp.spatial_vector),
     body_mass: wp.array(dtype=float),
-    x: wp.array(dtype=wp.vec3),
-    v: wp.array(dtype=wp.vec3),
+    x: wp.array2d(dtype=wp.vec3),
+    v: wp.array2d(dtype=wp.vec3),
     links: LinkShapes,
     records: ContactRecords,
     law: ContactLaw,
@@ -309,8 +306,8 @@ def link_forces(
         slot = row * records.capacity + k
         f = records.face[slot]
         u = records.bary[slot]
-        wall_v = triangle_point(v[f[0]], v[f[1]], v[f[2]], u)
-        p = triangle_point(x[f[0]], x[f[1]], x[f[2]], u) + elapsed * wall_v
+        wall_v = corner_point(v, f, u, w)
+        p = corner_point(x, f, u, w) + elapsed * wall_v
         c = touch(p, records.normal[slot], pose, links.half_length[link], links.radius[link] + law.wall_radius)
         if c.gap < 0.0:
             relative = lin + wp.cross(ang, p - centre) - wall_v

@@ -10,11 +10,15 @@ from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
 from newton.solvers import SolverMuJoCo
 
+from arcgym.anatomy.shell import ShellMesh
 from arcgym.anatomy.wall import inner_faces
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
-from arcgym.sim.ring_modes import RingModes, ring_modes
-from arcgym.sim.wall_solver import WallParameters
+from arcgym.assets.shell_geometry import shell_geometry
+from arcgym.sim.ring_modes import ElasticPart, RingModes, ring_modes
+from arcgym.sim.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.solid_elements import tet_stiffness
+from arcgym.sim.wall_parameters import ShellParameters, SolidParameters, WallParameters
 from arcgym.sim.wall_topology import LumenTopology, lumen_topology
 
 
@@ -36,25 +40,44 @@ def wall_parameters(colon: Colon) -> WallParameters:
     """The wall as Newton imports and colours it, in numpy."""
     builder = empty_builder()
     colon.add_to(builder)
-    builder.color()
+    shell = isinstance(colon.wall, ShellMesh)
+    builder.color(include_bending=shell)
+    points = np.array(builder.particle_q, dtype=np.float64).reshape(-1, 3)
     return WallParameters(
-        points=np.array(builder.particle_q, dtype=np.float64).reshape(-1, 3),
-        tets=np.array(builder.tet_indices, dtype=np.int32).reshape(-1, 4),
-        lame=np.array(builder.tet_materials, dtype=np.float64)[:, :2],
+        points=points,
+        elements=_shell(colon.wall) if isinstance(colon.wall, ShellMesh) else _solid(builder, points),
+        moduli=colon.moduli(*colon.elasticity()),
         mass=np.array(builder.particle_mass, dtype=np.float64),
         mobile=colon.mobile(),
         anchor=colon.anchor_springs(),
-        ring=colon.stage.wall.ring,
+        ring=colon.wall.ring,
         colours=[np.asarray(group) for group in builder.particle_color_groups],
     )
 
 
+def _solid(builder: newton.ModelBuilder, points: np.ndarray) -> SolidParameters:
+    tets = np.array(builder.tet_indices, dtype=np.int32).reshape(-1, 4)
+    shear, dilation = tet_stiffness(points, tets)
+    return SolidParameters(tets, (ElasticPart(tets, shear), ElasticPart(tets, dilation), ElasticPart.none()))
+
+
+def _shell(shell: ShellMesh) -> ShellParameters:
+    geometry = shell_geometry(shell.points, shell.triangles)
+    shear, dilation = stretching_stiffness(shell.points, geometry)
+    bending = bending_stiffness(shell.points, geometry)
+    triangles = shell.triangles
+    parts = ElasticPart(triangles, shear), ElasticPart(triangles, dilation), ElasticPart(geometry.hinges, bending)
+    return ShellParameters(geometry, parts)
+
+
 def wall_modes(wall: WallParameters) -> RingModes:
     """Ring modes of the wall."""
-    return ring_modes(wall.points, wall.tets, wall.ring, wall.mobile, wall.mass, wall.anchor, wall.lame)
+    thin = isinstance(wall.elements, ShellParameters)
+    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor, wall.elements.parts, thin)
 
 
 def wall_lumen(colon: Colon) -> LumenTopology:
-    """Lumen faces of the wall, sorted along the centreline."""
-    wall = colon.stage.wall
-    return lumen_topology(inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
+    """Faces of the wall that the scope touches, sorted along the centreline."""
+    wall = colon.wall
+    faces = wall.triangles if isinstance(wall, ShellMesh) else inner_faces(wall.tets, wall.layer)
+    return lumen_topology(faces, wall.ring, wall.layer)

@@ -16,17 +16,30 @@ import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
-from newton.solvers import SolverVBD
+from newton.solvers import SolverMuJoCo, SolverVBD
 from newton.solvers.experimental.coupled import SolverCoupledProxy
 
 from arcgym.sim import model_building, newton_kernels
-from arcgym.sim.coupling import scope_solver
+from arcgym.sim.simulation_cfg import SimulationCfg
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
 
 ANCHOR_RADIUS = 0.0005
 """Radius of the static particles that anchors are tied to [m]; they touch nothing."""
+
+
+def scope_solver(model: newton.Model, cfg: SimulationCfg) -> SolverMuJoCo:
+    """MuJoCo for the articulations alone: contact with the wall comes in as link forces."""
+    return SolverMuJoCo(
+        model=model,
+        disable_contacts=True,
+        integrator="implicitfast",
+        iterations=cfg.scope_iterations,
+        ls_iterations=5,
+        njmax=2 * model.joint_dof_count // model.world_count + 8,
+        nconmax=8,
+    )
 
 
 class NewtonCoupling:
@@ -97,7 +110,8 @@ class NewtonCoupling:
         for _ in range(count):
             self._damp(dt)
             self.now.clear_forces()
-            self.sim.actuation.apply(self.now, self.control, dt, 1.0 / count)
+            self.sim.actuation.apply(self.now, self.control, dt)
+            self.sim.actuation.record_explicit(self.now, self.control, 1.0 / count)
             self.solver.step(self.now, self.then, self.control, None, dt)
             self._record(1.0 / count)
             self.now, self.then = self.then, self.now
@@ -111,30 +125,23 @@ class NewtonCoupling:
 
     def _damp(self, dt: float) -> None:
         velocity, factor = self.now.particle_qd, math.exp(-self.cfg.wall.drag * dt)
-        args = [velocity, self.stride, factor, velocity, self.stride]
-        wp.launch(newton_kernels.copy_blocks, self._blocks, args, device=self.model.device)
-
-    @property
-    def _blocks(self) -> tuple[int, int]:
-        return self.sim.num_envs, self.sim.colon.num_nodes
+        wp.launch(newton_kernels.damp, velocity.shape, [factor, velocity], device=self.model.device)
 
     def _copy_in(self) -> None:
-        sim, nodes = self.sim, self.sim.colon.num_nodes
+        sim = self.sim
         for name in ("joint_q", "joint_qd", "body_q", "body_qd"):
             wp.copy(getattr(self.now, name), getattr(sim.state, name))
         wp.copy(self.control.joint_target_q, sim.control.joint_target_q)
         for ours, theirs in ((sim.nodal_pos, self.now.particle_q), (sim.nodal_vel, self.now.particle_qd)):
-            args = [ours, nodes, 1.0, theirs, self.stride]
-            wp.launch(newton_kernels.copy_blocks, self._blocks, args, device=self.model.device)
+            wp.launch(newton_kernels.to_particles, ours.shape, [ours, self.stride, theirs], device=self.model.device)
 
     def _copy_out(self) -> None:
-        sim, nodes = self.sim, self.sim.colon.num_nodes
+        sim = self.sim
         for name in ("joint_q", "joint_qd", "body_q", "body_qd"):
             wp.copy(getattr(sim.state, name), getattr(self.now, name))
         wp.copy(sim.control.joint_target_q, self.control.joint_target_q)
         for theirs, ours in ((self.now.particle_q, sim.nodal_pos), (self.now.particle_qd, sim.nodal_vel)):
-            args = [theirs, self.stride, 1.0, ours, nodes]
-            wp.launch(newton_kernels.copy_blocks, self._blocks, args, device=self.model.device)
+            wp.launch(newton_kernels.from_particles, ours.shape, [theirs, self.stride, ours], device=self.model.device)
 
     def reset(self, world_mask: wp.array) -> None:
         """Clear what the coupled solvers keep between steps in the masked worlds; states are copied in anyway."""

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Copies between our wall arrays (V a world) and Newton's particles (V wall vertices and A anchors a world)."""
+"""Copies between our wall arrays (V, W) and Newton's particles (V wall vertices and A anchors a world)."""
 
 import warp as wp
 
@@ -8,12 +8,24 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.kernel
-def copy_blocks(
-    source: wp.array(dtype=wp.vec3), source_stride: int, factor: float, out: wp.array(dtype=wp.vec3), stride: int
-):
-    """Copy the first vectors of each world's block, times ``factor``. Launch (W, V)."""
-    w, i = wp.tid()
-    out[w * stride + i] = factor * source[w * source_stride + i]
+def to_particles(ours: wp.array2d(dtype=wp.vec3), stride: int, particles: wp.array(dtype=wp.vec3)):
+    """Copy our array to the first particles of each world's block. Launch (V, W)."""
+    i, w = wp.tid()
+    particles[w * stride + i] = ours[i, w]
+
+
+@wp.kernel
+def from_particles(particles: wp.array(dtype=wp.vec3), stride: int, ours: wp.array2d(dtype=wp.vec3)):
+    """Copy the first particles of each world's block to our array. Launch (V, W)."""
+    i, w = wp.tid()
+    ours[i, w] = particles[w * stride + i]
+
+
+@wp.kernel
+def damp(factor: float, velocity: wp.array(dtype=wp.vec3)):
+    """Multiply all velocities by ``factor``. Launch (particles,)."""
+    i = wp.tid()
+    velocity[i] = factor * velocity[i]
 
 
 @wp.kernel

@@ -90,11 +90,11 @@ def broken(p: wp.vec3) -> bool:
 
 
 @wp.kernel
-def flag_broken_points(x: wp.array(dtype=wp.vec3), per_world: int, flag: wp.array(dtype=int)):
-    """Mark worlds with a broken wall vertex. Launch (W*V,)."""
-    i = wp.tid()
-    if broken(x[i]):
-        flag[i // per_world] = 1
+def flag_broken_points(x: wp.array2d(dtype=wp.vec3), flag: wp.array(dtype=int)):
+    """Mark worlds with a broken wall vertex. Launch (V, W)."""
+    i, w = wp.tid()
+    if broken(x[i, w]):
+        flag[w] = 1
 
 
 @wp.kernel

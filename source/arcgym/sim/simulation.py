@@ -58,16 +58,16 @@ class Simulation:
         self.state, self.control = self.model.state(), self.model.control()
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
         wall = model_building.wall_parameters(colon)
-        points = np.tile(wall.points.astype(np.float32), (num_envs, 1))
+        points = np.repeat(wall.points.astype(np.float32)[:, None], num_envs, axis=1)
         self.nodal_pos = wp.array(points, dtype=wp.vec3, device=self.device)
-        self.nodal_vel = wp.zeros(len(points), dtype=wp.vec3, device=self.device)
+        self.nodal_vel = wp.zeros_like(self.nodal_pos)
         self._allocate_readout()
         self.actuation = Actuation(cfg, endoscope, self.model, num_envs, self.device)
-        stage = colon.stage.wall
         self.contact = ContactSearch(
             cfg.contact,
+            colon.surface_offset,
             model_building.wall_lumen(colon),
-            stage.ring,
+            colon.wall.ring,
             endoscope.half_length,
             endoscope.stage.link_radius,
             num_envs,
@@ -77,7 +77,8 @@ class Simulation:
         self.coupling: Coupling = self._coupling()
         self.ring_centres = self.contact.centres
         self.friction: torch.Tensor = wp.to_torch(self.contact.friction)
-        self.stiffness_scale: torch.Tensor = wp.to_torch(self.wall.stiffness_scale)
+        self.moduli: torch.Tensor = wp.to_torch(self.wall.tissue.moduli)
+        self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor)
         self._graph: wp.Graph | None = None
         self._eager_steps = 0
         colon.bind(self)
@@ -122,7 +123,7 @@ class Simulation:
         self.tip_distance = wp.zeros(n, dtype=float, device=device)
         self.tip_direction = wp.zeros(n, dtype=wp.vec3, device=device)
         self._broken = wp.zeros(n, dtype=int, device=device)
-        self.ring_arc = wp.array(self.colon.stage.wall.ring_arc, dtype=float, device=device)
+        self.ring_arc = wp.array(self.colon.wall.ring_arc, dtype=float, device=device)
         self._tip_offset = wp.vec3(0.0, 0.0, self.endoscope.tip_offset)
         camera = self.endoscope.stage.camera
         self._camera_offset = wp.transform(wp.vec3(*camera.position), wp.quat(*camera.quaternion))
@@ -190,7 +191,7 @@ class Simulation:
         args += [self.tip_arc, self.tip_distance, self.tip_direction]
         wp.launch(readout_kernels.locate_tip, self.num_envs, args, device=self.device)
         self._broken.zero_()
-        args = [self.nodal_pos, self.colon.num_nodes, self._broken]
+        args = [self.nodal_pos, self._broken]
         wp.launch(readout_kernels.flag_broken_points, self.nodal_pos.shape, args, device=self.device)
         args = [self.state.body_q, links, self._broken]
         wp.launch(readout_kernels.flag_broken_bodies, self.state.body_q.shape, args, device=self.device)
@@ -202,15 +203,13 @@ class Simulation:
             "joint_q": self.state.joint_q,
             "joint_qd": self.state.joint_qd,
             "joint_target_q": self.control.joint_target_q,
-            "nodal_pos": self.nodal_pos,
-            "nodal_vel": self.nodal_vel,
             "link_ring": self.contact.ring,
             "bending": self.actuation.bending,
             "lead": self.actuation.lead,
             "turn": self.actuation.turn,
         }
-        flat = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()}
-        return {name: a.view(n, -1, 3) if name.startswith("nodal") else a for name, a in flat.items()}
+        views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()}
+        return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
     def read_snapshot(self, env_id: int) -> Snapshot:
         """Complete state of one world, on the host."""

@@ -97,10 +97,10 @@ class SnapshotSet:
 
 
 def fingerprint(sim: Simulation) -> str:
-    """Short hash of what a state depends on: the wall's rest points and tets, the scope's links."""
-    wall, scope = sim.colon.stage.wall, sim.endoscope.stage
+    """Short hash of what a state depends on: the wall's rest points and rings, the scope's links."""
+    wall, scope = sim.colon.wall, sim.endoscope.stage
     digest = hashlib.sha256()
-    for array in (wall.points, wall.tets, scope.link_length, scope.link_radius):
+    for array in (wall.points, wall.ring, scope.link_length, scope.link_radius):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:16]
 

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
@@ -15,30 +14,7 @@ from arcgym.sim.chain_solver import ChainSolver
 from arcgym.sim.contact import ContactSearch
 from arcgym.sim.ring_modes import MODES, RingModes
 from arcgym.sim.simulation_cfg import WallSolverCfg
-from arcgym.sim.wall_topology import vertex_entries
-
-
-@dataclass(frozen=True)
-class WallParameters:
-    """One world's wall as numbers, T tets and V vertices."""
-
-    points: np.ndarray
-    """Rest positions [m], shape (V, 3)."""
-    tets: np.ndarray
-    """Vertex indices, shape (T, 4)."""
-    lame: np.ndarray
-    """Lamé parameters (mu, lambda) [Pa], shape (T, 2)."""
-    mass: np.ndarray
-    """Vertex masses [kg], shape (V,)."""
-    mobile: np.ndarray
-    """Whether each vertex moves, shape (V,), bool."""
-    anchor: np.ndarray
-    """Spring of each vertex to its rest position [N/m], shape (V,)."""
-    ring: np.ndarray
-    """Ring of each vertex, shape (V,)."""
-    colours: list[np.ndarray]
-    """Vertices that share no tet, colour by colour."""
-
+from arcgym.sim.wall_parameters import WallParameters, wall_elements, wall_nodes
 
 REGULARISATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
@@ -65,43 +41,28 @@ class WallSolver:
             device: Warp device.
         """
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
-        self.vertex_count, self.ring_count = len(wall.points), len(modes.stiffness)
-        self.elements = self._elements(wall)
+        self.vertex_count, self.ring_count = len(wall.points), len(modes.mass)
+        self.nodes = wall_nodes(wall, device)
+        self.kernels, self.elements = wall_elements(wall, device)
         self.space = self._space(wall, modes)
         self.colours = [
             wp.array(c[wall.mobile[c]], dtype=int, device=device) for c in wall.colours if wall.mobile[c].any()
         ]
-        self.stiffness_scale = wp.ones(num_envs, dtype=float, device=device)
-        count, rings = num_envs * self.vertex_count, (num_envs, self.ring_count)
+        self.tissue = wall_kernels.Tissue()
+        self.tissue.moduli = wp.array(np.tile(wall.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
+        self.tissue.anchor = wp.ones(num_envs, dtype=float, device=device)
+        count, rings = (self.vertex_count, num_envs), (self.ring_count, num_envs)
         self.x_prev = wp.zeros(count, dtype=wp.vec3, device=device)
         self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
         self.chain = ChainSolver(num_envs, self.ring_count, device)
 
-    def _elements(self, wall: WallParameters) -> wall_kernels.WallElements:
-        edges = (wall.points[wall.tets[:, 1:]] - wall.points[wall.tets[:, :1]]).transpose(0, 2, 1)
-        start, entry = vertex_entries(wall.tets, len(wall.points))
-        elements = wall_kernels.WallElements()
-        elements.vertices = len(wall.points)
-        elements.tets = wp.array(wall.tets, dtype=wp.vec4i, device=self.device)
-        elements.inv_rest = wp.array(np.linalg.inv(edges), dtype=wp.mat33, device=self.device)
-        elements.lame = wp.array(wall.lame, dtype=wp.vec2, device=self.device)
-        elements.volume = wp.array(np.linalg.det(edges) / 6.0, dtype=float, device=self.device)
-        elements.mass = wp.array(wall.mass, dtype=float, device=self.device)
-        elements.mobile = wp.array(wall.mobile.astype(np.int32), dtype=int, device=self.device)
-        elements.anchor = wp.array(wall.anchor, dtype=float, device=self.device)
-        elements.rest = wp.array(wall.points, dtype=wp.vec3, device=self.device)
-        elements.entry_start = wp.array(start, dtype=int, device=self.device)
-        elements.entry = wp.array(entry, dtype=int, device=self.device)
-        return elements
-
     def _space(self, wall: WallParameters, modes: RingModes) -> coarse_kernels.RingSpace:
         space = coarse_kernels.RingSpace()
-        space.vertices = len(wall.points)
         space.ring = wp.array(wall.ring, dtype=int, device=self.device)
-        space.weights = wp.array(modes.weights * wall.mobile[:, None], dtype=wp.vec3, device=self.device)
-        space.frame_weights = wp.array(modes.weights, dtype=wp.vec3, device=self.device)
+        space.basis = wp.array(modes.basis, dtype=wp.vec3, device=self.device)
+        space.frame_weights = wp.array(modes.frame_weights, dtype=wp.vec2, device=self.device)
         space.members = wp.array(modes.members, dtype=int, device=self.device)
         space.rest_frame = wp.array(modes.rest_frame, dtype=wp.mat33, device=self.device)
         for name in ("stiffness", "coupling", "mass", "anchor"):
@@ -112,18 +73,18 @@ class WallSolver:
         """Advance the wall by one physics step, in place.
 
         Args:
-            x: Wall positions [m], shape (W*V,), vec3.
-            v: Wall velocities [m/s], shape (W*V,), vec3.
+            x: Wall positions [m], shape (V, W), vec3.
+            v: Wall velocities [m/s], shape (V, W), vec3.
             contact: Contacts found at the start of the step.
             body_q: Link poses at the end of the step, shape (W*L,).
             body_q_prev: Link poses at its start, shape (W*L,).
         """
-        shape = (self.num_envs, self.vertex_count)
+        shape = (self.vertex_count, self.num_envs)
         decay = math.exp(-self.cfg.drag * self.dt)
         wp.launch(
             wall_kernels.predict,
             shape,
-            [x, v, self.elements, decay, self.dt, self.x_prev, self.inertial],
+            [x, v, self.nodes, decay, self.dt, self.x_prev, self.inertial],
             device=self.device,
         )
         for _ in range(self.cfg.repeats):
@@ -136,27 +97,27 @@ class WallSolver:
     def _sweep(self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
         for colour in self.colours:
             wp.launch(
-                wall_kernels.sweep_colour,
-                (self.num_envs, len(colour)),
-                [colour, self.elements, self.stiffness_scale, self.dt, self.inertial, self.x_prev, contact.records]
+                self.kernels.sweep_colour,
+                (len(colour), self.num_envs),
+                [colour, self.nodes, self.elements, self.tissue, self.dt, self.inertial, self.x_prev, contact.records]
                 + [contact.links, contact.law, contact.friction, contact.link_count, body_q, body_q_prev, x],
                 device=self.device,
             )
 
     def _correct_rings(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> None:
-        shape, rings = (self.num_envs, self.vertex_count), (self.num_envs, self.ring_count)
+        shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
         touching = [contact.records, contact.links, contact.law, contact.link_count, body_q]
         wp.launch(
-            wall_kernels.residual,
+            self.kernels.residual,
             shape,
-            [self.elements, self.stiffness_scale, self.dt, self.inertial, self.x_prev, *touching, x, self.force],
+            [self.nodes, self.elements, self.tissue, self.dt, self.inertial, *touching, x, self.force],
             device=self.device,
         )
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation], device=self.device)
-        args = [x, self.force, self.space, self.rotation, self.stiffness_scale, 1.0 / self.dt**2, REGULARISATION]
+        args = [x, self.force, self.space, self.rotation, self.tissue, 1.0 / self.dt**2, REGULARISATION]
         args += [*touching, self.chain.diagonal, self.chain.upper, self.chain.rhs]
-        wp.launch(coarse_kernels.assemble, (*rings, MODES), args, device=self.device)
+        wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
         self.chain.solve()
         wp.launch(
-            coarse_kernels.prolong, shape, [self.space, self.chain.rhs, self.cfg.largest_move, x], device=self.device
+            coarse_kernels.prolong, shape, [self.space, self.rotation, self.chain.rhs, self.cfg.largest_move, x], device=self.device
         )

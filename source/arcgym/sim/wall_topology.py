@@ -82,9 +82,9 @@ def face_neighbors(faces: np.ndarray) -> np.ndarray:
     return out.reshape(-1, 3)
 
 
-def vertex_entries(tets: np.ndarray, vertices: int) -> tuple[np.ndarray, np.ndarray]:
-    """Tets around each vertex as (start, shape (V + 1,); entry = 4 * tet + corner, shape (4*T,)), both int32."""
-    flat = tets.ravel()
+def vertex_entries(elements: np.ndarray, vertices: int) -> tuple[np.ndarray, np.ndarray]:
+    """Elements of n corners around each vertex: start, shape (V + 1,), entry = n * element + corner, shape (n*E,)."""
+    flat = elements.ravel()
     entry = np.argsort(flat, kind="stable").astype(np.int32)
     start = np.searchsorted(flat[entry], np.arange(vertices + 1)).astype(np.int32)
     return start, entry

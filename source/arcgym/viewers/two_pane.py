@@ -60,7 +60,7 @@ class TwoPaneView:
         self._colon, self._scope = env.scene["colon"], env.scene["endoscope"]
         stage = self._colon.stage
         device = str(self._colon.nodal_pos_wp.device)
-        self._surface = SkinnedSurface(stage.visual_proxy, stage.wall, 1, device)
+        self._surface = SkinnedSurface(stage.visual_proxy, self._colon.wall, 1, device)
         scope = self._scope.stage
         self._outside = OutsideView(
             self.cfg.outside,
@@ -109,8 +109,7 @@ class TwoPaneView:
         return picture
 
     def _outside_view(self, env_id: int) -> np.ndarray:
-        first = env_id * self._surface.num_nodes
-        self._surface.update(self._colon.nodal_pos_wp[first : first + self._surface.num_nodes])
+        self._surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
         data = self._scope.data
         return self._outside.render(
             data.body_pos_w[env_id].cpu().numpy(),

@@ -1,0 +1,84 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The wall as a thin shell: one layer of triangles half way through a wall's two layers of vertices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .stage_types import WallMesh
+from .wall import inner_faces
+
+
+@dataclass(frozen=True)
+class ShellMesh:
+    """Mid-surface of a wall, V vertices on the same rings and sectors as each of the wall's layers."""
+
+    points: np.ndarray
+    """Rest positions [m], shape (V, 3), float32."""
+    triangles: np.ndarray
+    """Vertex indices, normals from the lumen into the wall, shape (F, 3), int32."""
+    thickness: float
+    """Wall thickness [m]; the lumen's surface is half of it inwards."""
+    anchor: np.ndarray
+    """0 free, 1 elastic attachment, 2 fixed, shape (V,), int32."""
+    segment: np.ndarray
+    """Index into ``SEGMENTS``, shape (V,), int32."""
+    ring: np.ndarray
+    """Ring number along the centreline, shape (V,), int32."""
+    layer: np.ndarray
+    """All 0: the only layer is also the lumen side, shape (V,), int32."""
+    frame_neighbors: np.ndarray
+    """Next ring, previous ring, next around, previous around, shape (V, 4), int32."""
+    ring_arc: np.ndarray
+    """Arc length of each ring along the centreline at rest [m], shape (R,), float32."""
+
+
+def wall_thickness(wall: WallMesh) -> float:
+    """Median distance of the outer from the inner vertices [m].
+
+    Raises:
+        ValueError: If the wall has not two layers of equally many vertices.
+    """
+    inner, outer = _layers(wall)
+    return float(np.median(np.linalg.norm(wall.points[outer] - wall.points[inner], axis=1)))
+
+
+def mid_surface(wall: WallMesh, thickness: float) -> ShellMesh:
+    """Shell of a given thickness whose lumen side is the wall's.
+
+    Args:
+        wall: Wall with an inner and an outer layer, paired by order.
+        thickness: Thickness of the shell [m]; that of ``wall`` or another.
+
+    Raises:
+        ValueError: If the wall has not two layers of equally many vertices.
+    """
+    inner, outer = _layers(wall)
+    outwards = wall.points[outer] - wall.points[inner]
+    outwards = outwards / np.linalg.norm(outwards, axis=1, keepdims=True)
+    return ShellMesh(
+        points=(wall.points[inner] + 0.5 * thickness * outwards).astype(np.float32),
+        triangles=inner_faces(wall.tets, wall.layer),
+        thickness=thickness,
+        anchor=np.maximum(wall.anchor[inner], wall.anchor[outer]),
+        segment=wall.segment[inner],
+        ring=wall.ring[inner],
+        layer=wall.layer[inner],
+        frame_neighbors=wall.frame_neighbors[inner],
+        ring_arc=wall.ring_arc,
+    )
+
+
+def _layers(wall: WallMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices of the inner and of the outer layer, paired; the inner ones are the first."""
+    inner, outer = np.flatnonzero(wall.layer == 0), np.flatnonzero(wall.layer == 1)
+    first = np.array_equal(inner, np.arange(len(inner)))
+    if not first or len(inner) != len(outer) or len(inner) + len(outer) != len(wall.layer):
+        raise ValueError(
+            f"A shell needs a wall of two layers of equally many vertices, the inner one first; this wall has "
+            f"{np.bincount(wall.layer).tolist()} vertices in its layers. Use ColonCfg(wall_model='solid')."
+        )
+    return inner, outer
