@@ -1,12 +1,15 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Timing that the benchmarks share. Importing this loads neither torch nor Warp."""
+"""Timing and memory that the benchmarks share. Importing this loads neither torch nor Warp."""
 
 from __future__ import annotations
 
+import resource
 import statistics
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 Action = Callable[[], object]
 """Something to be timed."""
@@ -38,3 +41,48 @@ def median_ms(action: Action, device: str, repeats: int, prepare: Action | None 
             prepare()
         durations.append(time_ms(action, device))
     return statistics.median(durations[1:])
+
+
+def best_device() -> str:
+    """First GPU, or the CPU where there is none."""
+    import torch
+
+    return "cuda:0" if torch.cuda.is_available() else "cpu"
+
+
+def device_mib(device: str) -> float | None:
+    """Memory in use on a GPU, by whatever program [MiB]; None on the CPU."""
+    import warp as wp
+
+    if not device.startswith("cuda"):
+        return None
+    wp.synchronize_device(device)
+    found = wp.get_device(device)
+    return (found.total_memory - found.free_memory) / 2**20
+
+
+def peak_host_mib() -> float:
+    """Largest resident memory of this process so far [MiB]."""
+    unit = 2**20 if sys.platform == "darwin" else 2**10
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+def host_mib() -> float:
+    """Resident memory of this process [MiB]; where the system does not tell, the largest so far."""
+    statm = Path("/proc/self/statm")
+    if not statm.is_file():
+        return peak_host_mib()
+    return int(statm.read_text().split()[1]) * resource.getpagesize() / 2**20
+
+
+def positive(text: str) -> int:
+    """Read a whole number of at least 1 from the command line."""
+    import argparse
+
+    try:
+        number = int(text)
+    except ValueError:
+        number = 0
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least 1")
+    return number
