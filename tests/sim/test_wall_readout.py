@@ -9,6 +9,7 @@ import pytest
 import torch
 import warp as wp
 from tiny import tiny_colon_stage
+from tiny_sim import TinySim
 
 from arcgym.anatomy.wall import inner_faces
 from arcgym.sim.wall_readout import WallReadout, inverse_rest
@@ -20,10 +21,11 @@ SPRING = 10.0
 
 @pytest.fixture
 def readout() -> WallReadout:
-    """Every vertex of ring 5 is held by a spring of 10 N/m."""
+    """Every vertex of ring 5 is held by a spring of 10 N/m, in world 1 by one of 5 N/m."""
     lumen = lumen_topology(inner_faces(WALL.tets, WALL.layer), WALL.ring, WALL.layer)
     anchor = np.where(WALL.ring == 5, SPRING, 0.0)
-    return WallReadout(lumen, WALL.points, WALL.ring, anchor, 2, "cpu")
+    scale = wp.array([1.0, 0.5], dtype=float)
+    return WallReadout(lumen, WALL.points, WALL.ring, anchor, scale, "cpu")
 
 
 def positions(first: np.ndarray, second: np.ndarray) -> wp.array:
@@ -62,10 +64,11 @@ def test_compression_counts_as_zero(readout: WallReadout) -> None:
 
 
 def test_anchors_pull_with_spring_times_displacement(readout: WallReadout) -> None:
-    readout.measure(positions(WALL.points + np.array([0.003, 0.0, 0.004], np.float32), WALL.points))
+    moved = WALL.points + np.array([0.003, 0.0, 0.004], np.float32)
+    readout.measure(positions(moved, moved))
     # 16 vertices of ring 5 (two layers of 8), each 5 mm away: 16 * 10 N/m * 5 mm.
     expected = np.zeros((17, 2))
-    expected[5, 0] = 0.8
+    expected[5] = [0.8, 0.4]
     np.testing.assert_allclose(readout.tension.numpy(), expected, atol=1e-5)
 
 
@@ -94,3 +97,19 @@ def test_reset_forgets_one_world(readout: WallReadout) -> None:
 def test_inverse_rest_of_a_right_triangle() -> None:
     corners = np.array([[[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.01, 0.0, 0.04]]])
     np.testing.assert_allclose(inverse_rest(corners), [[50.0, 0.5, 25.0]])
+
+
+def test_simulation_reads_every_step_and_forgets_at_reset(tiny_sim: TinySim) -> None:
+    sim = tiny_sim(num_envs=2, colon={"youngs_modulus": 5.0e5})
+    data = sim.colon.data
+    data.nodal_pos_w[1, :, 0] += 0.002 * (torch.tensor(sim.colon.wall.ring) == 6)
+    sim.step(1)
+    springs = torch.tensor(sim.colon.anchor_springs(), dtype=torch.float32)[:, None]
+    pull = springs * (data.nodal_pos_w[1] - data.default_nodal_state_w[1, :, :3])
+    expected = pull[torch.tensor(sim.colon.wall.ring) == 6].sum(dim=0).norm()
+    assert float(expected) > 0.0
+    torch.testing.assert_close(data.anchor_tension[1, 6], expected)
+    torch.testing.assert_close(data.anchor_tension_peak, data.anchor_tension)
+    assert data.wall_strain.shape == (2, 17) and data.wall_strain[1, 6] > 0.005 > data.wall_strain[0].max()
+    sim.write_snapshot(-1, [1])
+    assert data.wall_strain[1].max() == data.anchor_tension[1].max() == 0.0

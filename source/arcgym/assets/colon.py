@@ -194,6 +194,15 @@ class ColonData:
         """Rest state of the wall vertices, position [m] and velocity [m/s], shape (N, V, 6)."""
         self.root_pos_w = torch.zeros(n, 3, device=sim.device)
         """Position of the anal verge [m], shape (N, 3): the origin."""
+        readout = sim.wall_readout
+        self.wall_strain: torch.Tensor = wp.to_torch(readout.strain).transpose(0, 1)
+        """Largest principal strain (stretch - 1) of each ring's lumen faces, mean over the control step, (N, R)."""
+        self.wall_strain_peak: torch.Tensor = wp.to_torch(readout.strain_peak).transpose(0, 1)
+        """The same, largest physics step of the control step, shape (N, R)."""
+        self.anchor_tension: torch.Tensor = wp.to_torch(readout.tension).transpose(0, 1)
+        """Net pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
+        self.anchor_tension_peak: torch.Tensor = wp.to_torch(readout.tension_peak).transpose(0, 1)
+        """The same, largest physics step of the control step [N], shape (N, R)."""
 
     @property
     def nodal_state_w(self) -> torch.Tensor:

@@ -22,6 +22,7 @@ from arcgym.sim.contact import ContactSearch
 from arcgym.sim.coupling import Coupling, TwoLevelCoupling
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet
+from arcgym.sim.wall_readout import WallReadout
 from arcgym.sim.wall_solver import WallSolver
 
 logger = logging.getLogger(__name__)
@@ -74,6 +75,9 @@ class Simulation:
             self.device,
         )
         self.wall = WallSolver(cfg.wall, wall, model_building.wall_modes(wall), cfg.dt, num_envs, self.device)
+        self.wall_readout = WallReadout(
+            model_building.wall_lumen(colon), wall.points, wall.ring, wall.anchor, self.wall.tissue.anchor, self.device
+        )
         self.coupling: Coupling = self._coupling()
         self.ring_centres = self.contact.centres
         self.friction: torch.Tensor = wp.to_torch(self.contact.friction)
@@ -147,8 +151,10 @@ class Simulation:
         averages = [self.wall_force, self.wall_force_peak, self.actuation.base_force, self.actuation.tip_force]
         for array in averages:
             array.zero_()
+        self.wall_readout.clear()
         for _ in range(n):
             self._step_once()
+        self.wall_readout.finish(n)
         for array in (averages[0], averages[2], averages[3]):
             wp.to_torch(array).mul_(1.0 / n)
         self._read_out()
@@ -174,6 +180,7 @@ class Simulation:
             [self.step_force, self.wall_force, self.wall_force_peak],
             device=self.device,
         )
+        self.wall_readout.measure(self.nodal_pos)
 
     def forward(self) -> None:
         """Recompute link poses, ring centres, tip and camera after the state was written to."""
@@ -268,5 +275,6 @@ class Simulation:
         per_world += [actuation.tip_lin_command, actuation.tip_ang_command, actuation.base_force, actuation.tip_force]
         for array in (*per_world, self.step_force, self.wall_force, self.wall_force_peak):
             wp.to_torch(array).view(self.num_envs, -1)[ids] = 0.0
+        self.wall_readout.reset(ids)
         bending = wp.to_torch(actuation.bending)
         wp.to_torch(actuation.bending_command)[ids] = bending[ids]

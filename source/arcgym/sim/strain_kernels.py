@@ -43,6 +43,7 @@ def face_strain(a: wp.vec3, b: wp.vec3, c: wp.vec3, inverse: wp.vec3) -> float:
 def measure_rings(
     x: wp.array2d(dtype=wp.vec3),
     rings: RestRings,
+    anchor_scale: wp.array(dtype=float),
     strain: wp.array2d(dtype=float),
     strain_peak: wp.array2d(dtype=float),
     tension: wp.array2d(dtype=float),
@@ -57,7 +58,7 @@ def measure_rings(
     pull = wp.vec3(0.0)
     for k in range(rings.anchor_start[r], rings.anchor_start[r + 1]):
         pull += rings.stiffness[k] * (x[rings.anchored[k], w] - rings.rest[k])
-    net = wp.length(pull)
+    net = anchor_scale[w] * wp.length(pull)
     strain[r, w] = strain[r, w] + largest
     strain_peak[r, w] = wp.max(strain_peak[r, w], largest)
     tension[r, w] = tension[r, w] + net

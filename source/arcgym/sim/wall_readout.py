@@ -30,7 +30,7 @@ class WallReadout:
         points: np.ndarray,
         ring: np.ndarray,
         anchor: np.ndarray,
-        num_envs: int,
+        anchor_scale: wp.array,
         device: str,
     ):
         """Store the rest shape.
@@ -40,11 +40,12 @@ class WallReadout:
             points: Rest positions [m], shape (V, 3).
             ring: Ring of each vertex, shape (V,).
             anchor: Spring of each vertex to its rest position [N/m], shape (V,).
-            num_envs: Worlds, W.
+            anchor_scale: Factor of all springs of each world, read at every measurement, shape (W,).
             device: Warp device.
         """
         self._device = device
-        self._shape = (len(topology.ring_start) - 1, num_envs)
+        self._shape = (len(topology.ring_start) - 1, len(anchor_scale))
+        self._anchor_scale = anchor_scale
         self._rings = _rest_rings(topology, points, ring, anchor, device)
         self.strain, self.strain_peak, self.tension, self.tension_peak = (
             wp.zeros(self._shape, dtype=float, device=device) for _ in range(4)
@@ -58,7 +59,7 @@ class WallReadout:
     def measure(self, x: wp.array) -> None:
         """Take the wall positions ``x`` [m], shape (V, W), of one physics step in."""
         results = [self.strain, self.strain_peak, self.tension, self.tension_peak]
-        wp.launch(measure_rings, self._shape, [x, self._rings, *results], device=self._device)
+        wp.launch(measure_rings, self._shape, [x, self._rings, self._anchor_scale, *results], device=self._device)
 
     def finish(self, steps: int) -> None:
         """End a control step of ``steps`` physics steps: sums become means."""
