@@ -144,13 +144,13 @@ class RecorderManager(ManagerBase):
         ended_by = [name for name in judge.active_terms if bool(judge.get_term(name)[world])] if judge else []
         flags = {"terminated": "reset_terminated", "time_out": "reset_time_outs"}
         done = {name: bool(getattr(self._env, flag)[world]) for name, flag in flags.items()} if judge else {}
-        names = metrics.active_terms if metrics else []
+        figures = {name: float(metrics.get_value(name)[world]) for name in metrics.active_terms} if metrics else {}
         return {
             "complete": any(done.values()),
             "success": "success" in ended_by,
             **done,
             "ended_by": ended_by,
-            "metrics": {name: float(metrics.get_value(name)[world]) for name in names},
+            "metrics": figures,
         }
 
     def _columns(self) -> list[str]:

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Recorder terms: actions, observations, rewards, costs, forces, wall and poses of every step, and the initial state."""
+"""Recorder terms: actions, observations, rewards, costs, forces, wall, poses of every step, and the initial state."""
 
 from __future__ import annotations
 
