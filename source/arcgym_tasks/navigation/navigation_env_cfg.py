@@ -149,6 +149,8 @@ class MetricsCfg:
     time_above_comfort = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "comfort"})
     time_above_unsafe = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "unsafe"})
     time_above_perforation = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "perforation"})
+    max_wall_strain = MetricsTerm(func=mdp.max_wall_strain, reduce="max")
+    max_anchor_tension = MetricsTerm(func=mdp.max_anchor_tension, reduce="max")
     inserted_length = MetricsTerm(func=mdp.inserted_scope, reduce="max")
     looping_ratio = MetricsTerm(func=mdp.looping_ratio, reduce="last")
 
