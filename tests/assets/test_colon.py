@@ -14,7 +14,7 @@ from arcgym.assets.colon import Colon
 from arcgym.sim import Simulation
 from arcgym.sim.model_building import wall_parameters
 
-RINGS, NODES = 17, 17 * 8 * 2
+RINGS, NODES = 17, 17 * 8
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def test_shapes(sim: Simulation) -> None:
 
 def test_positions_share_memory_with_the_simulation(sim: Simulation) -> None:
     sim.colon.data.nodal_pos_w[1, 3] = torch.tensor([1.0, 2.0, 3.0])
-    np.testing.assert_array_equal(sim.colon.nodal_pos_wp.numpy()[NODES + 3], [1.0, 2.0, 3.0])
+    np.testing.assert_array_equal(sim.colon.nodal_pos_wp.numpy()[3, 1], [1.0, 2.0, 3.0])
 
 
 def test_rings_start_on_the_axis_at_their_arc_length(sim: Simulation) -> None:
@@ -47,7 +47,8 @@ def test_rings_start_on_the_axis_at_their_arc_length(sim: Simulation) -> None:
     torch.testing.assert_close(sim.colon.data.centerline_arc, arc)
     for world in range(2):
         expected = torch.stack([torch.zeros(RINGS), torch.zeros(RINGS), arc], dim=1)
-        torch.testing.assert_close(sim.colon.data.centerline_pos_w[world], expected, atol=1e-6, rtol=0.0)
+        centres = sim.colon.data.centerline_pos_w[world, :-1]  # the blind end is half a thickness farther out
+        torch.testing.assert_close(centres, expected[:-1], atol=1e-6, rtol=0.0)
 
 
 def test_displacement_is_the_distance_from_rest(sim: Simulation) -> None:
@@ -100,10 +101,37 @@ def test_overrides_win_over_the_preset_over_the_stage(tiny: TinySim) -> None:
     assert Colon(tiny.colon_cfg(youngs_modulus=1.0e6, poissons_ratio=0.3)).elasticity() == (1.0e6, 0.3)
 
 
-def test_youngs_modulus_reaches_the_wall_as_lame_parameters(tiny: TinySim) -> None:
+def test_youngs_modulus_reaches_a_solid_as_lame_parameters(tiny: TinySim) -> None:
     # E 1.3 MPa and nu 0.3: mu = E / 2.6 = 0.5 MPa, lambda = 2 mu nu / (1 - 2 nu) = 0.75 MPa.
-    wall = wall_parameters(Colon(tiny.colon_cfg(youngs_modulus=1.3e6, poissons_ratio=0.3)))
-    np.testing.assert_allclose(wall.lame, np.tile([0.5e6, 0.75e6], (len(wall.tets), 1)), rtol=1e-6)
+    solid = Colon(tiny.colon_cfg(wall_model="solid", youngs_modulus=1.3e6, poissons_ratio=0.3))
+    np.testing.assert_allclose(wall_parameters(solid).moduli, [0.5e6, 0.75e6, 0.0], rtol=1e-6)
+
+
+def test_youngs_modulus_reaches_a_shell_with_its_thickness(tiny: TinySim) -> None:
+    # E 1.3 MPa, nu 0.3 and 2 mm: mu t = 1 kN/m, D = E t^3 / (12 * 0.91).
+    moduli = wall_parameters(Colon(tiny.colon_cfg(youngs_modulus=1.3e6, poissons_ratio=0.3))).moduli
+    np.testing.assert_allclose(moduli[0], 1.0e3, rtol=1e-4)
+    np.testing.assert_allclose(moduli[2], 1.3e6 * 0.002**3 / (12.0 * 0.91), rtol=1e-4)
+
+
+def test_each_world_takes_its_own_material(sim: Simulation) -> None:
+    sim.colon.write_material_to_sim(torch.tensor([1.3e6]), torch.tensor([0.3]), [1])
+    np.testing.assert_allclose(sim.moduli[1, 0].item(), 1.0e3, rtol=1e-4)
+    assert sim.moduli[0, 0].item() == pytest.approx(5.0e6 * 0.002 / (2.0 * 1.49), rel=1e-4)
+
+
+def test_a_rigid_colon_does_not_move(tiny: TinySim) -> None:
+    sim = tiny("capsule", colon={"rigid": True})
+    sim.endoscope.data.joint_pos[:] = torch.tensor([0.0139, 0.0015, 0.1, 0.0, 0.0, 0.0, 1.0])
+    sim.forward()
+    sim.step(5)
+    assert not sim.colon.data.nodal_displacement.any()
+    assert sim.endoscope.data.wall_force_w.norm() > 0.0
+
+
+def test_a_solid_takes_no_thickness(tiny: TinySim) -> None:
+    with pytest.raises(ValueError, match="wall_thickness is for wall_model='shell'"):
+        Colon(tiny.colon_cfg(wall_model="solid", wall_thickness=0.001))
 
 
 def test_density_scales_the_masses(tiny: TinySim) -> None:
@@ -114,14 +142,14 @@ def test_density_scales_the_masses(tiny: TinySim) -> None:
 
 def test_anchor_springs_add_up_to_stiffness_times_length(tiny: TinySim) -> None:
     colon = Colon(tiny.colon_cfg(anchor_stiffness={"sigmoid": 100.0}))
-    ring, springs = colon.stage.wall.ring, colon.anchor_springs()
+    ring, springs = colon.wall.ring, colon.anchor_springs()
     assert springs[ring == 5].sum() == pytest.approx(100.0 * 0.0125)  # 62.5 mm: sigmoid; rings stand 12.5 mm apart
     assert springs[ring == 2].sum() == pytest.approx(2.0e4 * 0.0125)  # 25 mm: rectum, from the preset
 
 
 def test_zero_sets_a_segment_free(tiny: TinySim) -> None:
     colon = Colon(tiny.colon_cfg(anchor_stiffness={"rectum": 0.0}))
-    assert not colon.anchor_springs()[colon.stage.wall.ring == 2].any()
+    assert not colon.anchor_springs()[colon.wall.ring == 2].any()
 
 
 def test_an_unknown_segment_is_named(tiny: TinySim) -> None:
@@ -136,7 +164,7 @@ def test_an_unknown_material_is_named(tiny: TinySim) -> None:
 
 def test_mobile_until_holds_the_rest(tiny: TinySim) -> None:
     colon = Colon(tiny.colon_cfg(mobile_until=0.1))
-    ring = colon.stage.wall.ring
+    ring = colon.wall.ring
     np.testing.assert_array_equal(np.unique(ring[colon.mobile()]), np.arange(3, 9))  # 37.5 mm to 100 mm
 
 

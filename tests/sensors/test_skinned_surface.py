@@ -21,7 +21,7 @@ def make(num_envs: int = 1) -> tuple[SkinnedSurface, np.ndarray, np.ndarray]:
 
 
 def wall_array(*worlds: np.ndarray) -> wp.array:
-    return wp.array(np.concatenate(worlds).astype(np.float32), dtype=wp.vec3, device="cpu")
+    return wp.array(np.stack(worlds, axis=1).astype(np.float32), dtype=wp.vec3, device="cpu")
 
 
 def test_rest_shape_is_exact():

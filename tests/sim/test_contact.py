@@ -13,7 +13,7 @@ import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation
-from arcgym.sim.contact_kernels import link_forces
+from arcgym.sim.link_load_kernels import load_contacts
 
 APOTHEM = 0.020 * math.cos(math.pi / 8)
 """Distance of the tube's flat sides from its axis [m]."""
@@ -25,7 +25,7 @@ SIDE = np.array([math.cos(math.pi / 8), math.sin(math.pi / 8), 0.0])
 
 @pytest.fixture(scope="module")
 def sim(tiny_sim: TinySim) -> Simulation:
-    return tiny_sim("capsule")
+    return tiny_sim("capsule", colon={"wall_model": "solid"})  # its inner faces are the lumen's
 
 
 def place(sim: Simulation, depth: float, direction: np.ndarray = SIDE, z: float = 0.1) -> None:
@@ -39,13 +39,12 @@ def place(sim: Simulation, depth: float, direction: np.ndarray = SIDE, z: float 
 
 def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.ndarray:
     """Force of the wall on the capsule [N]."""
-    total = wp.zeros(1, dtype=wp.vec3, device="cpu")
     twist = wp.array([[*link_velocity, 0.0, 0.0, 0.0]], dtype=wp.spatial_vector, device="cpu")
-    contact = sim.contact
-    args = [sim.state.body_q, twist, sim.model.body_mass, sim.nodal_pos, sim.nodal_vel, contact.links]
-    args += [contact.records, contact.law, contact.friction, 0.0, sim.cfg.dt / 2, 1.0, 1, sim.state.body_f, total]
-    wp.launch(link_forces, 1, args, device="cpu")
-    return total.numpy()[0]
+    contact, loads, now = sim.contact, sim.coupling.solver.loads, 1.0e-9
+    args = [sim.state.body_q, twist, sim.model.body_com, sim.nodal_pos, sim.nodal_vel, contact.links]
+    args += [contact.records, contact.law, contact.friction, 0.0, now, loads]
+    wp.launch(load_contacts, loads.wrench.shape, args, device="cpu")
+    return loads.wrench.numpy()[0, 0, :3]
 
 
 def force_on_wall(sim: Simulation) -> np.ndarray:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rest stiffness of the wall, element by element and projected on the rings' affine modes."""
+"""Rest stiffness of the wall projected on the modes of its rings."""
 
 from __future__ import annotations
 
@@ -8,52 +8,61 @@ import numpy as np
 import pytest
 from tiny import tiny_colon_stage
 
-from arcgym.sim.ring_modes import MODES, RingModes, element_stiffness, ring_modes
+from arcgym.anatomy.shell import ShellMesh, mid_surface
+from arcgym.assets.materials import shell_moduli
+from arcgym.assets.shell_geometry import shell_geometry
+from arcgym.sim.ring_modes import MODES, ElasticPart, RingModes, ring_modes
+from arcgym.sim.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.solid_elements import tet_stiffness
 
-MU, LAM = 3.0, 5.0
-TET = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.3, 0.1, 1.5]])
-
-
-def energy(x: np.ndarray) -> float:
-    """Stable neo-Hookean energy of TET deformed to x, Smith et al. 2018 with lambda + mu for lambda."""
-    rest, now = (np.array([p[1] - p[0], p[2] - p[0], p[3] - p[0]]).T for p in (TET, x))
-    f = now @ np.linalg.inv(rest)
-    j = np.linalg.det(f)
-    density = 0.5 * MU * (np.sum(f**2) - 3.0) - MU * (j - 1.0) + 0.5 * (LAM + MU) * (j - 1.0) ** 2
-    return density * np.linalg.det(rest) / 6.0
+TISSUE = 1.0e6, 4.0e6
+"""Shear modulus and second Lamé parameter [Pa]."""
 
 
-def test_element_stiffness_is_the_second_difference_of_the_energy() -> None:
-    k = element_stiffness(TET, np.array([[0, 1, 2, 3]]), np.array([[MU, LAM]]))[0].reshape(12, 12)
-    h, steps = 1e-4, np.eye(12).reshape(12, 4, 3)
-    second = np.empty((12, 12))
-    for a in range(12):
-        for b in range(12):
-            corners = [energy(TET + h * (s * steps[a] + t * steps[b])) for s, t in ((1, 1), (1, -1), (-1, 1), (-1, -1))]
-            second[a, b] = (corners[0] - corners[1] - corners[2] + corners[3]) / (4 * h * h)
-    np.testing.assert_allclose(k, second, atol=1e-5 * np.abs(k).max())
+def solid_parts(points: np.ndarray, tets: np.ndarray) -> list[ElasticPart]:
+    """Shear and dilation of a solid's tets, and no bending."""
+    stiffness = tet_stiffness(points, tets)
+    return [*(ElasticPart(tets, value * k) for value, k in zip(TISSUE, stiffness, strict=True)), ElasticPart.none()]
 
 
-@pytest.fixture(scope="module")
-def free_tube() -> tuple[np.ndarray, RingModes]:
-    """Vertex masses and modes of the tiny tube with nothing held; anchors of 2 N/m at every vertex."""
+def shell_parts(shell: ShellMesh) -> list[ElasticPart]:
+    """Stretching and bending of a shell 2 mm thick."""
+    geometry = shell_geometry(shell.points, shell.triangles)
+    stretching = stretching_stiffness(shell.points, geometry)
+    bending = bending_stiffness(shell.points, geometry)
+    moduli = shell_moduli(1.0e6, 0.4, 0.002)
+    return [
+        *(ElasticPart(shell.triangles, value * k) for value, k in zip(moduli, stretching, strict=False)),
+        ElasticPart(geometry.hinges, moduli[2] * bending),
+    ]
+
+
+def modes_of(kind: str, mobile: np.ndarray | None = None) -> tuple[np.ndarray, RingModes]:
+    """Vertex masses and modes of the tiny tube; anchors of 2 N/m at every vertex, nothing held by default."""
     wall = tiny_colon_stage().wall
-    count = len(wall.points)
+    shell = mid_surface(wall, 0.002)
+    mesh = shell if kind == "shell" else wall
+    points, count = mesh.points.astype(float), len(mesh.points)
+    parts = shell_parts(shell) if kind == "shell" else solid_parts(points, wall.tets)
     mass = np.linspace(1e-4, 2e-4, count)
-    lame = np.tile([1.0e6, 4.0e6], (len(wall.tets), 1))
-    held = np.zeros(count, bool)
-    points = wall.points.astype(float)
-    return mass, ring_modes(points, wall.tets, wall.ring, ~held, mass, np.full(count, 2.0), lame)
+    free = np.ones(count, bool) if mobile is None else mobile
+    return mass, ring_modes(points, mesh.ring, free, mass, np.full(count, 2.0), parts, kind == "shell")
+
+
+@pytest.fixture(scope="module", params=["shell", "solid"])
+def free_tube(request: pytest.FixtureRequest) -> tuple[np.ndarray, RingModes]:
+    return modes_of(request.param)
 
 
 def assembled(modes: RingModes) -> np.ndarray:
-    rings = len(modes.stiffness)
+    rings = len(modes.mass)
+    stiffness, coupling = modes.stiffness.sum(axis=0), modes.coupling.sum(axis=0)
     full = np.zeros((rings, MODES, rings, MODES))
     for r in range(rings):
-        full[r, :, r] = modes.stiffness[r]
+        full[r, :, r] = stiffness[r]
         if r + 1 < rings:
-            full[r, :, r + 1] = modes.coupling[r]
-            full[r + 1, :, r] = modes.coupling[r].T
+            full[r, :, r + 1] = coupling[r]
+            full[r + 1, :, r] = coupling[r].T
     return full.reshape(rings * MODES, rings * MODES)
 
 
@@ -68,38 +77,37 @@ def test_stiffness_is_symmetric_and_never_negative(free_tube: tuple) -> None:
 def test_moving_all_rings_together_costs_nothing(free_tube: tuple, axis: int) -> None:
     matrix = assembled(free_tube[1])
     together = np.zeros((len(matrix) // MODES, MODES))
-    together[:, 3 * axis] = 1.0
+    together[:, axis] = 1.0
     force = matrix @ together.ravel()
-    alone = matrix[:, 3 * axis]
+    alone = matrix[:, axis]
     assert np.abs(force).max() < 1e-9 * np.abs(alone).max()
 
 
 def test_mass_and_anchors_of_the_translations_sum_to_the_walls(free_tube: tuple) -> None:
     mass, modes = free_tube
     for axis in range(3):
-        assert modes.mass[:, 3 * axis, 3 * axis].sum() == pytest.approx(mass.sum())
-        assert modes.anchor[:, 3 * axis, 3 * axis].sum() == pytest.approx(2.0 * len(mass))
+        assert modes.mass[:, axis, axis].sum() == pytest.approx(mass.sum())
+        assert modes.anchor[:, axis, axis].sum() == pytest.approx(2.0 * len(mass))
 
 
 def test_held_vertices_take_no_part() -> None:
-    wall = tiny_colon_stage().wall
-    mobile = wall.ring > 2
-    ones, lame = np.ones(len(wall.points)), np.tile([1.0e6, 4.0e6], (len(wall.tets), 1))
-    modes = ring_modes(wall.points.astype(float), wall.tets, wall.ring, mobile, ones, ones, lame)
-    assert not modes.mass[:3].any() and not modes.coupling[:3].any()
-    np.testing.assert_array_equal(modes.stiffness[0], 1.0e3 * np.eye(MODES))
+    _, modes = modes_of("solid", tiny_colon_stage().wall.ring > 2)
+    assert not modes.mass[:3].any() and not modes.coupling[:, :3].any()
+    np.testing.assert_array_equal(modes.stiffness[:, 0].sum(axis=0), 1.0e3 * np.eye(MODES))
+
+
+def test_a_flattening_shell_keeps_its_length() -> None:
+    _, modes = modes_of("shell")
+    ring = np.flatnonzero(tiny_colon_stage().wall.ring[:136] == 8)
+    rest = mid_surface(tiny_colon_stage().wall, 0.002).points[ring].astype(float)
+    for mode, expected in ((7, 0.0), (6, 1.0)):  # flattening, dilation
+        moved = modes.basis[ring, mode]
+        edge, change = np.roll(rest, -1, 0) - rest, np.roll(moved, -1, 0) - moved
+        stretch = ((edge * change).sum(1) / np.linalg.norm(edge, axis=1)).sum() / np.linalg.norm(edge, axis=1).sum()
+        assert stretch * 0.021 == pytest.approx(expected, abs=0.01)
 
 
 def test_rest_frames_are_rotations(free_tube: tuple) -> None:
     frames = free_tube[1].rest_frame
     np.testing.assert_allclose(frames @ frames.transpose(0, 2, 1), np.tile(np.eye(3), (len(frames), 1, 1)), atol=1e-6)
     np.testing.assert_allclose(np.abs(frames[:, 2, 2]), 1.0, atol=1e-6)  # the straight tube runs along Z
-
-
-def test_a_tet_over_three_rings_is_refused() -> None:
-    wall = tiny_colon_stage().wall
-    swapped = np.arange(17)
-    swapped[[4, 5]] = 5, 4
-    ones, lame = np.ones(len(wall.points)), np.tile([1.0e6, 4.0e6], (len(wall.tets), 1))
-    with pytest.raises(ValueError, match="adjacent rings only"):
-        ring_modes(wall.points.astype(float), wall.tets, swapped[wall.ring], ones > 0, ones, ones, lame)

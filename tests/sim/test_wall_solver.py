@@ -66,9 +66,9 @@ def test_anchors_pull_back_by_their_share_of_the_ring(tiny_sim: TinySim) -> None
     assert force_on_wall(sim)[ring_3].sum(axis=0) == pytest.approx([-0.010, 0.0, 0.0], abs=5e-4)
 
 
-def test_anchors_sit_on_the_outer_layer(tiny_sim: TinySim) -> None:
-    springs = tiny_sim("capsule").colon.anchor_springs()
-    layer = tiny_sim("capsule").colon.wall.layer
+def test_anchors_of_a_solid_sit_on_the_outer_layer(tiny_sim: TinySim) -> None:
+    colon = tiny_sim("capsule", colon={"wall_model": "solid"}).colon
+    springs, layer = colon.anchor_springs(), colon.wall.layer
     assert not springs[layer == 0].any() and springs[layer == 1].all()
 
 
@@ -112,7 +112,7 @@ def pressed(tiny_sim: TinySim, steps: int, **wall: object) -> tuple[np.ndarray, 
 def test_coarse_correction_leaves_the_equilibrium_where_it_is(tiny_sim: TinySim) -> None:
     two_level, residual_force = pressed(tiny_sim, 200)
     plain, _ = pressed(tiny_sim, 800, coarse_correction=False, iterations=10)
-    rest = tiny_sim("capsule").nodal_pos.numpy()
+    rest = tiny_sim("capsule").nodal_pos.numpy()[:, 0]
     moved = np.linalg.norm(plain - rest, axis=1).max()
     assert moved > 1e-3
     assert np.linalg.norm(two_level - plain, axis=1).max() < 0.01 * moved

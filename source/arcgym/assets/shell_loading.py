@@ -9,11 +9,10 @@ from newton import ModelBuilder
 
 from arcgym.anatomy.shell import ShellMesh
 from arcgym.assets.shell_geometry import shell_geometry
+from arcgym.assets.usd_loading import PARTICLE_RADIUS
 
 
-def add_shell(
-    builder: ModelBuilder, shell: ShellMesh, density: float, moduli: tuple[float, float, float]
-) -> None:
+def add_shell(builder: ModelBuilder, shell: ShellMesh, density: float, moduli: tuple[float, float, float]) -> None:
     """Add a shell to ``builder``.
 
     Args:
@@ -24,9 +23,12 @@ def add_shell(
     """
     geometry = shell_geometry(shell.points, shell.triangles)
     first = builder.particle_count
+    radius = 0.5 * shell.thickness + PARTICLE_RADIUS
     mass = np.zeros(len(shell.points))
     np.add.at(mass, shell.triangles, (density * shell.thickness / 3.0) * geometry.area[:, None])
-    builder.add_particles(shell.points.tolist(), np.zeros_like(shell.points).tolist(), mass.tolist())
+    builder.add_particles(
+        shell.points.tolist(), np.zeros_like(shell.points).tolist(), mass.tolist(), radius=[radius] * len(mass)
+    )
     count = len(shell.triangles)
     builder.add_triangles(
         *(first + shell.triangles.T),
