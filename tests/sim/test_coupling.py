@@ -35,11 +35,11 @@ def settled(narrow: TinySim, colon: dict[str, object] = SOFT, **cfg: object) -> 
 
 @pytest.fixture(scope="module")
 def two_level(narrow: TinySim) -> Simulation:
-    return settled(narrow, SOLID)
+    return settled(narrow)
 
 
-def test_two_level_agrees_with_plain_newton(narrow: TinySim, two_level: Simulation) -> None:
-    newton = settled(narrow, SOLID, solver="newton")
+def test_two_level_agrees_with_plain_newton(narrow: TinySim) -> None:
+    two_level, newton = settled(narrow, SOLID), settled(narrow, SOLID, solver="newton")
     tips, forces, moved = (
         [read(sim) for sim in (two_level, newton)]
         for read in (

@@ -14,11 +14,20 @@ def add_loads(
     force: wp.array(dtype=wp.vec3),
     torque: wp.array(dtype=wp.vec3),
     guide: wp.array(dtype=float),
+    dt: float,
     body_f: wp.array(dtype=wp.spatial_vector),
+    resistance: wp.array2d(dtype=wp.spatial_vector),
 ):
-    """Add a dead force and a sideways spring to the Z axis at a ``point`` of each link, and a torque. Launch (W*L,)."""
-    i = wp.tid()
+    """Add a dead force and a sideways spring to the Z axis at a ``point`` of each link, and a torque. Launch (L, W).
+
+    A resistance above that of the spring leaves the equilibrium as it is.
+    """
+    link, w = wp.tid()
+    i = w * resistance.shape[0] + link
     p = wp.transform_point(body_q[i], point[i])
     f = force[i] - guide[i] * wp.vec3(p[0], p[1], 0.0)
     arm = p - wp.transform_get_translation(body_q[i])
     body_f[i] = body_f[i] + wp.spatial_vector(f, wp.cross(arm, f) + torque[i])
+    lin = 2.0 * dt * dt * guide[i]
+    ang = lin * wp.dot(arm, arm)
+    resistance[link, w] = resistance[link, w] + wp.spatial_vector(lin, lin, lin, ang, ang, ang)

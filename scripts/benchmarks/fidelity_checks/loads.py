@@ -30,20 +30,21 @@ class LinkLoads:
         arrays = [wp.from_torch(v.view(-1, 3), dtype=wp.vec3) for v in vectors] + [wp.from_torch(self.guide.view(-1))]
         drive = sim.actuation.apply
 
-        def apply(state: Any, control: Any, dt: float, weight: float) -> None:
-            drive(state, control, dt, weight)
-            wp.launch(add_loads, n * links, [state.body_q, *arrays, state.body_f], device=device)
+        def apply(state: Any, control: Any, dt: float) -> None:
+            drive(state, control, dt)
+            args = [state.body_q, *arrays, dt, state.body_f, sim.actuation.resistance]
+            wp.launch(add_loads, (links, n), args, device=device)
 
         sim.actuation.apply = apply
 
 
 def load_wall(sim: Any, force: np.ndarray) -> None:
     """Put dead loads on the wall vertices of one world [N], shape (V, 3)."""
-    elements = sim.wall.elements
-    rest, anchor = elements.rest.numpy().astype(float), elements.anchor.numpy().astype(float)
+    nodes = sim.wall.nodes
+    rest, anchor = nodes.rest.numpy().astype(float), nodes.anchor.numpy().astype(float)
     total = anchor + WEAK_SPRING
-    elements.rest.assign((rest + force / total[:, None]).astype(np.float32))
-    elements.anchor.assign(total.astype(np.float32))
+    nodes.rest.assign((rest + force / total[:, None]).astype(np.float32))
+    nodes.anchor.assign(total.astype(np.float32))
 
 
 def settle(sim: Any, tolerance: float = 2.0e-6, longest: float = 30.0, block: int = 24) -> float:

@@ -95,6 +95,11 @@ class Endoscope:
             builder.body_inv_mass[body] /= mass_scaling
             builder.body_inv_inertia[body] = builder.body_inv_inertia[body] / mass_scaling
         self._override_rigidity(builder, loaded.dofs[len(loaded.dofs) - self.num_bodies + 1 :])
+        if self.kind == "proximal":
+            limits = (self.cfg.insertion_force_limit, self.cfg.roll_torque_limit)
+            for dof, limit in zip(loaded.dofs, limits, strict=False):
+                if limit is not None:
+                    builder.joint_effort_limit[dof] = limit
         last = builder.body_q[loaded.bodies[-1]]
         self._rest_insertion = float(last[2]) + self.tip_offset
 

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+
 import newton
 import numpy as np
 import warp as wp
@@ -32,7 +34,6 @@ class Actuation:
         self.cfg, self.scope, self.stage = cfg, endoscope.cfg, endoscope.stage
         self.num_envs, self.device, self.link_count = num_envs, device, endoscope.num_bodies
         self.coords = model.joint_coord_count // num_envs
-        self.dofs = model.joint_dof_count // num_envs
         self.body_mass = model.body_mass
         self.pushed = endoscope.kind == "proximal"
         self.rest_insertion = endoscope.rest_insertion
@@ -47,6 +48,12 @@ class Actuation:
         self.turn = wp.zeros(num_envs, dtype=wp.vec3, device=device)
         self.base_force = wp.zeros(num_envs, dtype=float, device=device)
         self.tip_force = wp.zeros(num_envs, dtype=wp.vec3, device=device)
+        self.resistance = wp.zeros((self.link_count, num_envs), dtype=wp.spatial_vector, device=device)
+        """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W)."""
+        self._pull_force = wp.zeros(num_envs, dtype=wp.vec4, device=device)
+        self._slide_force = wp.zeros((1, num_envs), dtype=float, device=device)
+        self._still = wp.zeros((1, num_envs), dtype=wp.vec3, device=device)
+        self._guide, self._gravity = self._introducer(), wp.vec3(*cfg.gravity) / cfg.mass_scaling
         self._share, self._bend_limit = self._bending_section()
 
     def _pull(self) -> kernels.TipPull:
@@ -66,6 +73,14 @@ class Actuation:
             drive.torque_limit = _override(self.scope.roll_torque_limit, roll.max_force)
         return drive
 
+    def _introducer(self) -> kernels.Introducer:
+        guide = kernels.Introducer()
+        for name in ("stiffness", "damping", "height", "radius"):
+            setattr(guide, name, getattr(self.scope.introducer, name))
+        if self.stage.root == "free":
+            guide.height = -math.inf
+        return guide
+
     def _bending_section(self) -> tuple[wp.vec2, wp.vec2]:
         """Reciprocal hinge counts and total limits [rad] of (pitch, yaw)."""
         bent = self.stage.bending_links
@@ -77,44 +92,57 @@ class Actuation:
         share = wp.vec2(1.0 / max(odd.sum(), 1), 1.0 / max((~odd).sum(), 1))
         return share, wp.vec2(float(limit[odd].sum()), float(limit[~odd].sum()))
 
-    def apply(self, state: newton.State, control: newton.Control, dt: float, weight: float) -> None:
-        """Add this substep's forces to ``state.body_f`` and write ``control.joint_target_q``.
+    def apply(self, state: newton.State, control: newton.Control, dt: float) -> None:
+        """Write this substep's ``state.body_f``, :attr:`resistance` and ``control.joint_target_q``.
 
         Args:
             state: State at the start of the substep.
             control: Newton control, changed in place.
             dt: Substep [s].
-            weight: Share of the substep in the force averages.
         """
-        if self.stage.root == "slide_roll":
-            self._guide(state)
+        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide, dt]
+        shape = (self.link_count, self.num_envs)
+        wp.launch(kernels.load_links, shape, [*args, state.body_f, self.resistance], device=self.device)
         if self.pushed:
-            self._push(state, control, dt, weight)
+            self._push(state, control, dt)
         else:
-            self._pull_tip(state, dt, weight)
-        if any(self.cfg.gravity):
-            args = [self.body_mass, wp.vec3(*self.cfg.gravity), self.cfg.mass_scaling, state.body_f]
-            wp.launch(kernels.add_gravity, self.num_envs * self.link_count, args, device=self.device)
+            self._pull_tip(state, dt)
 
-    def _guide(self, state: newton.State) -> None:
-        guide = self.scope.introducer
-        args = [state.body_q, state.body_qd, guide.stiffness, guide.damping, guide.height, guide.radius, state.body_f]
-        wp.launch(kernels.guide_base, self.num_envs * self.link_count, args, device=self.device)
-
-    def _push(self, state: newton.State, control: newton.Control, dt: float, weight: float) -> None:
+    def _push(self, state: newton.State, control: newton.Control, dt: float) -> None:
         target = control.joint_target_q
-        args = [state.joint_q, state.joint_qd, self.coords, self.dofs, self.drive, self.insertion_velocity]
-        args += [self.roll_rate, dt, weight, target, self.base_force]
+        args = [state.joint_q, self.coords, self.drive, self.insertion_velocity, self.roll_rate, dt, target]
         wp.launch(kernels.drive_base, self.num_envs, args, device=self.device)
         bent = self.stage.bending_links
         args = [self.bending_command, self.scope.bending_rate, self._bend_limit, dt, self.link_count - bent, bent]
         args += [self.coords, self._share, self.bending, target]
         wp.launch(kernels.drive_bending, self.num_envs, args, device=self.device)
 
-    def _pull_tip(self, state: newton.State, dt: float, weight: float) -> None:
-        args = [state.body_q, state.body_qd, self.link_count, self.pull, self.tip_lin_command, self.tip_ang_command]
-        args += [dt, weight, self.lead, self.turn, state.body_f, self.tip_force]
+    def _pull_tip(self, state: newton.State, dt: float) -> None:
+        args = [state.body_q, state.body_qd, self.pull, self.tip_lin_command, self.tip_ang_command, dt]
+        args += [self.lead, self.turn, state.body_f, self.resistance, self._pull_force]
         wp.launch(kernels.pull_tip, self.num_envs, args, device=self.device)
+
+    def record(self, drive_force: wp.array, acceleration: wp.array, weight: float) -> None:
+        """Add the substep's push or pull to the force averages.
+
+        Args:
+            drive_force: Forces of the joint drives [N], shape (D, W).
+            acceleration: Linear accelerations of the links [m/s^2], shape (L, W).
+            weight: Share of the substep in the averages.
+        """
+        if self.pushed:
+            args = [drive_force, weight, self.base_force]
+            wp.launch(kernels.record_push, self.num_envs, args, device=self.device)
+        else:
+            args = [self._pull_force, acceleration, weight, self.tip_force]
+            wp.launch(kernels.record_pull, self.num_envs, args, device=self.device)
+
+    def record_explicit(self, state: newton.State, control: newton.Control, weight: float) -> None:
+        """As :meth:`record`, for solvers that do not tell what the drives do."""
+        if self.pushed:
+            args = [state.joint_q, state.joint_qd, control.joint_target_q, self.coords, self.drive, self._slide_force]
+            wp.launch(kernels.slide_force, self.num_envs, args, device=self.device)
+        self.record(self._slide_force, self._still, weight)
 
 
 def _override(value: float | None, default: float) -> float:

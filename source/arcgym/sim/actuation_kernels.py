@@ -1,6 +1,9 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What moves a scope: base drive, introducer, bending section, pull on the tip. One launch a scope substep each.
+"""What moves a scope: base drive, introducer, bending section, pull on the tip. Launched every scope substep.
+
+Forces hold for links that keep their velocity; ``resistance`` is the diagonal of their drop by acceleration (linear
+[kg], angular [kg m^2]), with which a solver makes springs and dampers implicit.
 
 W worlds, L links, J joint coordinates a world; the root's slide and roll are coordinates 0 and 1 of a shaft.
 """
@@ -34,6 +37,16 @@ class TipPull:
     torque_limit: float  # [N m]
 
 
+@wp.struct
+class Introducer:
+    """Springs that keep the shaft straight outside the anus."""
+
+    stiffness: float  # [N/m]
+    damping: float  # [N s/m]
+    height: float  # up to which links are held [m]
+    radius: float  # distance from the Z axis within which they are [m]
+
+
 @wp.func
 def limited(v: wp.vec3, limit: float) -> wp.vec3:
     """Vector shortened to ``limit``."""
@@ -46,16 +59,12 @@ def limited(v: wp.vec3, limit: float) -> wp.vec3:
 @wp.kernel
 def drive_base(
     joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
     coords: int,
-    dofs: int,
     drive: BaseDrive,
     velocity: wp.array(dtype=float),
     roll_rate: wp.array(dtype=float),
     dt: float,
-    weight: float,
     target: wp.array(dtype=float),
-    force: wp.array(dtype=float),
 ):
     """Move the base targets on, never further ahead than the drive's force limits reach. Launch (W,).
 
@@ -70,8 +79,6 @@ def drive_base(
     t = wp.clamp(t, z - lead + wp.min(lag, 0.0), z + lead + wp.max(lag, 0.0))
     t = wp.min(t, drive.furthest)
     target[slide] = t
-    push = drive.slide_stiffness * (t - z) - drive.slide_damping * joint_qd[w * dofs]
-    force[w] = force[w] + weight * wp.clamp(push, -drive.force_limit, drive.force_limit)
     twist = drive.torque_limit / drive.roll_stiffness
     angle = joint_q[slide + 1]
     target[slide + 1] = wp.clamp(target[slide + 1] + roll_rate[w] * dt, angle - twist, angle + twist)
@@ -110,64 +117,104 @@ def drive_bending(
 
 
 @wp.kernel
-def guide_base(
+def load_links(
     body_q: wp.array(dtype=wp.transform),
     body_qd: wp.array(dtype=wp.spatial_vector),
-    stiffness: float,
-    damping: float,
-    height: float,
-    radius: float,
+    body_mass: wp.array(dtype=float),
+    gravity: wp.vec3,
+    guide: Introducer,
+    dt: float,
     body_f: wp.array(dtype=wp.spatial_vector),
+    resistance: wp.array2d(dtype=wp.spatial_vector),
 ):
-    """Introducer: spring every link still outside the anus sideways onto the Z axis. Launch (W*L,)."""
-    i = wp.tid()
+    """Weight of every link, and a spring sideways onto the Z axis for those still outside the anus. Launch (L, W)."""
+    link, w = wp.tid()
+    i = w * resistance.shape[0] + link
+    force = body_mass[i] * gravity
+    held = wp.vec3(0.0)
     p = wp.transform_get_translation(body_q[i])
-    if p[2] < height and wp.abs(p[0]) < radius and wp.abs(p[1]) < radius:
+    if p[2] < guide.height and wp.abs(p[0]) < guide.radius and wp.abs(p[1]) < guide.radius:
         v = wp.spatial_top(body_qd[i])
-        force = wp.vec3(-stiffness * p[0] - damping * v[0], -stiffness * p[1] - damping * v[1], 0.0)
-        body_f[i] = body_f[i] + wp.spatial_vector(force, wp.vec3(0.0))
+        damping = guide.damping + dt * guide.stiffness
+        force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)
+        held = wp.vec3(dt * damping, dt * damping, 0.0)
+    body_f[i] = wp.spatial_vector(force, wp.vec3(0.0))
+    resistance[link, w] = wp.spatial_vector(held, wp.vec3(0.0))
 
 
 @wp.kernel
 def pull_tip(
     body_q: wp.array(dtype=wp.transform),
     body_qd: wp.array(dtype=wp.spatial_vector),
-    links: int,
     pull: TipPull,
     lin_command: wp.array(dtype=wp.vec3),
     ang_command: wp.array(dtype=wp.vec3),
     dt: float,
-    weight: float,
     lead: wp.array(dtype=wp.vec3),
     turn: wp.array(dtype=wp.vec3),
     body_f: wp.array(dtype=wp.spatial_vector),
-    force: wp.array(dtype=wp.vec3),
+    resistance: wp.array2d(dtype=wp.spatial_vector),
+    force: wp.array(dtype=wp.vec4),
 ):
     """Pull the last link after its target. Launch (W,).
 
     ``lead`` [m] and ``turn`` [rad] are how far the target is ahead of the tip; they grow with the commanded velocity
-    (given in the tip's frame) less the tip's own and never beyond what the force limits hold.
+    (given in the tip's frame) less the tip's own and never beyond what the force limits hold. ``force`` is the pull and
+    its drop by the tip's acceleration; a pull at its limit does not drop.
     """
     w = wp.tid()
+    links = resistance.shape[0]
     tip = (w + 1) * links - 1
-    v = wp.spatial_top(body_qd[tip])
-    omega = wp.spatial_bottom(body_qd[tip])
-    v_goal = wp.transform_vector(body_q[tip], lin_command[w])
-    omega_goal = wp.transform_vector(body_q[tip], ang_command[w])
-    d = limited(lead[w] + (v_goal - v) * dt, pull.force_limit / pull.stiffness)
-    e = limited(turn[w] + (omega_goal - omega) * dt, pull.torque_limit / pull.angular_stiffness)
+    ahead = wp.transform_vector(body_q[tip], lin_command[w]) - wp.spatial_top(body_qd[tip])
+    spin = wp.transform_vector(body_q[tip], ang_command[w]) - wp.spatial_bottom(body_qd[tip])
+    d = limited(lead[w] + dt * ahead, pull.force_limit / pull.stiffness)
+    e = limited(turn[w] + dt * spin, pull.torque_limit / pull.angular_stiffness)
     lead[w] = d
     turn[w] = e
-    f = limited(pull.stiffness * d + pull.damping * (v_goal - v), pull.force_limit)
-    m = limited(pull.angular_stiffness * e + pull.angular_damping * (omega_goal - omega), pull.torque_limit)
+    f = pull.stiffness * d + (pull.damping + dt * pull.stiffness) * ahead
+    m = pull.angular_stiffness * e + (pull.angular_damping + dt * pull.angular_stiffness) * spin
+    f_drop = dt * (pull.damping + dt * pull.stiffness)
+    m_drop = dt * (pull.angular_damping + dt * pull.angular_stiffness)
+    if wp.length(f) >= pull.force_limit:
+        f = limited(f, pull.force_limit)
+        f_drop = 0.0
+    if wp.length(m) >= pull.torque_limit:
+        m = limited(m, pull.torque_limit)
+        m_drop = 0.0
     body_f[tip] = body_f[tip] + wp.spatial_vector(f, m)
-    force[w] = force[w] + weight * f
+    drop = wp.spatial_vector(f_drop, f_drop, f_drop, m_drop, m_drop, m_drop)
+    resistance[links - 1, w] = resistance[links - 1, w] + drop
+    force[w] = wp.vec4(f[0], f[1], f[2], f_drop)
 
 
 @wp.kernel
-def add_gravity(
-    body_mass: wp.array(dtype=float), gravity: wp.vec3, scaling: float, body_f: wp.array(dtype=wp.spatial_vector)
+def record_push(drive_force: wp.array2d(dtype=float), weight: float, total: wp.array(dtype=float)):
+    """Add ``weight`` times the force of the slide's drive to ``total``. Launch (W,)."""
+    w = wp.tid()
+    total[w] = total[w] + weight * drive_force[0, w]
+
+
+@wp.kernel
+def record_pull(
+    force: wp.array(dtype=wp.vec4), acc_lin: wp.array2d(dtype=wp.vec3), weight: float, total: wp.array(dtype=wp.vec3)
 ):
-    """Weight of the real, unscaled link masses. Launch (W*L,)."""
-    i = wp.tid()
-    body_f[i] = body_f[i] + wp.spatial_vector(gravity * (body_mass[i] / scaling), wp.vec3(0.0))
+    """Add ``weight`` times the pull at the end of the step to ``total``. Launch (W,)."""
+    w = wp.tid()
+    f = force[w]
+    total[w] = total[w] + weight * (wp.vec3(f[0], f[1], f[2]) - f[3] * acc_lin[acc_lin.shape[0] - 1, w])
+
+
+@wp.kernel
+def slide_force(
+    joint_q: wp.array(dtype=float),
+    joint_qd: wp.array(dtype=float),
+    target: wp.array(dtype=float),
+    coords: int,
+    drive: BaseDrive,
+    force: wp.array2d(dtype=float),
+):
+    """Force of the slide's drive by its spring law, for solvers that do not tell. Launch (W,)."""
+    w = wp.tid()
+    i = w * coords
+    push = drive.slide_stiffness * (target[i] - joint_q[i]) - drive.slide_damping * joint_qd[i]
+    force[0, w] = wp.clamp(push, -drive.force_limit, drive.force_limit)

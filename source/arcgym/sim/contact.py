@@ -70,7 +70,7 @@ class ContactSearch:
 
     def _law(self, cfg: ContactCfg) -> kernels.ContactLaw:
         law = kernels.ContactLaw()
-        for name in ("stiffness", "damping", "slip_velocity", "friction_cap", "wall_radius", "search_gap"):
+        for name in ("stiffness", "damping", "slip_velocity", "wall_radius", "search_gap"):
             setattr(law, name, getattr(cfg, name))
         return law
 

@@ -1,13 +1,13 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Narrow phase between capsule links and the inner wall, binned along the centreline, and the contact force law.
+"""Narrow phase between capsule links and the inner wall, binned along the centreline, and the contact law.
 
 Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candidate faces a link, V wall vertices.
 """
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle
+from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
@@ -57,7 +57,6 @@ class ContactLaw:
     stiffness: float  # [N/m]
     damping: float  # [N s/m], approach only
     slip_velocity: float  # speed under which friction is viscous [m/s]
-    friction_cap: float  # largest friction coefficient c in f = c v, as a fraction of link mass / substep
     wall_radius: float  # half the skin that the wall adds to each link [m]
     search_gap: float  # distance up to which records are kept [m]
 
@@ -268,55 +267,3 @@ def slip_scale(speed: float, limit: float) -> float:
     if speed > limit:
         return 1.0 / speed
     return (2.0 - speed / limit) / limit
-
-
-@wp.kernel
-def link_forces(
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
-    body_mass: wp.array(dtype=float),
-    x: wp.array2d(dtype=wp.vec3),
-    v: wp.array2d(dtype=wp.vec3),
-    links: LinkShapes,
-    records: ContactRecords,
-    law: ContactLaw,
-    friction: wp.array(dtype=float),
-    elapsed: float,
-    substep_dt: float,
-    weight: float,
-    link_count: int,
-    body_f: wp.array(dtype=wp.spatial_vector),
-    wall_force: wp.array(dtype=wp.vec3),
-):
-    """Contact wrench on each link, the wall moving on at its velocity for ``elapsed``. Launch (W*L,).
-
-    Writes ``body_f`` and adds ``weight`` times the force to ``wall_force``.
-    """
-    row = wp.tid()
-    w = row // link_count
-    link = row - w * link_count
-    pose = body_q[row]
-    centre = wp.transform_get_translation(pose)
-    lin = wp.spatial_top(body_qd[row])
-    ang = wp.spatial_bottom(body_qd[row])
-    cap = law.friction_cap * body_mass[row] / substep_dt
-    force = wp.vec3(0.0)
-    torque = wp.vec3(0.0)
-    for k in range(records.count[row]):
-        slot = row * records.capacity + k
-        f = records.face[slot]
-        u = records.bary[slot]
-        wall_v = corner_point(v, f, u, w)
-        p = corner_point(x, f, u, w) + elapsed * wall_v
-        c = touch(p, records.normal[slot], pose, links.half_length[link], links.radius[link] + law.wall_radius)
-        if c.gap < 0.0:
-            relative = lin + wp.cross(ang, p - centre) - wall_v
-            approach = wp.dot(c.normal, relative)
-            normal_force = -law.stiffness * c.gap + law.damping * wp.max(approach, 0.0)
-            slip = relative - c.normal * approach
-            drag = wp.min(friction[w] * normal_force * slip_scale(wp.length(slip), law.slip_velocity), cap)
-            contact = -normal_force * c.normal - drag * slip
-            force += contact
-            torque += wp.cross(p - centre, contact)
-    body_f[row] = wp.spatial_vector(force, torque)
-    wall_force[row] = wall_force[row] + weight * force

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Two-way coupling of the scope (MuJoCo) with the wall (two-level solver), one physics step at a time."""
+"""Two-way coupling of the scope (articulated chain) with the wall (two-level solver), one physics step at a time."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Protocol
 
 import newton
 import warp as wp
-from newton.solvers import SolverMuJoCo
 
+from arcgym.sim import link_load_kernels
 from arcgym.sim.actuation import Actuation
 from arcgym.sim.contact import ContactSearch
-from arcgym.sim.contact_kernels import link_forces
+from arcgym.sim.scope_solver import SolverArticulatedChain
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.wall_solver import WallSolver
 
@@ -27,25 +27,12 @@ class Coupling(Protocol):
         """Forget what the solvers remember of the worlds in ``world_mask``, shape (W + 1,), bool."""
 
 
-def scope_solver(model: newton.Model, cfg: SimulationCfg) -> SolverMuJoCo:
-    """MuJoCo for the articulations alone: contact with the wall comes in as link forces."""
-    return SolverMuJoCo(
-        model=model,
-        disable_contacts=True,
-        integrator="implicitfast",
-        iterations=cfg.scope_iterations,
-        ls_iterations=5,
-        njmax=2 * model.joint_dof_count // model.world_count + 8,
-        nconmax=8,
-    )
-
-
 class TwoLevelCoupling:
     """One wall step with K scope substeps in it.
 
-    Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, the wall
-    moving on at its velocity; the wall solve then sees the scope's final pose. **What is stale:** the contact points
-    stay put for one step, which acts like a normal dashpot of about stiffness * dt.
+    Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, implicitly,
+    the wall moving on at its velocity; the wall solve then sees the scope's final pose. **What is stale:** the contact
+    points stay put for one step.
     """
 
     def __init__(
@@ -78,8 +65,9 @@ class TwoLevelCoupling:
         self.cfg, self.model, self.control = cfg, model, control
         self.actuation, self.contact, self.wall = actuation, contact, wall
         self.x, self.v, self.wall_force = x, v, wall_force
-        self.solver = scope_solver(model, cfg)
-        self.state, self._other = state, model.state()
+        self.solver = SolverArticulatedChain(model)
+        self.solver.resistance = actuation.resistance
+        self.state = state
         self._body_q_prev = wp.clone(state.body_q)
 
     def step(self) -> None:
@@ -88,25 +76,24 @@ class TwoLevelCoupling:
         dt = self.cfg.dt / count
         wp.copy(self._body_q_prev, self.state.body_q)
         self.contact.detect(self.x, self.state.body_q)
-        now, then = self.state, self._other
         for substep in range(count):
-            self._contact_forces(now, substep * dt, dt)
-            self.actuation.apply(now, self.control, dt, 1.0 / count)
-            self.solver.step(now, then, self.control, None, dt)
-            now, then = then, now
-        self.wall.step(self.x, self.v, self.contact, now.body_q, self._body_q_prev)
+            self._load_contacts(substep * dt, dt)
+            self.actuation.apply(self.state, self.control, dt)
+            self.solver.step(self.state, self.state, self.control, None, dt)
+            self._record(1.0 / count)
+        self.wall.step(self.x, self.v, self.contact, self.state.body_q, self._body_q_prev)
 
-    def _contact_forces(self, state: newton.State, elapsed: float, dt: float) -> None:
-        contact = self.contact
-        wp.launch(
-            link_forces,
-            state.body_q.shape,
-            [state.body_q, state.body_qd, self.model.body_mass, self.x, self.v, contact.links, contact.records]
-            + [contact.law, contact.friction, elapsed, dt, 1.0 / self.cfg.scope_substeps, contact.link_count]
-            + [state.body_f, self.wall_force],
-            device=self.model.device,
-        )
+    def _load_contacts(self, elapsed: float, dt: float) -> None:
+        contact, state, loads = self.contact, self.state, self.solver.loads
+        args = [state.body_q, state.body_qd, self.model.body_com, self.x, self.v, contact.links, contact.records]
+        args += [contact.law, contact.friction, elapsed, dt, loads]
+        wp.launch(link_load_kernels.load_contacts, loads.wrench.shape, args, device=self.model.device)
+
+    def _record(self, weight: float) -> None:
+        loads, work = self.solver.loads, self.solver.work
+        args = [loads, work.acc_lin, work.acc_ang, weight, self.wall_force]
+        wp.launch(link_load_kernels.record_forces, loads.wrench.shape, args, device=self.model.device)
+        self.actuation.record(work.drive_force, work.acc_lin, weight)
 
     def reset(self, world_mask: wp.array) -> None:
-        """Clear MuJoCo's warm starts in the masked worlds."""
-        self.solver.reset(self.state, world_mask, 0)
+        """Nothing to forget: neither solver keeps anything from step to step."""
