@@ -69,8 +69,8 @@ def test_forces_fall_into_tiers(force, label):
     assert tuple(to_display(force_colors(np.array([force])))[0]) == tier.color
 
 
-def test_perforation_starts_at_fourteen_newtons():
-    assert FORCE_TIERS[-1].start == 14.0
+def test_perforation_starts_at_the_published_force():
+    assert FORCE_TIERS[-1].start == 14.1
 
 
 def test_color_table_marks_tip_bending_section_and_force():

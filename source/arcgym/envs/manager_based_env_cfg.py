@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from arcgym.managers import RecorderManagerBaseCfg
 from arcgym.scene import InteractiveSceneCfg
@@ -18,6 +18,13 @@ class ViewerCfg:
 
     env_id: int = 0
     """World to look at."""
+
+    wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
+    """What the wall's colour shows in the outside view: how far it has moved, its strain, the pull of its anchors, or
+    the force of the links beside it."""
+
+    scope_color: Literal["force", "plain"] = "force"
+    """Whether the scope is coloured by the force of the wall on each link."""
 
 
 @configclass

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Legends of the outside view: deformation, wall force, scale and sides."""
+"""Legends of the outside view: colours of scope and wall, scale and sides."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import numpy as np
 from PIL import ImageDraw
 
 from .drawing import Color, font
-from .palette import FORCE_TIERS, deformation_colors, to_display
+from .palette import Tiers, to_display
 from .view_camera import ViewCamera
+from .wall_paint import WallScale
 
 _TEXT: Color = (62, 70, 84)
 _FAINT: Color = (128, 138, 154)
@@ -18,41 +19,45 @@ _LINE = 16
 _BAR = (9, 84)
 
 
-def draw_legends(draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: ViewCamera, full_scale: float) -> None:
+def draw_legends(
+    draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: ViewCamera, wall: WallScale, tiers: Tiers | None
+) -> None:
     """Draws all legends into the picture's corners, where the colon is not.
 
     Args:
         draw: Where to draw.
         origin: Upper left corner of the outside view in the picture [px].
         camera: Camera of the outside view.
-        full_scale: Displacement at the end of the heat map [m].
+        wall: Colours of the wall.
+        tiers: Tiers that the scope is coloured by; None where it is plain.
     """
     left, top = origin
     width, height = camera.size
-    _draw_forces(draw, left + 12, top + height - 14 - _LINE * (len(FORCE_TIERS) + 1))
-    _draw_deformation(draw, left + width - 12, top + height - 30 - _BAR[1], full_scale)
+    if tiers is not None:
+        _draw_tiers(draw, left + 12, top + height - 14 - _LINE * (len(tiers) + 1), tiers)
+    _draw_wall(draw, left + width - 12, top + height - 30 - _BAR[1], wall)
     _draw_scale_bar(draw, left + width - 12, top + 20, camera)
     _draw_sides(draw, origin, camera)
 
 
-def _draw_forces(draw: ImageDraw.ImageDraw, x: float, y: float) -> None:
+def _draw_tiers(draw: ImageDraw.ImageDraw, x: float, y: float, tiers: Tiers) -> None:
     draw.text((x, y), "wall force on scope", fill=_TEXT, font=font(_SIZE))
-    ends = [tier.start for tier in FORCE_TIERS[1:]] + [None]
-    for row, (tier, end) in enumerate(zip(FORCE_TIERS, ends, strict=True), start=1):
-        span = f"> {tier.start:.0f}" if end is None else f"{tier.start:.0f}-{end:.0f}"
+    ends = [tier.start for tier in tiers[1:]] + [None]
+    for row, (tier, end) in enumerate(zip(tiers, ends, strict=True), start=1):
+        span = f"> {tier.start:g}" if end is None else f"{tier.start:g}-{end:g}"
         draw.rounded_rectangle((x, y + row * _LINE + 2, x + 12, y + row * _LINE + 13), radius=2, fill=tier.color)
         draw.text((x + 18, y + row * _LINE), f"{span} N  {tier.label}", fill=_TEXT, font=font(_SIZE))
 
 
-def _draw_deformation(draw: ImageDraw.ImageDraw, right: float, top: float, full_scale: float) -> None:
-    colors = to_display(deformation_colors(np.linspace(1.0, 0.0, _BAR[1])))
+def _draw_wall(draw: ImageDraw.ImageDraw, right: float, top: float, wall: WallScale) -> None:
+    colors = to_display(wall.paint(wall.full * np.linspace(1.0, 0.0, _BAR[1])))
     for row, color in enumerate(colors.tolist()):
         draw.line([(right - _BAR[0], top + row), (right, top + row)], fill=tuple(color))
     for share in (0.0, 0.5, 1.0):
         y = top + (1.0 - share) * (_BAR[1] - 1)
-        label = f"{1000.0 * share * full_scale:.0f} mm"
+        label = f"{wall.per_unit * share * wall.full:g} {wall.unit}"
         draw.text((right - _BAR[0] - 5, y), label, fill=_TEXT, font=font(_SIZE), anchor="rm")
-    draw.text((right, top + _BAR[1] + 6), "wall displacement", fill=_TEXT, font=font(_SIZE), anchor="ra")
+    draw.text((right, top + _BAR[1] + 6), wall.title, fill=_TEXT, font=font(_SIZE), anchor="ra")
 
 
 def _draw_scale_bar(draw: ImageDraw.ImageDraw, right: float, y: float, camera: ViewCamera) -> None:

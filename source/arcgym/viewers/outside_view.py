@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 import warp as wp
@@ -15,12 +15,12 @@ from arcgym.utils.configclass import configclass
 
 from . import outside_view_kernels as kernels
 from .compositing import compose
-from .palette import deformation_colors
+from .palette import FORCE_TIERS, Tiers
 from .scope_colors import scope_color_table
 from .scope_tube import ScopeTube
 from .view_camera import ViewCamera, frame_points
+from .wall_paint import wall_scale
 
-_COLOR_TABLE_SIZE = 64
 _KEY_LIGHT = np.array([-0.5, 0.75, 0.75])
 _FILL_LIGHT = np.array([0.9, 0.1, 0.6])
 
@@ -42,8 +42,19 @@ class OutsideViewCfg:
     """From the camera to the middle of the colon [m]. Smaller values exaggerate the perspective."""
     outside_length: float = 0.07
     """Part of the scope below the anus that is kept in the picture [m]."""
+    wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
+    """What the wall's colour shows: how far it has moved, its strain, the pull of its anchors, or the force of the
+    links beside it."""
+    scope_color: Literal["force", "plain"] = "force"
+    """Whether the scope is coloured by the force of the wall on each link."""
     deformation_scale: float = 0.05
     """Displacement of the wall that gets the last colour of the heat map [m]. Lower it for gentle robots."""
+    strain_scale: float = 0.3
+    """Strain of the wall that gets the last colour."""
+    tension_scale: float = 2.0
+    """Pull of a ring on its anchors that gets the last colour [N]."""
+    force_scale: float = 15.0
+    """Force of a link that gets the last colour [N]; the colours between are those of the tiers."""
     near_alpha: float = 0.16
     """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
     rim_alpha: float = 0.70
@@ -59,6 +70,15 @@ class OutsideViewCfg:
     """
     depth_contrast: float = 0.7
     """Strength of the shade behind loops that lie in front of others, 0..1."""
+
+    def full_scale(self) -> float:
+        """Returns the value of the wall that gets the last colour [m, 1 or N]."""
+        return {
+            "displacement": self.deformation_scale,
+            "strain": self.strain_scale,
+            "tension": self.tension_scale,
+            "force": self.force_scale,
+        }[self.wall_color]
 
 
 class WallSurface(Protocol):
@@ -88,6 +108,7 @@ class OutsideView:
         link_length: np.ndarray,
         link_radius: np.ndarray,
         bending_links: int = 0,
+        tiers: Tiers = FORCE_TIERS,
     ) -> None:
         """Places the camera and allocates what every frame needs.
 
@@ -98,6 +119,7 @@ class OutsideView:
             link_length: Length of each link of the scope [m], shape (L,).
             link_radius: Radius of each link [m], shape (L,).
             bending_links: Number of distal links that form the bending section.
+            tiers: Tiers of the force and their colours.
         """
         self.cfg = cfg
         self.surface = surface
@@ -110,8 +132,9 @@ class OutsideView:
             cfg.elevation,
             cfg.distance,
         )
-        self._rest = self._array(rest_points, wp.vec3)
-        self._heat = self._array(deformation_colors(np.linspace(0.0, 1.0, _COLOR_TABLE_SIZE)), wp.vec3)
+        self._rest = np.asarray(rest_points)
+        self._tiers = tiers
+        self.scale = wall_scale(cfg.wall_color, cfg.full_scale(), tiers)
         self._wall_colors = wp.zeros(len(rest_points), dtype=wp.vec3, device=self.device)
         self._link_length = np.asarray(link_length, float)
         self._bending_links = bending_links
@@ -123,30 +146,30 @@ class OutsideView:
         self._refined = wp.zeros(size, dtype=wp.vec4, device=self.device)
         self._depth = wp.zeros(size, dtype=float, device=self.device)
 
-    def render(self, link_pos: np.ndarray, link_quat: np.ndarray, link_force: np.ndarray) -> np.ndarray:
+    def render(
+        self,
+        link_pos: np.ndarray,
+        link_quat: np.ndarray,
+        link_force: np.ndarray,
+        wall_values: np.ndarray | None = None,
+    ) -> np.ndarray:
         """Draws the surface as it is now, and the scope.
 
         Args:
             link_pos: Middle of each link [m], shape (L, 3).
             link_quat: Orientation of each link (x, y, z, w), +Z towards the tip, shape (L, 4).
             link_force: Wall force on each link [N], shape (L,).
+            wall_values: What the colour of each vertex shows, shape (M,); None for its displacement.
 
         Returns:
             Picture, uint8, shape (height, width, 3).
         """
         self._update_scope(link_pos, link_quat, link_force)
-        self._color_wall()
+        if wall_values is None:
+            wall_values = np.linalg.norm(self.surface.points.numpy() - self._rest, axis=1)
+        self._wall_colors.assign(self.scale.paint(wall_values).astype(np.float32))
         self._trace()
         return compose(self._refined.numpy(), self._depth.numpy(), kernels.FAR, self.cfg.depth_contrast)
-
-    def _color_wall(self) -> None:
-        wp.launch(
-            kernels.color_wall,
-            len(self._wall_colors),
-            inputs=[self.surface.points, self._rest, self._heat, self.cfg.deformation_scale],
-            outputs=[self._wall_colors],
-            device=self.device,
-        )
 
     def _trace(self) -> None:
         inputs = [self._geometry(), self._params]
@@ -184,7 +207,8 @@ class OutsideView:
         self._scope_table.assign(self._table(link_force).astype(np.float32))
 
     def _table(self, link_force: np.ndarray) -> np.ndarray:
-        return scope_color_table(self._link_length, self._bending_links, link_force)
+        shown = link_force if self.cfg.scope_color == "force" else np.zeros_like(link_force)
+        return scope_color_table(self._link_length, self._bending_links, shown, self._tiers)
 
     def _geometry(self) -> kernels.ViewGeometry:
         geometry = kernels.ViewGeometry()

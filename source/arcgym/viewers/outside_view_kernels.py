@@ -74,22 +74,6 @@ class Sample:
 
 
 @wp.kernel
-def color_wall(
-    points: wp.array[wp.vec3],
-    rest: wp.array[wp.vec3],
-    table: wp.array[wp.vec3],
-    full_scale: float,
-    colors: wp.array[wp.vec3],
-):
-    """Looks the displacement of every visual vertex up in the deformation colour table."""
-    vertex = wp.tid()
-    last = table.shape[0] - 1
-    place = wp.clamp(wp.length(points[vertex] - rest[vertex]) / full_scale, 0.0, 1.0) * float(last)
-    below = wp.min(int(place), last - 1)
-    colors[vertex] = wp.lerp(table[below], table[below + 1], place - float(below))
-
-
-@wp.kernel
 def find_root(mesh: wp.uint64, group: int, root: wp.array[int]):
     """Reads the BVH root of a mesh group."""
     root[0] = wp.mesh_get_group_root(mesh, group)

@@ -12,13 +12,16 @@ from PIL import Image, ImageDraw
 
 from .drawing import DARK, DIM_INK, INK, Box, Color, font, text_width
 from .frame_info import FrameInfo
-from .palette import FORCE_TIERS, force_tier
+from .palette import FORCE_TIERS, Tiers, force_tier
 from .segment_bar import draw_segment_bar
 from .sparkline import draw_sparkline
+from .tier_bar import draw_tier_bar
 
 _LABEL_SIZE = 12
 _VALUE_SIZE = 18
 _CELL_GAP = 14
+_DOT_WIDTH = 14
+_NOTE_GAP = 6
 _REWARD_COLOR: Color = (124, 196, 255)
 
 
@@ -34,6 +37,10 @@ class Cell:
     """Text of the largest width that the value can have, so that cells do not move from frame to frame."""
     dot: Color | None = None
     """Colour of a dot before the value."""
+    note: str = ""
+    """Small text after the value, in the dot's colour."""
+    force: float | None = None
+    """Force [N] to mark on a bar of the tiers below the value."""
 
 
 def octagon(picture: np.ndarray, corner: float = 0.137, ground: Color = DARK) -> Image.Image:
@@ -65,6 +72,7 @@ def draw_panel(
     bounds: dict[str, tuple[float, float]],
     rewards: Sequence[float],
     forces: Sequence[float],
+    tiers: Tiers = FORCE_TIERS,
 ) -> None:
     """Draws segment bar, numbers and charts into a box.
 
@@ -75,46 +83,64 @@ def draw_panel(
         bounds: Start and end of each segment [m of arc length].
         rewards: Reward of each frame so far.
         forces: Largest link force of each frame so far [N].
+        tiers: Tiers of the force and their colours.
     """
     left, top, right, bottom = box
     draw_segment_bar(draw, (left, top, right, top + 30), bounds, info.tip_arc, info.task_range)
     chart_width = 0.16 * (right - left)
     chart_top = top + 40
-    draw_cells(draw, (left, chart_top, right - 2 * chart_width - 24, bottom), cells(info))
+    draw_cells(draw, (left, chart_top, right - 2 * chart_width - 24, bottom), cells(info, tiers), tiers)
     first = (right - 2 * chart_width - 8, chart_top, right - chart_width - 8, bottom)
     draw_sparkline(draw, first, rewards, "reward", _REWARD_COLOR, (0.0, 0.1))
-    limits = [(tier.start, tier.color) for tier in FORCE_TIERS[1:]]
+    limits = [(tier.start, tier.color) for tier in tiers[1:]]
     second = (right - chart_width, chart_top, right, bottom)
-    draw_sparkline(draw, second, forces, "largest link force [N]", INK, (0.0, FORCE_TIERS[1].start + 0.5), limits)
+    draw_sparkline(draw, second, forces, "largest link force [N]", INK, (0.0, tiers[1].start + 0.5), limits)
 
 
-def cells(info: FrameInfo) -> list[Cell]:
+def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
     """Returns what is shown as numbers, the most important first."""
-    forces = (("tip force", info.tip_force), ("max link force", info.max_force))
+    tip, top = force_tier(info.tip_force, tiers), force_tier(info.max_force, tiers)
     shown = [
         Cell("time", f"{info.time:.1f} s", "000.0 s"),
         Cell(f"tip in {info.segment}", f"{100 * info.tip_arc:.1f} cm", "000.0 cm"),
         Cell("inserted", f"{100 * info.inserted:.1f} cm", "000.0 cm"),
-        *(Cell(label, f"{force:.1f} N", "000.0 N", force_tier(force).color) for label, force in forces),
+        Cell("tip force", f"{info.tip_force:.1f} N", "000.0 N", tip.color, tip.label, info.tip_force),
+        Cell("max link force", f"{info.max_force:.1f} N", "000.0 N", top.color, force=info.max_force),
     ]
     if info.reward is not None:
         shown.append(Cell("reward", f"{info.reward:+.2f}", "+0.00"))
     return shown + [Cell(name, f"{value:+.2f}", "+0.00") for name, value in info.terms.items()]
 
 
-def draw_cells(draw: ImageDraw.ImageDraw, box: Box, shown: Sequence[Cell]) -> int:
+def draw_cells(draw: ImageDraw.ImageDraw, box: Box, shown: Sequence[Cell], tiers: Tiers = FORCE_TIERS) -> int:
     """Draws cells from left to right as far as they fit, and returns how many did."""
     left, top, right, _ = box
     left += 1  # glyphs may reach one pixel to the left of where they start
     for count, cell in enumerate(shown):
-        indent = 14 if cell.dot else 0
-        value_width = indent + max(text_width(draw, text, _VALUE_SIZE) for text in (cell.widest, cell.value))
-        width = max(text_width(draw, cell.label, _LABEL_SIZE), value_width)
+        width = _cell_width(draw, cell, tiers)
         if left + width > right:
             return count
-        draw.text((left, top + 4), cell.label, fill=DIM_INK, font=font(_LABEL_SIZE))
-        if cell.dot:
-            draw.ellipse((left, top + 26, left + 9, top + 35), fill=cell.dot)
-        draw.text((left + indent, top + 20), cell.value, fill=INK, font=font(_VALUE_SIZE))
+        _draw_cell(draw, left, top, width, cell, tiers)
         left += width + _CELL_GAP
     return len(shown)
+
+
+def _cell_width(draw: ImageDraw.ImageDraw, cell: Cell, tiers: Tiers) -> float:
+    """Returns the width of a cell, the same whatever tier it is in [px]."""
+    value = (_DOT_WIDTH if cell.dot else 0) + max(text_width(draw, t, _VALUE_SIZE) for t in (cell.widest, cell.value))
+    if cell.note:
+        value += _NOTE_GAP + max(text_width(draw, tier.label, _LABEL_SIZE) for tier in tiers)
+    return max(text_width(draw, cell.label, _LABEL_SIZE), value)
+
+
+def _draw_cell(draw: ImageDraw.ImageDraw, left: float, top: float, width: float, cell: Cell, tiers: Tiers) -> None:
+    indent = _DOT_WIDTH if cell.dot else 0
+    draw.text((left, top + 4), cell.label, fill=DIM_INK, font=font(_LABEL_SIZE))
+    if cell.dot:
+        draw.ellipse((left, top + 26, left + 9, top + 35), fill=cell.dot)
+    draw.text((left + indent, top + 20), cell.value, fill=INK, font=font(_VALUE_SIZE))
+    if cell.note:
+        end = left + indent + text_width(draw, cell.value, _VALUE_SIZE) + _NOTE_GAP
+        draw.text((end, top + 25), cell.note, fill=cell.dot, font=font(_LABEL_SIZE))
+    if cell.force is not None:
+        draw_tier_bar(draw, (left, top + 40, left + width, top + 47), cell.force, tiers)

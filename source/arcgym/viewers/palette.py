@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.envs.mdp.force_tiers import ForceTiersCfg
 
 
 @dataclass(frozen=True)
@@ -23,14 +25,22 @@ class ForceTier:
     """Display colour (sRGB, 0..255)."""
 
 
-FORCE_TIERS = (
-    ForceTier(0.0, "comfort", (66, 184, 131)),
-    ForceTier(2.0, "discomfort", (245, 190, 40)),
-    ForceTier(5.0, "unsafe", (238, 84, 42)),
-    ForceTier(14.0, "perforation", (190, 24, 160)),
-)
-"""Tiers of the wall force. 14 N: a straight scope tip perforated porcine colon at 14.1 N (Johnson et al. 2019).
-2 N and 5 N are this benchmark's limits for comfort and safety; no clinical threshold in newtons is published."""
+Tiers = Sequence[ForceTier]
+"""Ascending tiers, the first of which starts at zero."""
+
+
+def shown_tiers(limits: ForceTiersCfg) -> Tiers:
+    """Returns the tiers between the limits of a task, with the colours of their pictures."""
+    return (
+        ForceTier(0.0, "comfort", (66, 184, 131)),
+        ForceTier(limits.comfort, "discomfort", (245, 190, 40)),
+        ForceTier(limits.unsafe, "unsafe", (238, 84, 42)),
+        ForceTier(limits.perforation, "perforation", (190, 24, 160)),
+    )
+
+
+FORCE_TIERS = shown_tiers(ForceTiersCfg())
+"""Tiers of the default limits."""
 
 VISIBLE_FORCE = 0.05
 """Wall force from which a link is coloured at all [N]."""
@@ -58,24 +68,25 @@ _DEFORMATION_STOPS = np.array(
 )
 
 
-def force_tier(force: float) -> ForceTier:
+def force_tier(force: float, tiers: Tiers = FORCE_TIERS) -> ForceTier:
     """Returns the tier that a wall force [N] belongs to."""
-    return [tier for tier in FORCE_TIERS if force >= tier.start or tier is FORCE_TIERS[0]][-1]
+    return [tier for tier in tiers if force >= tier.start or tier is tiers[0]][-1]
 
 
-def force_colors(force: np.ndarray) -> np.ndarray:
+def force_colors(force: np.ndarray, tiers: Tiers = FORCE_TIERS) -> np.ndarray:
     """Returns the colour of each force.
 
     Colours change from one tier to the next over 10 % of the threshold, so that a tier reads as one colour.
 
     Args:
         force: Wall force [N], shape (K,).
+        tiers: Tiers and their colours.
 
     Returns:
         Linear RGB in 0..1, shape (K, 3).
     """
-    knots, colors = [0.0], [FORCE_TIERS[0].color]
-    for below, tier in zip(FORCE_TIERS, FORCE_TIERS[1:], strict=False):
+    knots, colors = [0.0], [tiers[0].color]
+    for below, tier in zip(tiers, tiers[1:], strict=False):
         knots += [0.9 * tier.start, tier.start]
         colors += [below.color, tier.color]
     return _ramp(np.asarray(force, float), np.array(knots), to_linear(np.array(colors)))

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .palette import VISIBLE_FORCE, force_colors, to_linear
+from .palette import FORCE_TIERS, VISIBLE_FORCE, Tiers, force_colors, to_linear
 
 TABLE_STEP = 0.001
 """Wanted distance between two entries of the colour table [m]."""
@@ -20,7 +20,9 @@ _MARK_SPACING = 0.10
 _MARK_LENGTH = 0.002
 
 
-def scope_color_table(link_length: np.ndarray, bending_links: int, link_force: np.ndarray) -> np.ndarray:
+def scope_color_table(
+    link_length: np.ndarray, bending_links: int, link_force: np.ndarray, tiers: Tiers = FORCE_TIERS
+) -> np.ndarray:
     """Returns the colour of the scope at even steps from its proximal end to its tip.
 
     Dark shaft with a light ring every 10 cm from the tip (as real colonoscopes carry), a lighter bending section and
@@ -30,6 +32,7 @@ def scope_color_table(link_length: np.ndarray, bending_links: int, link_force: n
         link_length: Length of each link [m], shape (L,).
         bending_links: Number of distal links that form the bending section.
         link_force: Wall force on each link [N], shape (L,).
+        tiers: Tiers of the force and their colours.
 
     Returns:
         Linear RGB, shape (K, 3), where K steps of about 1 mm make up the scope's length.
@@ -40,13 +43,13 @@ def scope_color_table(link_length: np.ndarray, bending_links: int, link_force: n
     from_tip = ends[-1] - arc
     color = np.where((arc > ends[-1] - np.sum(link_length[len(ends) - bending_links :]))[:, None], _BENDING, _SHAFT)
     color[from_tip < min(_TIP_LENGTH, 0.4 * ends[-1])] = _TIP
-    color = _tinted(color, np.interp(arc, ends - 0.5 * np.asarray(link_length), np.asarray(link_force, float)))
+    color = _tinted(color, np.interp(arc, ends - 0.5 * np.asarray(link_length), np.asarray(link_force, float)), tiers)
     is_mark = (from_tip % _MARK_SPACING < _MARK_LENGTH) & (from_tip > 0.5 * _MARK_SPACING)
     color[is_mark] = _MARK
     return color
 
 
-def _tinted(color: np.ndarray, force: np.ndarray) -> np.ndarray:
+def _tinted(color: np.ndarray, force: np.ndarray, tiers: Tiers) -> np.ndarray:
     """Blends the tier colour in, fully from twenty times the smallest visible force."""
     share = np.clip((force - VISIBLE_FORCE) / (19.0 * VISIBLE_FORCE), 0.0, 1.0)[:, None]
-    return color * (1.0 - 0.9 * share) + 0.9 * share * force_colors(force)
+    return color * (1.0 - 0.9 * share) + 0.9 * share * force_colors(force, tiers)

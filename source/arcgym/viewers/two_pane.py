@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image, ImageDraw
 
+from arcgym.envs.mdp.force_tiers import tiers_of
 from arcgym.sensors import SkinnedSurface
 from arcgym.utils.configclass import configclass
 
@@ -19,6 +20,8 @@ from .frame_info import FrameInfo, read_info
 from .legend import draw_legends
 from .outside_view import OutsideView, OutsideViewCfg
 from .overlay import draw_panel, octagon
+from .palette import shown_tiers
+from .wall_paint import WallPaint
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -53,10 +56,11 @@ class TwoPaneView:
 
         Args:
             env: Environment whose scene holds ``colon``, ``endoscope`` and, if it has one, ``camera``.
-            cfg: Size and quality; None for the defaults.
+            cfg: Size and quality; None for the defaults with the colours of ``env.cfg.viewer``.
         """
-        self.cfg = cfg or TwoPaneCfg()
+        self.cfg = cfg or _viewer_cfg(env)
         self._env = env
+        self._tiers = shown_tiers(tiers_of(env))
         self._colon, self._scope = env.scene["colon"], env.scene["endoscope"]
         stage = self._colon.stage
         device = str(self._colon.nodal_pos_wp.device)
@@ -69,7 +73,9 @@ class TwoPaneView:
             scope.link_length,
             scope.link_radius,
             scope.bending_links,
+            self._tiers,
         )
+        self._paint = WallPaint(self._colon) if self.cfg.outside.wall_color != "displacement" else None
         self._bounds = stage.segment_bounds()
         self._env_id, self._time = 0, 0.0
         self.rewards: deque[float] = deque(maxlen=_HISTORY)
@@ -94,9 +100,10 @@ class TwoPaneView:
         corner = (height + 2 * _MARGIN, _MARGIN)
         picture.paste(Image.fromarray(self._outside_view(env_id)), corner)
         draw = ImageDraw.Draw(picture)
-        draw_legends(draw, corner, self._outside.camera, self.cfg.outside.deformation_scale)
+        tiers = self._tiers if self.cfg.outside.scope_color == "force" else None
+        draw_legends(draw, corner, self._outside.camera, self._outside.scale, tiers)
         panel = (_MARGIN, height + 2 * _MARGIN, size[0] - _MARGIN, size[1] - _MARGIN)
-        draw_panel(draw, panel, shown, self._bounds, self.rewards, self.forces)
+        draw_panel(draw, panel, shown, self._bounds, self.rewards, self.forces, self._tiers)
         return np.asarray(picture)
 
     def _endoscope_view(self, env_id: int, size: int) -> Image.Image:
@@ -111,11 +118,21 @@ class TwoPaneView:
     def _outside_view(self, env_id: int) -> np.ndarray:
         self._surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
         data = self._scope.data
-        return self._outside.render(
-            data.body_pos_w[env_id].cpu().numpy(),
-            data.body_quat_w[env_id].cpu().numpy(),
-            data.wall_force_w[env_id].norm(dim=-1).cpu().numpy(),
-        )
+        position, quaternion = data.body_pos_w[env_id].cpu().numpy(), data.body_quat_w[env_id].cpu().numpy()
+        force = data.wall_force_w[env_id].norm(dim=-1).cpu().numpy()
+        values = self._wall_values(env_id, position, quaternion, force)
+        return self._outside.render(position, quaternion, force, values)
+
+    def _wall_values(
+        self, env_id: int, position: np.ndarray, quaternion: np.ndarray, force: np.ndarray
+    ) -> np.ndarray | None:
+        if self._paint is None:
+            return None
+        if self.cfg.outside.wall_color == "strain":
+            return self._paint.strain(env_id)
+        if self.cfg.outside.wall_color == "tension":
+            return self._paint.tension(env_id)
+        return self._paint.force(env_id, position, quaternion, self._scope.stage.link_length, force)
 
     def _remember(self, env_id: int, info: FrameInfo) -> None:
         """Adds to the charts, which start again with every episode and world."""
@@ -125,3 +142,11 @@ class TwoPaneView:
         self._env_id, self._time = env_id, info.time
         self.rewards.append(float("nan") if info.reward is None else info.reward)
         self.forces.append(info.max_force)
+
+
+def _viewer_cfg(env: ManagerBasedEnv) -> TwoPaneCfg:
+    """Returns the defaults with the colours that the environment asks for."""
+    cfg, viewer = TwoPaneCfg(), getattr(env.cfg, "viewer", None)
+    if viewer is not None:
+        cfg.outside.wall_color, cfg.outside.scope_color = viewer.wall_color, viewer.scope_color
+    return cfg

@@ -1,0 +1,155 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the colour of the wall shows: displacement, strain, anchor tension or the force of the scope on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+from scipy.spatial.transform import Rotation
+
+from arcgym.utils import warp_setup  # noqa: F401  isort: skip
+from arcgym.sim.model_building import wall_lumen
+from arcgym.sim.wall_readout import inverse_rest
+
+from .palette import FORCE_TIERS, Tiers, deformation_colors, force_colors
+
+WALL_COLORS = ("displacement", "strain", "tension", "force")
+"""What the wall's colour can show."""
+
+_CONTACT_REACH = 0.012
+"""Distance from a link's surface over which its force fades out [m]."""
+
+
+@dataclass(frozen=True)
+class WallScale:
+    """Colours from nothing to the full scale."""
+
+    title: str
+    """What is shown."""
+    unit: str
+    """Unit of the shown number."""
+    per_unit: float
+    """Shown number of a value of one."""
+    full: float
+    """Value at the end of the scale."""
+    colors: np.ndarray
+    """Linear RGB at even steps from zero to ``full``, shape (K, 3)."""
+
+    def paint(self, values: np.ndarray) -> np.ndarray:
+        """Returns the colour of each value, linear RGB, shape (M, 3)."""
+        place = np.clip(values / self.full, 0.0, 1.0) * (len(self.colors) - 1)
+        steps = np.arange(len(self.colors))
+        return np.stack([np.interp(place, steps, self.colors[:, channel]) for channel in range(3)], axis=1)
+
+
+def wall_scale(kind: str, full: float, tiers: Tiers = FORCE_TIERS) -> WallScale:
+    """Returns the scale of a quantity.
+
+    Args:
+        kind: One of :data:`WALL_COLORS`.
+        full: Value at the end of the scale: [m], a strain, or [N].
+        tiers: Tiers of the force and their colours.
+
+    Raises:
+        ValueError: If there is no such quantity.
+    """
+    share = np.linspace(0.0, 1.0, 257)
+    if kind == "displacement":
+        return WallScale("wall displacement", "mm", 1000.0, full, deformation_colors(share))
+    if kind == "strain":
+        return WallScale("wall strain", "%", 100.0, full, deformation_colors(share))
+    if kind == "tension":
+        return WallScale("anchor tension", "N", 1.0, full, deformation_colors(share))
+    if kind == "force":
+        return WallScale("force on the wall", "N", 1.0, full, _force_table(share * full, tiers))
+    raise ValueError(f"The wall cannot be coloured by '{kind}'; choose one of {', '.join(WALL_COLORS)}.")
+
+
+def _force_table(force: np.ndarray, tiers: Tiers) -> np.ndarray:
+    """Tissue where there is no force, the tier's colour from half a newton on."""
+    share = np.clip(force / 0.5, 0.0, 1.0)[:, None]
+    return deformation_colors(np.zeros_like(force)) * (1.0 - share) + force_colors(force, tiers) * share
+
+
+class WallPaint:
+    """Values of the wall of one world for the vertices of its visual surface, on the host."""
+
+    def __init__(self, colon: Any) -> None:
+        """Stores rest shape and skin.
+
+        Args:
+            colon: The scene's colon; its proxy surface is what is drawn.
+        """
+        self._colon = colon
+        self._faces = wall_lumen(colon).faces
+        self._inverse = inverse_rest(colon.wall.points[self._faces])
+        visual = colon.stage.visual_proxy
+        self._skin, self._weights = visual.skin_indices, visual.skin_weights
+
+    def strain(self, env_id: int) -> np.ndarray:
+        """Largest principal strain of the lumen faces around each vertex as they are now, shape (M,)."""
+        corners = self._positions(env_id)[self._faces]
+        values = np.repeat(face_strains(corners, self._inverse), 3)
+        return self._skinned(_vertex_mean(self._faces, values, len(self._colon.wall.points)))
+
+    def tension(self, env_id: int) -> np.ndarray:
+        """Pull of each vertex's ring on its anchors, mean over the control step [N], shape (M,)."""
+        rings = self._colon.data.anchor_tension[env_id].cpu().numpy()
+        return self._skinned(rings[self._colon.wall.ring])
+
+    def force(
+        self, env_id: int, link_pos: np.ndarray, link_quat: np.ndarray, link_length: np.ndarray, link_force: np.ndarray
+    ) -> np.ndarray:
+        """Force of the hardest pressing link nearby, fading out within 12 mm of it [N], shape (M,).
+
+        Args:
+            env_id: World.
+            link_pos: Middle of each link [m], shape (L, 3).
+            link_quat: Orientation of each link (x, y, z, w), +Z along it, shape (L, 4).
+            link_length: Length of each link [m], shape (L,).
+            link_force: Force between link and wall [N], shape (L,).
+        """
+        points = self._positions(env_id)
+        value = np.zeros(len(points))
+        axis, half = Rotation.from_quat(link_quat).apply([0.0, 0.0, 1.0]), 0.5 * np.asarray(link_length)
+        for link in np.flatnonzero(link_force > 0.0):
+            offset = points - link_pos[link]
+            along = np.clip(offset @ axis[link], -half[link], half[link])
+            away = np.linalg.norm(offset - along[:, None] * axis[link], axis=1)
+            near = np.clip(1.0 - (away - away.min()) / _CONTACT_REACH, 0.0, 1.0)
+            value = np.maximum(value, link_force[link] * near)
+        return self._skinned(value)
+
+    def _positions(self, env_id: int) -> np.ndarray:
+        return wp.to_torch(self._colon.nodal_pos_wp)[:, env_id].cpu().numpy()
+
+    def _skinned(self, values: np.ndarray) -> np.ndarray:
+        return (values[self._skin] * self._weights).sum(axis=1)
+
+
+def face_strains(corners: np.ndarray, inverse: np.ndarray) -> np.ndarray:
+    """Largest principal stretch of triangles minus one, as :func:`arcgym.sim.strain_kernels.face_strain` has it.
+
+    Args:
+        corners: Corners now [m], shape (F, 3, 3).
+        inverse: Of the rest shape, from :func:`arcgym.sim.wall_readout.inverse_rest`, shape (F, 3).
+
+    Returns:
+        Strains, zero for faces that are compressed all over, shape (F,).
+    """
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    f1 = first * inverse[:, :1]
+    f2 = (second - first * inverse[:, 1:2]) * inverse[:, 2:]
+    c11, c22, c12 = (f1 * f1).sum(1), (f2 * f2).sum(1), (f1 * f2).sum(1)
+    largest = 0.5 * (c11 + c22) + np.hypot(0.5 * (c11 - c22), c12)
+    return np.maximum(np.sqrt(largest) - 1.0, 0.0)
+
+
+def _vertex_mean(faces: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """Mean over the faces around each vertex; ``values`` has one entry for each corner, shape (3 F,)."""
+    total = np.bincount(faces.ravel(), values, minlength=count)
+    return total / np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
