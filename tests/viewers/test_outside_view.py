@@ -63,7 +63,7 @@ def test_force_colors_the_scope(stage):
 
 
 def test_deformation_turns_the_wall_from_red_to_blue(stage):
-    view = make_view(stage, deformation_scale=0.01)
+    view = make_view(stage, wall_full_scale=0.01)
     rest = draw(view, tip=0.02)
     view.surface.update(wp.array((stage.wall.points + np.array([0.01, 0.0, 0.0]))[:, None], dtype=wp.vec3))
     moved = draw(view, tip=0.02)

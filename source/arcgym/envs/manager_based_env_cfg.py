@@ -23,6 +23,9 @@ class ViewerCfg:
     """What the wall's colour shows in the outside view: how far it has moved, its strain, the pull of its anchors, or
     the force of the links beside it."""
 
+    wall_full_scale: float | None = None
+    """Value of the wall that gets the last colour [m, strain or N]; None for one that suits a pushed colonoscope."""
+
     scope_color: Literal["force", "plain"] = "force"
     """Whether the scope is coloured by the force of the wall on each link."""
 

@@ -55,7 +55,7 @@ def _draw_wall(draw: ImageDraw.ImageDraw, right: float, top: float, wall: WallSc
         draw.line([(right - _BAR[0], top + row), (right, top + row)], fill=tuple(color))
     for share in (0.0, 0.5, 1.0):
         y = top + (1.0 - share) * (_BAR[1] - 1)
-        label = f"{wall.per_unit * share * wall.full:g} {wall.unit}"
+        label = f"{wall.per_unit * share * wall.full:.3g} {wall.unit}"
         draw.text((right - _BAR[0] - 5, y), label, fill=_TEXT, font=font(_SIZE), anchor="rm")
     draw.text((right, top + _BAR[1] + 6), wall.title, fill=_TEXT, font=font(_SIZE), anchor="ra")
 

@@ -47,14 +47,9 @@ class OutsideViewCfg:
     links beside it."""
     scope_color: Literal["force", "plain"] = "force"
     """Whether the scope is coloured by the force of the wall on each link."""
-    deformation_scale: float = 0.05
-    """Displacement of the wall that gets the last colour of the heat map [m]. Lower it for gentle robots."""
-    strain_scale: float = 0.3
-    """Strain of the wall that gets the last colour."""
-    tension_scale: float = 2.0
-    """Pull of a ring on its anchors that gets the last colour [N]."""
-    force_scale: float = 15.0
-    """Force of a link that gets the last colour [N]; the colours between are those of the tiers."""
+    wall_full_scale: float | None = None
+    """Value of the wall that gets the last colour; None for 50 mm, a strain of 10 %, a pull of 1 N, or a force just
+    above the perforation tier. Lower it for gentle robots."""
     near_alpha: float = 0.16
     """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
     rim_alpha: float = 0.70
@@ -70,15 +65,6 @@ class OutsideViewCfg:
     """
     depth_contrast: float = 0.7
     """Strength of the shade behind loops that lie in front of others, 0..1."""
-
-    def full_scale(self) -> float:
-        """Returns the value of the wall that gets the last colour [m, 1 or N]."""
-        return {
-            "displacement": self.deformation_scale,
-            "strain": self.strain_scale,
-            "tension": self.tension_scale,
-            "force": self.force_scale,
-        }[self.wall_color]
 
 
 class WallSurface(Protocol):
@@ -134,7 +120,7 @@ class OutsideView:
         )
         self._rest = np.asarray(rest_points)
         self._tiers = tiers
-        self.scale = wall_scale(cfg.wall_color, cfg.full_scale(), tiers)
+        self.scale = wall_scale(cfg.wall_color, cfg.wall_full_scale, tiers)
         self._wall_colors = wp.zeros(len(rest_points), dtype=wp.vec3, device=self.device)
         self._link_length = np.asarray(link_length, float)
         self._bending_links = bending_links

@@ -148,5 +148,6 @@ def _viewer_cfg(env: ManagerBasedEnv) -> TwoPaneCfg:
     """Returns the defaults with the colours that the environment asks for."""
     cfg, viewer = TwoPaneCfg(), getattr(env.cfg, "viewer", None)
     if viewer is not None:
-        cfg.outside.wall_color, cfg.outside.scope_color = viewer.wall_color, viewer.scope_color
+        for name in ("wall_color", "wall_full_scale", "scope_color"):
+            setattr(cfg.outside, name, getattr(viewer, name))
     return cfg

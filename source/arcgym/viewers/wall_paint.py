@@ -20,6 +20,13 @@ from .palette import FORCE_TIERS, Tiers, deformation_colors, force_colors
 WALL_COLORS = ("displacement", "strain", "tension", "force")
 """What the wall's colour can show."""
 
+_SCALES = {
+    "displacement": ("wall displacement", "mm", 1000.0, 0.05),
+    "strain": ("wall strain", "%", 100.0, 0.10),
+    "tension": ("anchor tension", "N", 1.0, 1.0),
+}
+"""Title, unit, shown number of a value of one, and default value at the end of the scale."""
+
 _CONTACT_REACH = 0.012
 """Distance from a link's surface over which its force fades out [m]."""
 
@@ -46,27 +53,25 @@ class WallScale:
         return np.stack([np.interp(place, steps, self.colors[:, channel]) for channel in range(3)], axis=1)
 
 
-def wall_scale(kind: str, full: float, tiers: Tiers = FORCE_TIERS) -> WallScale:
+def wall_scale(kind: str, full: float | None = None, tiers: Tiers = FORCE_TIERS) -> WallScale:
     """Returns the scale of a quantity.
 
     Args:
         kind: One of :data:`WALL_COLORS`.
-        full: Value at the end of the scale: [m], a strain, or [N].
+        full: Value at the end of the scale: [m], a strain, or [N]; None for one that suits a pushed colonoscope.
         tiers: Tiers of the force and their colours.
 
     Raises:
         ValueError: If there is no such quantity.
     """
+    if kind not in WALL_COLORS:
+        raise ValueError(f"The wall cannot be coloured by '{kind}'; choose one of {', '.join(WALL_COLORS)}.")
     share = np.linspace(0.0, 1.0, 257)
-    if kind == "displacement":
-        return WallScale("wall displacement", "mm", 1000.0, full, deformation_colors(share))
-    if kind == "strain":
-        return WallScale("wall strain", "%", 100.0, full, deformation_colors(share))
-    if kind == "tension":
-        return WallScale("anchor tension", "N", 1.0, full, deformation_colors(share))
     if kind == "force":
+        full = full or 1.07 * tiers[-1].start
         return WallScale("force on the wall", "N", 1.0, full, _force_table(share * full, tiers))
-    raise ValueError(f"The wall cannot be coloured by '{kind}'; choose one of {', '.join(WALL_COLORS)}.")
+    title, unit, per_unit, default = _SCALES[kind]
+    return WallScale(title, unit, per_unit, full or default, deformation_colors(share))
 
 
 def _force_table(force: np.ndarray, tiers: Tiers) -> np.ndarray:
@@ -93,8 +98,9 @@ class WallPaint:
     def strain(self, env_id: int) -> np.ndarray:
         """Largest principal strain of the lumen faces around each vertex as they are now, shape (M,)."""
         corners = self._positions(env_id)[self._faces]
-        values = np.repeat(face_strains(corners, self._inverse), 3)
-        return self._skinned(_vertex_mean(self._faces, values, len(self._colon.wall.points)))
+        values = np.zeros(len(self._colon.wall.points))
+        np.maximum.at(values, self._faces.ravel(), np.repeat(face_strains(corners, self._inverse), 3))
+        return self._skinned(values)
 
     def tension(self, env_id: int) -> np.ndarray:
         """Pull of each vertex's ring on its anchors, mean over the control step [N], shape (M,)."""
@@ -147,9 +153,3 @@ def face_strains(corners: np.ndarray, inverse: np.ndarray) -> np.ndarray:
     c11, c22, c12 = (f1 * f1).sum(1), (f2 * f2).sum(1), (f1 * f2).sum(1)
     largest = 0.5 * (c11 + c22) + np.hypot(0.5 * (c11 - c22), c12)
     return np.maximum(np.sqrt(largest) - 1.0, 0.0)
-
-
-def _vertex_mean(faces: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
-    """Mean over the faces around each vertex; ``values`` has one entry for each corner, shape (3 F,)."""
-    total = np.bincount(faces.ravel(), values, minlength=count)
-    return total / np.maximum(np.bincount(faces.ravel(), minlength=count), 1)
