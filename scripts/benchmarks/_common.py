@@ -1,15 +1,17 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Timing and memory that the benchmarks share. Importing this loads neither torch nor Warp."""
+"""Timing, memory and steps that the benchmarks share. Importing this loads neither torch nor Warp."""
 
 from __future__ import annotations
 
+import argparse
 import resource
 import statistics
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 Action = Callable[[], object]
 """Something to be timed."""
@@ -77,8 +79,6 @@ def host_mib() -> float:
 
 def positive(text: str) -> int:
     """Read a whole number of at least 1 from the command line."""
-    import argparse
-
     try:
         number = int(text)
     except ValueError:
@@ -86,3 +86,25 @@ def positive(text: str) -> int:
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least 1")
     return number
+
+
+def counts(text: str) -> list[int]:
+    """Read numbers of at least 1 that commas separate."""
+    return [positive(part) for part in text.split(",")]
+
+
+def forward_axis(env: Any) -> int:
+    """Raw action of a navigation task that drives the tip, or a pushed scope's base, forwards."""
+    return 0 if env.scene["endoscope"].kind == "proximal" else 2
+
+
+def advance(env: Any, actions: Any) -> None:
+    """Make the physics of a control step alone, without rewards and resets.
+
+    Args:
+        env: A manager-based environment.
+        actions: Raw actions, shape (N, A).
+    """
+    env.action_manager.process_action(actions)
+    env.action_manager.apply_action()
+    env.sim.step(env.cfg.decimation)

@@ -70,25 +70,39 @@ def state_keeper(sim: Any) -> Action:
 
 
 def physics_stages(env: Any) -> dict[str, Action]:
-    """The physics of a control step, and its parts as often as they occur in it."""
+    """The physics of a control step, and its parts as often as they occur in it.
+
+    Contact search and wall step are called with the arguments that the coupling gives them; the scope is the rest of
+    the coupling, whatever solver it has.
+    """
     sim, steps = env.sim, env.cfg.decimation
     stages: dict[str, Action] = {"physics": lambda: sim.step(steps)}
     if sim.cfg.solver != "two_level":
         return stages
-    start = wp.clone(sim.state.body_q)
-
-    def move_wall() -> None:
-        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, sim.state.body_q, start)
-
-    stages["contact"] = repeated(sim, lambda: sim.contact.detect(sim.nodal_pos, sim.state.body_q), steps)
+    detect, move_wall = recorded_call(sim, sim.contact, "detect"), recorded_call(sim, sim.wall, "step")
+    stages["contact"] = repeated(sim, detect, steps)
     with silenced((sim.contact, "detect"), (sim.wall, "step")):
         stages["scope"] = repeated(sim, sim.coupling.step, steps)
     stages["wall"] = repeated(sim, move_wall, steps)
-    with patch.object(sim.wall.cfg, "iterations", 0):
-        stages["wall_coarse"] = repeated(sim, move_wall, steps)
-    with patch.object(sim.wall.cfg, "coarse_correction", False):
-        stages["wall_sweep"] = repeated(sim, move_wall, steps)
+    for name, field, off in (("wall_coarse", "iterations", 0), ("wall_sweep", "coarse_correction", False)):
+        if hasattr(sim.wall.cfg, field):
+            with patch.object(sim.wall.cfg, field, off):
+                stages[name] = repeated(sim, move_wall, steps)
     return stages
+
+
+def recorded_call(sim: Any, part: Any, method: str) -> Action:
+    """Returns the method's first call in a physics step, to be made again; makes that step."""
+    original, calls = getattr(part, method), []
+
+    def record(*args: Any, **kwargs: Any) -> None:
+        calls.append((args, kwargs))
+        original(*args, **kwargs)
+
+    with patch.object(part, method, record):
+        sim.coupling.step()
+    args, kwargs = calls[0]
+    return lambda: original(*args, **kwargs)
 
 
 def repeated(sim: Any, action: Action, count: int) -> Action:

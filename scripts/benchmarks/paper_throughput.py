@@ -18,7 +18,7 @@ import math
 import time
 from typing import Any
 
-from _common import best_device, positive
+from _common import best_device, counts, positive
 
 from arcgym.rl import cli
 
@@ -54,11 +54,6 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--seed", type=int, default=0, help="seed of environment and networks (default: 0)")
     parser.add_argument("--json", action="store_true", help="print the results as one JSON object on the last line")
     return parser
-
-
-def counts(text: str) -> list[int]:
-    """Read numbers of worlds that commas separate."""
-    return [positive(part) for part in text.split(",")]
 
 
 def main() -> None:

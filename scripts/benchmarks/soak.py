@@ -25,7 +25,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from _common import best_device, device_mib, host_mib, positive
+from _common import best_device, device_mib, forward_axis, host_mib, positive
 from soak_checks.journal import Journal, Tally
 
 from arcgym.rl import cli
@@ -35,8 +35,6 @@ GPU_STEPS, CPU_MINUTES = 1_000_000, 60.0
 GPU_WORLDS, CPU_WORLDS = 1024, 8
 READ_EVERY = 20
 """Control steps between two readings of the counters, which wait for the device."""
-FORWARD_AXIS = {"proximal": 0}
-"""Raw action that drives a kind of robot forwards; 2 for the others, which take a velocity of the tip."""
 
 Row = dict[str, Any]
 
@@ -147,7 +145,7 @@ def soak(task: str, env_cfg: Any, budget: Budget, journal: Journal) -> None:
     adversaries = Adversaries(
         env.num_envs,
         env.action_manager.total_action_dim,
-        FORWARD_AXIS.get(env.scene["endoscope"].kind, 2),
+        forward_axis(env),
         env.step_dt,
         env.device,
         env_cfg.seed,

@@ -21,8 +21,10 @@ ROW = {
     "ms": {"total": 500.0},
     "device_mib": None,
     "host_mib": 900.0,
-    "build_s": 10.0,
+    "links_touching": 12.0,
+    "first_step_s": 10.0,
     "compile_s": 0.5,
+    "compiled_modules": [],
 }
 
 
@@ -54,12 +56,13 @@ def test_unknown_task_ends_before_anything_is_built():
 
 def test_counts_are_separated_by_commas(throughput):
     assert throughput.counts("1,16,64") == [1, 16, 64]
-    with pytest.raises(ArgumentTypeError, match="at least 1"):
+    with pytest.raises(ArgumentTypeError, match="'0' is no whole number of at least 1"):
         throughput.counts("4,0")
 
 
 def worker_args() -> Namespace:
-    return Namespace(task="T", device="cpu", steps=1, repeats=1, seed=0, stages=False, timeout=60.0)
+    settings = {"stages": False, "bandwidth": False, "cold": False, "start": "entry", "timeout": 60.0}
+    return Namespace(task="T", device="cpu", steps=1, repeats=1, seed=0, num_envs=[4, 8], **settings)
 
 
 @pytest.mark.parametrize(
@@ -80,11 +83,50 @@ def test_row_is_the_last_line_of_the_worker(throughput, monkeypatch, tmp_path):
     script = tmp_path / "worker.py"
     script.write_text(f"print('Module loaded'); print({json.dumps(ROW)!r})")
     monkeypatch.setattr(throughput, "__file__", str(script))
-    assert throughput.run_worker(worker_args(), 4, []) == ROW
+    assert throughput.run_worker(worker_args(), 4, []) == {**ROW, "compile_s": 0.0}
+
+
+def test_time_of_kernels_is_read_from_what_warp_prints(throughput):
+    output = (
+        "Module arcgym.sim.contact_kernels 0a1b2c3 load on device 'cuda:0' took 1500.00 ms  (compiled)\n"
+        "    Module torch_like load on device 'cuda:0' took 250.00 ms  (cached)\n{}"
+    )
+    expected = {"compile_s": 1.75, "compiled_modules": ["arcgym.sim.contact_kernels"]}
+    assert throughput.module_loads(output) == expected
+
+
+def test_cold_start_fills_the_cache_that_all_rows_use(throughput, monkeypatch):
+    calls = []
+
+    def worker(args, num_envs, overrides, environment):
+        calls.append((num_envs, environment))
+        return {**ROW, "num_envs": num_envs, "compile_s": 90.0 if len(calls) == 1 else 1.0}
+
+    monkeypatch.setattr(throughput, "run_worker", worker)
+    args = worker_args()
+    args.cold = True
+    first, second = throughput.run_all(args, [], {"WARP_CACHE_PATH": "somewhere"})
+    assert [num_envs for num_envs, _ in calls] == [4, 4, 8]
+    assert {environment["WARP_CACHE_PATH"] for _, environment in calls} == {"somewhere"}
+    assert (first["compile_s_cold"], first["compile_s"], first["first_step_s_cold"]) == (90.0, 1.0, 10.0)
+    assert "compile_s_cold" not in second
+
+
+def test_shared_arrays_count_once(throughput):
+    from types import SimpleNamespace
+
+    import warp as wp
+    from _traffic import device_arrays
+
+    wp.init()
+    held = wp.zeros(256, dtype=wp.vec3, device="cpu")
+    view, others = wp.to_torch(held), [wp.zeros(64, dtype=float, device="cpu")]
+    part = type("Part", (SimpleNamespace,), {"__module__": "arcgym.sim"})(view=view, held=held, others=others)
+    assert sum(device_arrays(part).values()) == 256 * 12 + 64 * 4
 
 
 def test_line_has_a_dash_for_the_memory_of_no_device(throughput):
-    assert throughput.describe(ROW).split() == ["4", "8.0", "0.80", "500.00", "-", "900", "10.0", "0.5"]
+    assert throughput.describe(ROW).split() == ["4", "8.0", "0.80", "500.00", "-", "900", "12.0", "0.5", "10.0"]
 
 
 def test_median_leaves_the_first_call_out(throughput):
@@ -110,8 +152,8 @@ def test_silenced_method_comes_back(throughput):
 
 @pytest.mark.slow
 def test_measures_every_stage_on_the_cpu():
-    arguments = ["--task=ARC-Rectum-Capsule", "--num_envs=1", "--steps=2", "--repeats=1", "--device=cpu", "--stages"]
-    result = run(*arguments, "--json")
+    arguments = ["--task=ARC-Rectum-Capsule", "--num_envs=1", "--steps=2", "--repeats=1", "--device=cpu"]
+    result = run(*arguments, "--bandwidth", "--json")
     assert result.returncode == 0, result.stderr
     report = json.loads(result.stdout.splitlines()[-1])
     (row,) = report["rows"]
@@ -120,3 +162,4 @@ def test_measures_every_stage_on_the_cpu():
     parts = {"total", "physics", "contact", "scope", "wall", "camera", "managers", "observation", "reset"}
     assert parts <= row["ms"].keys()
     assert min(row["ms"].values()) > 0.0
+    assert 0.0 < row["bandwidth"]["share"] < 1.0

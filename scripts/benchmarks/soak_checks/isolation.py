@@ -11,6 +11,7 @@ from unittest.mock import patch
 
 import torch
 import warp as wp
+from _common import advance
 
 
 class ResetGuard:
@@ -90,13 +91,6 @@ def leaves(name: str, value: Any) -> dict[str, torch.Tensor]:
     if isinstance(value, dict):
         return {path: leaf for key, item in value.items() for path, leaf in leaves(f"{name}/{key}", item).items()}
     return {name: value} if isinstance(value, torch.Tensor) and value.is_floating_point() else {}
-
-
-def advance(env: Any, actions: torch.Tensor) -> None:
-    """Make the physics of a control step, without rewards and resets."""
-    env.action_manager.process_action(actions)
-    env.action_manager.apply_action()
-    env.sim.step(env.cfg.decimation)
 
 
 def copied(sim: Any) -> dict[str, torch.Tensor]:
