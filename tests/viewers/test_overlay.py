@@ -9,10 +9,14 @@ import pytest
 from PIL import Image, ImageDraw
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.envs.mdp import ForceTiersCfg
+from arcgym.viewers.drawing import INK
 from arcgym.viewers.frame_info import FrameInfo
 from arcgym.viewers.overlay import Cell, cells, draw_cells, draw_panel, octagon
+from arcgym.viewers.palette import FORCE_TIERS, shown_tiers
 from arcgym.viewers.segment_bar import draw_segment_bar
 from arcgym.viewers.sparkline import draw_sparkline
+from arcgym.viewers.tier_bar import draw_tier_bar
 
 GROUND = (1, 2, 3)
 BOUNDS = {name: (0.2 * k, 0.2 * (k + 1)) for k, name in enumerate(SEGMENTS)}
@@ -88,6 +92,28 @@ def test_cells_hold_the_numbers_with_units_and_tier_colors():
     assert by_label["max link force"].value == "6.0 N"
     assert by_label["max link force"].dot != by_label["tip force"].dot
     assert "reward" not in by_label
+
+
+def test_tip_force_names_its_tier_and_stands_on_the_bar():
+    by_label = {cell.label: cell for cell in cells(FrameInfo(tip_force=6.0, max_force=1.0))}
+    assert (by_label["tip force"].note, by_label["tip force"].force) == ("unsafe", 6.0)
+    gentle = shown_tiers(ForceTiersCfg(comfort=7.0, unsafe=8.0))
+    assert {cell.label: cell for cell in cells(FrameInfo(tip_force=6.0), gentle)}["tip force"].note == "comfort"
+
+
+@pytest.mark.parametrize("force", [0.0, 1.0, 14.1, 500.0])
+def test_tier_bar_stays_inside(force):
+    canvas = Canvas(100, 8)
+    draw_tier_bar(canvas.draw, canvas.box, force, FORCE_TIERS)
+    canvas.assert_inside()
+
+
+def test_tier_bar_is_marked_at_the_root_of_the_force():
+    canvas = Canvas(100, 8)
+    # The bar ends at 1.5 * 14.1 N; a quarter of that stands half way.
+    draw_tier_bar(canvas.draw, canvas.box, 1.5 * 14.1 / 4, FORCE_TIERS)
+    columns = np.flatnonzero((np.asarray(canvas.picture)[20] == INK).all(axis=1))
+    assert columns.mean() == pytest.approx(70, abs=1.5)
 
 
 @pytest.mark.parametrize("values", [[], [1.0], [float("nan")] * 3, [0.0, 100.0, float("nan"), -100.0] * 60])

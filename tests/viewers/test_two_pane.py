@@ -12,6 +12,7 @@ import torch
 import warp as wp
 from tiny import tiny_colon_stage
 
+from arcgym.envs import ViewerCfg
 from arcgym.viewers import OutsideViewCfg, TwoPaneCfg, TwoPaneView
 from arcgym.viewers.frame_info import read_info
 
@@ -109,3 +110,14 @@ def test_charts_start_again_with_every_episode():
     env.episode_length_buf[0] = 0
     view.frame()
     assert len(view.rewards) == 1
+
+
+def test_viewer_configuration_chooses_the_colours():
+    env = make_env()
+    env.scene["colon"].points[:, 0, 2] *= 1.2
+    frames = {}
+    for color in ("displacement", "strain", "force"):
+        env.cfg.viewer = ViewerCfg(wall_color=color, scope_color="plain")
+        frames[color] = TwoPaneView(env, None).frame()
+    assert (frames["strain"] != frames["displacement"]).mean() > 0.01
+    assert (frames["strain"] != frames["force"]).mean() > 0.01
