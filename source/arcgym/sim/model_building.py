@@ -72,8 +72,7 @@ def _shell(shell: ShellMesh) -> ShellParameters:
 
 def wall_modes(wall: WallParameters) -> RingModes:
     """Ring modes of the wall."""
-    thin = isinstance(wall.elements, ShellParameters)
-    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor, wall.elements.parts, thin)
+    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor, wall.elements.parts)
 
 
 def wall_lumen(colon: Colon) -> LumenTopology:

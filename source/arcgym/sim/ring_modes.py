@@ -61,7 +61,6 @@ def ring_modes(
     mass: np.ndarray,
     anchor: np.ndarray,
     parts: Sequence[ElasticPart],
-    thin: bool,
 ) -> RingModes:
     """Project rest stiffness, mass and anchors on the modes of the rings.
 
@@ -73,11 +72,10 @@ def ring_modes(
         anchor: Vertex anchor springs [N/m], shape (V,).
         parts: Elements of each of the ``PARTS`` parts; an element over three rings, as a hinge about an edge within a
             ring, is left out: it resists bending along the colon, which hardly counts beside stretching.
-        thin: Whether rings flatten without stretching, as thin shells do, or affinely, as solids.
     """
     count = int(ring.max()) + 1
     group = members(np.arange(len(points)), ring, count, pad_first=False)
-    basis, plane, frames = _ring_basis(points.astype(np.float64), group, thin)
+    basis, plane, frames = _ring_basis(points.astype(np.float64), group)
     basis = basis * mobile[:, None, None]
     blocks = [_stiffness_blocks(part, ring, basis, count) for part in parts]
     stiffness, coupling = np.stack([b[0] for b in blocks]), np.stack([b[1] for b in blocks])
@@ -95,7 +93,7 @@ def ring_modes(
     )
 
 
-def _ring_basis(points: np.ndarray, group: np.ndarray, thin: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _ring_basis(points: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     basis, plane = np.zeros((len(points), MODES, 3)), np.zeros((len(points), 2))
     frames = np.zeros((len(group), 3, 3))
     for r, row in enumerate(group):
@@ -104,7 +102,7 @@ def _ring_basis(points: np.ndarray, group: np.ndarray, thin: bool) -> tuple[np.n
         axes = np.linalg.svd(local, full_matrices=False)[2]
         size = np.sqrt((local**2).sum(axis=1).mean())
         plane[row] = local @ axes[:2].T / size
-        basis[row] = _ring_displacements(plane[row], axes[0], axes[1], thin)
+        basis[row] = _ring_displacements(plane[row], axes[0], axes[1])
         p, q = plane[row, 0] @ points[row], plane[row, 1] @ points[row]
         p /= np.linalg.norm(p)
         q -= p * (p @ q)
@@ -113,24 +111,23 @@ def _ring_basis(points: np.ndarray, group: np.ndarray, thin: bool) -> tuple[np.n
     return basis, plane, frames
 
 
-def _ring_displacements(plane: np.ndarray, p: np.ndarray, q: np.ndarray, thin: bool) -> np.ndarray:
-    """Displacements of a ring: three translations, two tilts, twist, dilation, two ways of flattening, (n, M, 3).
+def _ring_displacements(plane: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Affine displacements: three translations, two tilts, twist, dilation, two ways of flattening, shape (n, M, 3).
 
-    A circle that flattens by cos 2a radially keeps its length if it moves by -sin(2a) / 2 along itself (Love,
-    Mathematical Theory of Elasticity, inextensional ring); an affine map moves it by -sin 2a.
+    Flattening affinely stretches the ring, which a shell would avoid; modes that do avoid it at rest are far softer than
+    the wall once it is dented, and the correction then overshoots without bound.
     """
     angle = np.arctan2(plane[:, 1], plane[:, 0])
     radial = np.cos(angle)[:, None] * p + np.sin(angle)[:, None] * q
     along = -np.sin(angle)[:, None] * p + np.cos(angle)[:, None] * q
-    slide = 0.5 if thin else 1.0
     size = np.linalg.norm(plane, axis=1)[:, None]
     double = 2.0 * angle
     out = np.zeros((len(plane), MODES, 3))
     out[:, :3] = np.eye(3)
     out[:, 3], out[:, 4] = plane[:, :1] * np.cross(p, q), plane[:, 1:] * np.cross(p, q)
     out[:, 5], out[:, 6] = size * along, size * radial
-    out[:, 7] = size * (np.cos(double)[:, None] * radial - slide * np.sin(double)[:, None] * along)
-    out[:, 8] = size * (np.sin(double)[:, None] * radial + slide * np.cos(double)[:, None] * along)
+    out[:, 7] = size * (np.cos(double)[:, None] * radial - np.sin(double)[:, None] * along)
+    out[:, 8] = size * (np.sin(double)[:, None] * radial + np.cos(double)[:, None] * along)
     return out
 
 
