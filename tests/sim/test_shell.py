@@ -99,7 +99,7 @@ def elastic_force(sim: Simulation, points: np.ndarray) -> np.ndarray:
     out = wp.zeros_like(x)
     args = [wall.nodes, wall.elements, wall.tissue, 1.0e6, x, contact.records, contact.links, contact.law, 1]
     wp.launch(wall.kernels.residual, out.shape, [*args, sim.state.body_q, x, out], device="cpu")
-    anchors = wall.nodes.anchor.numpy()[:, None] * (points - wall.nodes.rest.numpy())
+    anchors = wall.nodes.anchors.stiffness.numpy()[:, None] * (points - wall.nodes.anchors.rest.numpy())
     return out.numpy()[:, 0] + anchors
 
 

@@ -12,6 +12,7 @@ from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
 from arcgym.anatomy.wall import inner_faces
+from arcgym.assets.anchors import AnchorSprings
 from arcgym.sim.wall_readout import WallReadout, inverse_rest
 from arcgym.sim.wall_topology import lumen_topology
 
@@ -23,7 +24,7 @@ SPRING = 10.0
 def readout() -> WallReadout:
     """Every vertex of ring 5 is held by a spring of 10 N/m, in world 1 by one of 5 N/m."""
     lumen = lumen_topology(inner_faces(WALL.tets, WALL.layer), WALL.ring, WALL.layer)
-    anchor = np.where(WALL.ring == 5, SPRING, 0.0)
+    anchor = AnchorSprings.linear(np.where(WALL.ring == 5, SPRING, 0.0))
     scale = wp.array([1.0, 0.5], dtype=float)
     return WallReadout(lumen, WALL.points, WALL.ring, anchor, scale, "cpu")
 
@@ -104,7 +105,7 @@ def test_simulation_reads_every_step_and_forgets_at_reset(tiny_sim: TinySim) -> 
     data = sim.colon.data
     data.nodal_pos_w[1, :, 0] += 0.002 * (torch.tensor(sim.colon.wall.ring) == 6)
     sim.step(1)
-    springs = torch.tensor(sim.colon.anchor_springs(), dtype=torch.float32)[:, None]
+    springs = torch.tensor(sim.colon.anchor_springs().stiffness, dtype=torch.float32)[:, None]
     pull = springs * (data.nodal_pos_w[1] - data.default_nodal_state_w[1, :, :3])
     expected = pull[torch.tensor(sim.colon.wall.ring) == 6].sum(dim=0).norm()
     assert float(expected) > 0.0

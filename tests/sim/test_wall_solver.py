@@ -68,7 +68,7 @@ def test_anchors_pull_back_by_their_share_of_the_ring(tiny_sim: TinySim) -> None
 
 def test_anchors_of_a_solid_sit_on_the_outer_layer(tiny_sim: TinySim) -> None:
     colon = tiny_sim("capsule", colon={"wall_model": "solid"}).colon
-    springs, layer = colon.anchor_springs(), colon.wall.layer
+    springs, layer = colon.anchor_springs().stiffness, colon.wall.layer
     assert not springs[layer == 0].any() and springs[layer == 1].all()
 
 

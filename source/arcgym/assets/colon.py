@@ -15,8 +15,9 @@ import warp as wp
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
 from arcgym.anatomy.stage import WallMesh, read_colon
+from arcgym.assets.anchors import AnchorSprings, anchor_springs
 from arcgym.assets.colon_cfg import ColonCfg
-from arcgym.assets.materials import Value, shell_moduli, solid_moduli, tissue_preset
+from arcgym.assets.materials import Value, anchor_scale, shell_moduli, solid_moduli, tissue_preset
 from arcgym.assets.shell_loading import add_shell
 from arcgym.assets.usd_loading import add_colon_usd
 from arcgym.utils.paths import resolve_asset
@@ -36,15 +37,17 @@ class Colon:
 
         Raises:
             StageError: If the stage cannot be used.
-            ValueError: If the material or the kind of wall is unknown, or a segment has no such name.
+            ValueError: If material, anchors or kind of wall are unknown, or a segment has no such name.
         """
         self.cfg = cfg
         self.path = resolve_asset(cfg.usd_path)
         self.stage = read_colon(self.path)
         self.tissue = tissue_preset(cfg.material)
-        unknown = sorted(set(cfg.anchor_stiffness) - set(SEGMENTS))
-        if unknown:
-            raise ValueError(f"ColonCfg.anchor_stiffness names {unknown}; the segments are {list(SEGMENTS)}.")
+        self.anchor_scale = anchor_scale(cfg.anchors)
+        for field in ("anchor_stiffness", "anchor_slack"):
+            unknown = sorted(set(getattr(cfg, field)) - set(SEGMENTS))
+            if unknown:
+                raise ValueError(f"ColonCfg.{field} names {unknown}; the segments are {list(SEGMENTS)}.")
         if cfg.wall_model not in ("shell", "solid"):
             raise ValueError(f"ColonCfg.wall_model is {cfg.wall_model!r}; choose 'shell' or 'solid'.")
         if cfg.wall_model == "solid" and cfg.wall_thickness is not None:
@@ -113,15 +116,9 @@ class Colon:
             free &= wall.ring_arc[wall.ring] <= self.cfg.mobile_until
         return free
 
-    def anchor_springs(self) -> np.ndarray:
-        """Spring of each vertex to its rest position [N/m], shape (V,): the outermost carry their ring's share."""
-        wall = self.wall
-        per_length = {**self.tissue.anchor_stiffness, **self.cfg.anchor_stiffness}
-        stiffness = np.array([per_length[name] for name in SEGMENTS])[wall.segment]
-        outer = wall.layer == wall.layer.max()
-        spacing = np.gradient(wall.ring_arc)[wall.ring]
-        around = np.bincount(wall.ring[outer], minlength=self.num_rings)[wall.ring]
-        return np.where(outer, stiffness * spacing / np.maximum(around, 1), 0.0)
+    def anchor_springs(self) -> AnchorSprings:
+        """Spring of each vertex to its rest position, before any factor of a world."""
+        return anchor_springs(self.wall, self.tissue, self.cfg.anchor_stiffness, self.cfg.anchor_slack)
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
@@ -166,8 +163,18 @@ class Colon:
     def write_anchor_scale_to_sim(
         self, scale: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None
     ) -> None:
-        """Multiply the configured stiffness of the attachments in the worlds ``env_ids``, shape (n,)."""
+        """Multiply the preset's stiffness of the attachments in the worlds ``env_ids``, shape (n,).
+
+        It takes the place of the factor that ``ColonCfg.anchors`` names; slack stays as it is.
+        """
         self._sim.anchor_scale[self._worlds(env_ids)] = scale.to(self._sim.anchor_scale)
+
+    def write_rigid_to_sim(self, rigid: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+        """Hold the wall where it is, or let it go, in the worlds ``env_ids``, shape (n,), bool.
+
+        Held walls cost as much as others; ``ColonCfg.rigid`` holds all of them at no cost.
+        """
+        self._sim.rigid[self._worlds(env_ids)] = rigid.to(self._sim.rigid)
 
     @staticmethod
     def _worlds(env_ids: Sequence[int] | torch.Tensor | None) -> slice | torch.Tensor | Sequence[int]:

@@ -18,15 +18,18 @@ class ColonCfg:
     usd_path: str = "colon_1/colon.usda"
     """Stage of the colon: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`)."""
     material: str = "paper"
-    """Tissue preset: ``paper`` (5 MPa) or ``in_situ`` (0.7 MPa, moves visibly), see :mod:`arcgym.assets.materials`."""
+    """Tissue preset: ``paper`` (5 MPa), ``in_situ`` (0.5 MPa, 1.5 mm, a mesentery with slack: the sigmoid colon loops)
+    or one of six for sensitivity tables, ``soft_nu045`` to ``stiff_nu049``, see :mod:`arcgym.assets.materials`."""
     wall_model: Literal["shell", "solid"] = "shell"
-    """What the wall is made of: ``shell``, triangles and hinges half way through the wall, or ``solid``, the stage's one
-    layer of tetrahedra. Linear tetrahedra lock in bending: pinched, the solid is an order of magnitude too stiff (see
-    the row ``wall_ring`` of ``scripts/benchmarks/fidelity.py``); choose it to compare with other tetrahedral models."""
+    """What the wall is made of: ``shell``, triangles and hinges half way through the wall, or ``solid``, the stage's
+    one layer of tetrahedra. Linear tetrahedra lock in bending: pinched, the solid is an order of magnitude too stiff
+    (see the row ``wall_ring`` of ``scripts/benchmarks/fidelity.py``); choose it to compare with other tetrahedral
+    models."""
     wall_thickness: float | None = None
     """Thickness of a shell [m], over the preset's; ``None`` without a preset's takes the stage's."""
     rigid: bool = False
-    """Hold the whole wall still: contact as with a rigid colon, and no cost of the wall."""
+    """Hold the whole wall still: contact as with a rigid colon, and no cost of the wall. To hold the wall in some
+    worlds only, at full cost, use :meth:`arcgym.assets.Colon.write_rigid_to_sim`."""
     youngs_modulus: float | None = None
     """Young's modulus [Pa], over the preset's."""
     poissons_ratio: float | None = None
@@ -34,6 +37,13 @@ class ColonCfg:
     density: float | None = None
     """Mass density [kg/m^3], over the preset's."""
     anchor_stiffness: dict[str, float] = {}
-    """Attachment stiffness per length of colon [N/m^2] for some segments, over the preset's. 0 sets a segment free."""
+    """Stiffness of the tight attachment per length of colon [N/m^2] for some segments, over the preset's. 0 sets a
+    segment free."""
+    anchor_slack: dict[str, float] = {}
+    """Way that some segments move, half way along, before their attachment gets tight [m], over the preset's. 0 holds
+    the segment as a plain spring."""
+    anchors: Literal["sparse", "default", "dense"] = "default"
+    """Factor on all anchor springs: 1/4, 1 or 4. Change it, or randomise it with the event
+    :func:`arcgym.envs.mdp.randomize_anchors`, to see how much a policy depends on how firmly the colon is held."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""

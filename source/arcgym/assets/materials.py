@@ -26,6 +26,26 @@ ANCHOR_STIFFNESS = {
 segments are held, the sigmoid and the transverse colon hang in their mesentery. Chosen so that a scripted insertion
 moves the sigmoid by centimetres and the descending colon by millimetres; no published values are known to us."""
 
+MESOCOLON_HEIGHT = {"sigmoid": 0.063, "transverse": 0.074}
+"""Height of the mesentery [m]: 6.3 +- 2.6 cm and 7.4 +- 3.6 cm in 35 cadavers (Annals of the Royal College of Surgeons
+of England, 2015). A colon that swings about its mesentery's root can move by twice the height to a side and not at
+all straight away from it; the height itself stands for all directions as the slack half way along the segment."""
+
+MESENTERY_STRETCHING = 500.0
+"""Young's modulus times thickness of a mesentery [N/m]: 0.5 MPa (porcine mesocolon, fascia and peritoneum: 0.09 to 6.9
+MPa, White et al., Mechanical characterisation of porcine non-intestinal colorectal tissues) of 1 mm, our choice."""
+
+MESENTERY_ANCHORS = {name: MESENTERY_STRETCHING / height for name, height in MESOCOLON_HEIGHT.items()}
+"""Stiffness of a tight mesentery per length of colon, E t / h [N/m^2]: 7.9e3 and 6.8e3."""
+
+HANGING_STIFFNESS = 30.0
+"""What draws a colon back within the slack, per length [N/m^2]: a pendulum of the wall's weight, 2 pi 20 mm * 1.5 mm *
+1000 kg/m^3 * g = 1.85 N/m, on 63 mm of mesentery."""
+
+ANCHOR_SCALES = {"sparse": 0.25, "default": 1.0, "dense": 4.0}
+"""Factor on every anchor spring. The ARCGym paper compares sparse, default and dense anchors of the wall's mesh; an
+anchored ring of every four, smeared over the length, is a quarter of the stiffness. The factors are ours."""
+
 
 @dataclass(frozen=True)
 class TissuePreset:
@@ -40,15 +60,41 @@ class TissuePreset:
     thickness: float | None = None
     """Thickness of the wall [m], where it is a shell."""
     anchor_stiffness: dict[str, float] = field(default_factory=lambda: dict(ANCHOR_STIFFNESS))
-    """Attachment stiffness per length of colon [N/m^2], by segment."""
+    """Stiffness of the tight attachment per length of colon [N/m^2], by segment."""
+    anchor_slack: dict[str, float] = field(default_factory=dict)
+    """Way that the colon moves before its attachment gets tight [m], half way along the segment; 0 if not named."""
+    anchor_loose: float = HANGING_STIFFNESS
+    """Stiffness within the slack, per length of colon [N/m^2]."""
 
+
+SENSITIVITY_MODULI = {"soft": 0.5e6, "medium": 5.0e6, "stiff": 50.0e6}
+"""Young's moduli of the sensitivity presets [Pa]: a decade to either side of the ARCGym paper's 5 MPa."""
+SENSITIVITY_RATIOS = {"nu045": 0.45, "nu049": 0.49}
+"""Poisson's ratios of the sensitivity presets."""
 
 TISSUE_PRESETS = {
     "paper": TissuePreset(youngs_modulus=5.0e6, poissons_ratio=0.49),
-    "in_situ": TissuePreset(youngs_modulus=0.7e6, poissons_ratio=0.45),
+    "in_situ": TissuePreset(
+        youngs_modulus=0.5e6,
+        poissons_ratio=0.49,
+        thickness=1.5e-3,
+        anchor_stiffness={**ANCHOR_STIFFNESS, **MESENTERY_ANCHORS},
+        anchor_slack=dict(MESOCOLON_HEIGHT),
+    ),
+    **{
+        f"{hardness}_{name}": TissuePreset(youngs_modulus=modulus, poissons_ratio=ratio)
+        for hardness, modulus in SENSITIVITY_MODULI.items()
+        for name, ratio in SENSITIVITY_RATIOS.items()
+    },
 }
 """``paper``: 5 MPa and 0.49, the ARCGym paper (human rectum and sigmoid: 5.18 MPa, Christensen et al. 2015).
-``in_situ``: 0.7 MPa, between the quasi-static moduli of Massalou et al. (1.76 lengthwise, 0.63 around)."""
+
+``in_situ``: a distended wall of 1.5 mm (under 3 mm in CT), 0.5 MPa, just below the quasi-static moduli of Massalou et
+al. (1.76 MPa lengthwise, 0.63 around) since a scope's small strains lie at the foot of their curves, and a mesentery
+with slack, so that the sigmoid colon can loop.
+
+``soft_nu045`` ... ``stiff_nu049``: six settings for sensitivity tables, {0.5, 5, 50} MPa x {0.45, 0.49} with the
+anchors of ``paper``. The ARCGym paper has six as well; that these are the same is not known to us."""
 
 
 def solid_moduli(youngs_modulus: Value, poissons_ratio: Value) -> tuple[Value, Value, Value]:
@@ -77,3 +123,14 @@ def tissue_preset(name: str) -> TissuePreset:
     if name not in TISSUE_PRESETS:
         raise ValueError(f"There is no tissue preset {name!r}; choose from {sorted(TISSUE_PRESETS)}.")
     return TISSUE_PRESETS[name]
+
+
+def anchor_scale(name: str) -> float:
+    """Factor on the anchor springs by name.
+
+    Raises:
+        ValueError: If there is none of that name.
+    """
+    if name not in ANCHOR_SCALES:
+        raise ValueError(f"There are no {name!r} anchors; choose from {list(ANCHOR_SCALES)}.")
+    return ANCHOR_SCALES[name]

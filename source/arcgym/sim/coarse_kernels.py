@@ -3,12 +3,13 @@
 """Coarse correction of the wall: every ring moves in a few modes, x_i += R_r sum_k b_ik c_k, with R_r its rotation.
 
 The modes turn with their ring, so the elastic matrix is the rest matrix for every pose; inertia and isotropic anchors
-do not turn at all. Only the contacts at hand are added in each step. Launch dimensions: R rings, V wall vertices,
-W worlds last.
+do not turn at all. Anchors with slack are taken at the shift of the ring's centre. Only the contacts at hand are added
+in each step. Launch dimensions: R rings, V wall vertices, W worlds last.
 """
 
 import warp as wp
 
+from arcgym.sim.anchor_kernels import secant_share
 from arcgym.sim.chain_kernels import MODES, Unknowns
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, touch
 from arcgym.sim.geometry_kernels import corner_point
@@ -28,13 +29,23 @@ class RingSpace:
     stiffness: wp.array4d(dtype=float)  # diagonal blocks of the three elastic parts [N/m], shape (3, R, M, M)
     coupling: wp.array4d(dtype=float)  # blocks to the next ring [N/m], shape (3, R, M, M)
     mass: wp.array3d(dtype=float)  # [kg], shape (R, M, M)
-    anchor: wp.array3d(dtype=float)  # [N/m], shape (R, M, M)
+    anchor: wp.array3d(dtype=float)  # tight springs [N/m], shape (R, M, M)
+    loose: wp.array(dtype=float)  # share of them within the slack, shape (R,)
+    slack: wp.array(dtype=float)  # [m], shape (R,)
+    rest_centre: wp.array(dtype=wp.vec3)  # mean rest position of the ring's vertices [m], shape (R,)
 
 
 @wp.kernel
-def ring_rotations(x: wp.array2d(dtype=wp.vec3), space: RingSpace, rotation: wp.array2d(dtype=wp.mat33)):
-    """Rotation of each ring since rest. Launch (R, W)."""
+def ring_rotations(
+    x: wp.array2d(dtype=wp.vec3),
+    space: RingSpace,
+    rotation: wp.array2d(dtype=wp.mat33),
+    shift: wp.array2d(dtype=wp.vec3),
+):
+    """Rotation of each ring since rest, and shift of its centre [m]. Launch (R, W)."""
     r, w = wp.tid()
+    total = wp.vec3(0.0)
+    count = float(0.0)
     p = wp.vec3(0.0)
     q = wp.vec3(0.0)
     for k in range(space.members.shape[1]):
@@ -42,6 +53,9 @@ def ring_rotations(x: wp.array2d(dtype=wp.vec3), space: RingSpace, rotation: wp.
         if i >= 0:
             p += space.frame_weights[i][0] * x[i, w]
             q += space.frame_weights[i][1] * x[i, w]
+            total += x[i, w]
+            count += 1.0
+    shift[r, w] = total / count - space.rest_centre[r]
     p = wp.normalize(p)
     q = wp.normalize(q - p * wp.dot(p, q))
     rotation[r, w] = wp.matrix_from_cols(p, q, wp.cross(p, q)) * wp.transpose(space.rest_frame[r])
@@ -58,15 +72,28 @@ def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.
     return out
 
 
+@wp.func
+def anchor_entry(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int, c: int) -> float:
+    """Stiffness of the anchors of ring ``r`` between its modes ``a`` and ``c`` [N/m], see ``anchor_hessian``."""
+    d = wp.length(shift)
+    secant = secant_share(d, space.loose[r], space.slack[r])
+    entry = secant * space.anchor[r, a, c]
+    if a < 3 and c < 3 and secant < 1.0 and d > space.slack[r]:
+        along = back * shift
+        entry += (1.0 - secant) * space.anchor[r, 0, 0] * along[a] * along[c] / (d * d)
+    return entry
+
+
 @wp.kernel
 def assemble(
     x: wp.array2d(dtype=wp.vec3),
     force: wp.array2d(dtype=wp.vec3),
     space: RingSpace,
     rotation: wp.array2d(dtype=wp.mat33),
+    shift: wp.array2d(dtype=wp.vec3),
     tissue: Tissue,
     inv_dt2: float,
-    shift: float,
+    regularisation: float,
     records: ContactRecords,
     links: LinkShapes,
     law: ContactLaw,
@@ -80,15 +107,15 @@ def assemble(
     r, a, w = wp.tid()
     rings = space.mass.shape[0]
     moduli = tissue.moduli[w]
+    back = wp.transpose(rotation[r, w])
     own_row = Unknowns()
     next_row = Unknowns()
     for c in range(MODES):
-        own_row[c] = inv_dt2 * space.mass[r, a, c] + tissue.anchor[w] * space.anchor[r, a, c]
+        own_row[c] = inv_dt2 * space.mass[r, a, c] + tissue.anchor[w] * anchor_entry(space, shift[r, w], back, r, a, c)
         for part in range(3):
             own_row[c] = own_row[c] + moduli[part] * space.stiffness[part, r, a, c]
             next_row[c] = next_row[c] + moduli[part] * space.coupling[part, r, a, c]
-    own_row[a] = own_row[a] * (1.0 + shift) + 1.0e-6
-    back = wp.transpose(rotation[r, w])
+    own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
     total = float(0.0)
     for k in range(space.members.shape[1]):
         v = space.members[r, k]

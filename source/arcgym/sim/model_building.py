@@ -72,7 +72,7 @@ def _shell(shell: ShellMesh) -> ShellParameters:
 
 def wall_modes(wall: WallParameters) -> RingModes:
     """Ring modes of the wall."""
-    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor, wall.elements.parts)
+    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness, wall.elements.parts)
 
 
 def wall_lumen(colon: Colon) -> LumenTopology:

@@ -19,6 +19,7 @@ import newton
 from newton.solvers import SolverMuJoCo, SolverVBD
 from newton.solvers.experimental.coupled import SolverCoupledProxy
 
+from arcgym.assets.anchors import AnchorSprings
 from arcgym.sim import model_building, newton_kernels
 from arcgym.sim.simulation_cfg import SimulationCfg
 
@@ -59,7 +60,7 @@ class NewtonCoupling:
         mobile = sim.colon.mobile()
         for i in np.flatnonzero(~mobile):
             _hold(world, int(i))
-        springs = sim.colon.anchor_springs()
+        springs = sim.colon.anchor_scale * _linear_springs(sim.colon.anchor_springs())
         for i in np.flatnonzero((springs > 0.0) & mobile):
             fixed = world.add_particle(world.particle_q[i], (0.0, 0.0, 0.0), mass=0.0, radius=ANCHOR_RADIUS)
             _hold(world, fixed)
@@ -152,3 +153,9 @@ class NewtonCoupling:
 def _hold(builder: newton.ModelBuilder, particle: int) -> None:
     builder.particle_mass[particle] = 0.0
     builder.particle_flags[particle] &= ~int(newton.ParticleFlags.ACTIVE)
+
+
+def _linear_springs(springs: AnchorSprings) -> np.ndarray:
+    if springs.slack.any():
+        raise ValueError("SimulationCfg.solver='newton' has no anchors with slack; choose material='paper'.")
+    return springs.stiffness

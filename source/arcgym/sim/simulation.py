@@ -82,7 +82,8 @@ class Simulation:
         self.ring_centres = self.contact.centres
         self.friction: torch.Tensor = wp.to_torch(self.contact.friction)
         self.moduli: torch.Tensor = wp.to_torch(self.wall.tissue.moduli)
-        self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor)
+        self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor).fill_(colon.anchor_scale)
+        self.rigid: torch.Tensor = wp.to_torch(self.wall.tissue.rigid)
         self._graph: wp.Graph | None = None
         self._eager_steps = 0
         colon.bind(self)
@@ -180,7 +181,8 @@ class Simulation:
             [self.step_force, self.wall_force, self.wall_force_peak],
             device=self.device,
         )
-        self.wall_readout.measure(self.nodal_pos)
+        if self.wall.moves:
+            self.wall_readout.measure(self.nodal_pos)
 
     def forward(self) -> None:
         """Recompute link poses, ring centres, tip and camera after the state was written to."""

@@ -86,12 +86,12 @@ def sweep_colour(
 ):
     """One Newton step of every vertex of one colour, in place. Launch (len(colour), W)."""
     k, w = wp.tid()
+    if tissue.rigid[w] == 1:
+        return
     i = colour[k]
     block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
     block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
-    block = add_contact(
-        block, records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w
-    )
+    block = add_contact(block, records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w)
     x[i, w] = x[i, w] + wp.inverse(block.hessian) * block.force
 
 
@@ -113,7 +113,7 @@ def residual(
     """Total force on every mobile vertex, friction left out. Launch (V, W)."""
     i, w = wp.tid()
     block = VertexBlock()
-    if nodes.mobile[i] == 1:
+    if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
         block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
         block = add_contact(block, records, links, law, 0.0, link_count, dt, x, x, body_q, body_q, i, w)

@@ -7,6 +7,7 @@ W worlds, V wall vertices, F lumen faces, R rings. Arrays over worlds are world-
 
 import warp as wp
 
+from arcgym.sim.anchor_kernels import Anchors, anchor_pull
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -18,8 +19,7 @@ class RestRings:
     inverse: wp.array(dtype=wp.vec3)  # (1 / a, b / a, 1 / h) of each face at rest, see face_strain, shape (F,)
     face_start: wp.array(dtype=int)  # first face of each ring, shape (R + 1,)
     anchored: wp.array(dtype=int)  # vertices held by a spring, shape (A,)
-    stiffness: wp.array(dtype=float)  # spring of each of them [N/m], shape (A,)
-    rest: wp.array(dtype=wp.vec3)  # rest position of each of them [m], shape (A,)
+    anchors: Anchors
     anchor_start: wp.array(dtype=int)  # first anchored vertex of each ring, shape (R + 1,)
 
 
@@ -57,7 +57,8 @@ def measure_rings(
         largest = wp.max(largest, face_strain(x[f[0], w], x[f[1], w], x[f[2], w], rings.inverse[k]))
     pull = wp.vec3(0.0)
     for k in range(rings.anchor_start[r], rings.anchor_start[r + 1]):
-        pull += rings.stiffness[k] * (x[rings.anchored[k], w] - rings.rest[k])
+        i = rings.anchored[k]
+        pull += anchor_pull(rings.anchors, i, x[i, w])
     net = anchor_scale[w] * wp.length(pull)
     strain[r, w] = strain[r, w] + largest
     strain_peak[r, w] = wp.max(strain_peak[r, w], largest)

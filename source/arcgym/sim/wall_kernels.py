@@ -8,6 +8,7 @@ neighbouring worlds, read neighbouring memory.
 
 import warp as wp
 
+from arcgym.sim.anchor_kernels import Anchors, anchor_hessian, anchor_pull
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, slip_scale, touch
 from arcgym.sim.geometry_kernels import corner_point
 from arcgym.utils import warp_setup  # noqa: F401
@@ -19,8 +20,7 @@ class WallNodes:
 
     mass: wp.array(dtype=float)  # [kg], shape (V,)
     mobile: wp.array(dtype=int)  # 1 where the vertex moves, shape (V,)
-    anchor: wp.array(dtype=float)  # spring to the rest position [N/m], shape (V,)
-    rest: wp.array(dtype=wp.vec3)  # rest positions [m], shape (V,)
+    anchors: Anchors
 
 
 @wp.struct
@@ -29,6 +29,7 @@ class Tissue:
 
     moduli: wp.array(dtype=wp.vec3)  # shear, second Lame parameter, bending: solid [Pa, Pa, -], shell [N/m, N/m, N m]
     anchor: wp.array(dtype=float)  # factor on the anchor springs, shape (W,)
+    rigid: wp.array(dtype=int)  # 1 where the whole wall stays where it is, shape (W,)
 
 
 @wp.struct
@@ -45,10 +46,10 @@ def inertia_and_anchor(
 ) -> VertexBlock:
     """Block of the vertex's inertia and of its spring to the rest position."""
     inertia = nodes.mass[i] * inv_dt2
-    spring = nodes.anchor[i] * tissue.anchor[w]
+    scale = tissue.anchor[w]
     block = VertexBlock()
-    block.force = inertia * (inertial - x) - spring * (x - nodes.rest[i])
-    block.hessian = (inertia + spring) * wp.identity(n=3, dtype=float)
+    block.force = inertia * (inertial - x) + scale * anchor_pull(nodes.anchors, i, x)
+    block.hessian = inertia * wp.identity(n=3, dtype=float) + scale * anchor_hessian(nodes.anchors, i, x)
     return block
 
 
@@ -103,6 +104,7 @@ def predict(
     x: wp.array2d(dtype=wp.vec3),
     v: wp.array2d(dtype=wp.vec3),
     nodes: WallNodes,
+    tissue: Tissue,
     decay: float,
     dt: float,
     x_prev: wp.array2d(dtype=wp.vec3),
@@ -112,7 +114,7 @@ def predict(
     i, w = wp.tid()
     target = x[i, w]
     x_prev[i, w] = target
-    if nodes.mobile[i] == 1:
+    if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
         target += decay * dt * v[i, w]
     inertial[i, w] = target
     x[i, w] = target

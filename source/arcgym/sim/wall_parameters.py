@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from arcgym.assets.anchors import AnchorSprings
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim import shell_kernels, solid_kernels
+from arcgym.sim.anchor_kernels import Anchors
 from arcgym.sim.ring_modes import ElasticPart
 from arcgym.sim.wall_kernels import WallNodes
 from arcgym.sim.wall_topology import vertex_entries
@@ -52,8 +54,8 @@ class WallParameters:
     """Vertex masses [kg], shape (V,)."""
     mobile: np.ndarray
     """Whether each vertex moves, shape (V,), bool."""
-    anchor: np.ndarray
-    """Spring of each vertex to its rest position [N/m], shape (V,)."""
+    anchor: AnchorSprings
+    """Spring of each vertex to its rest position."""
     ring: np.ndarray
     """Ring of each vertex, shape (V,)."""
     colours: list[np.ndarray]
@@ -65,9 +67,17 @@ def wall_nodes(wall: WallParameters, device: str) -> WallNodes:
     nodes = WallNodes()
     nodes.mass = wp.array(wall.mass, dtype=float, device=device)
     nodes.mobile = wp.array(wall.mobile.astype(np.int32), dtype=int, device=device)
-    nodes.anchor = wp.array(wall.anchor, dtype=float, device=device)
-    nodes.rest = wp.array(wall.points, dtype=wp.vec3, device=device)
+    nodes.anchors = wall_anchors(wall.points, wall.anchor, device)
     return nodes
+
+
+def wall_anchors(points: np.ndarray, springs: AnchorSprings, device: str) -> Anchors:
+    """Anchor springs to ``points`` [m], shape (V, 3), on the device."""
+    anchors = Anchors()
+    for name in ("stiffness", "loose", "slack"):
+        setattr(anchors, name, wp.array(getattr(springs, name), dtype=float, device=device))
+    anchors.rest = wp.array(points, dtype=wp.vec3, device=device)
+    return anchors
 
 
 def wall_elements(wall: WallParameters, device: str) -> tuple[ModuleType, Any]:

@@ -8,7 +8,9 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.assets.anchors import AnchorSprings
 from arcgym.sim.strain_kernels import RestRings, measure_rings
+from arcgym.sim.wall_parameters import wall_anchors
 from arcgym.sim.wall_topology import LumenTopology
 
 
@@ -29,7 +31,7 @@ class WallReadout:
         topology: LumenTopology,
         points: np.ndarray,
         ring: np.ndarray,
-        anchor: np.ndarray,
+        anchor: AnchorSprings,
         anchor_scale: wp.array,
         device: str,
     ):
@@ -39,7 +41,7 @@ class WallReadout:
             topology: Lumen faces of one world.
             points: Rest positions [m], shape (V, 3).
             ring: Ring of each vertex, shape (V,).
-            anchor: Spring of each vertex to its rest position [N/m], shape (V,).
+            anchor: Spring of each vertex to its rest position.
             anchor_scale: Factor of all springs of each world, read at every measurement, shape (W,).
             device: Warp device.
         """
@@ -73,9 +75,9 @@ class WallReadout:
 
 
 def _rest_rings(
-    topology: LumenTopology, points: np.ndarray, ring: np.ndarray, anchor: np.ndarray, device: str
+    topology: LumenTopology, points: np.ndarray, ring: np.ndarray, anchor: AnchorSprings, device: str
 ) -> RestRings:
-    held = np.flatnonzero(anchor > 0.0)
+    held = np.flatnonzero(anchor.stiffness > 0.0)
     held = held[np.argsort(ring[held], kind="stable")]
     count = len(topology.ring_start) - 1
     rings = RestRings()
@@ -83,8 +85,7 @@ def _rest_rings(
     rings.inverse = wp.array(inverse_rest(points[topology.faces]), dtype=wp.vec3, device=device)
     rings.face_start = wp.array(topology.ring_start, dtype=int, device=device)
     rings.anchored = wp.array(held.astype(np.int32), dtype=int, device=device)
-    rings.stiffness = wp.array(anchor[held], dtype=float, device=device)
-    rings.rest = wp.array(points[held], dtype=wp.vec3, device=device)
+    rings.anchors = wall_anchors(points, anchor, device)
     start = np.searchsorted(ring[held], np.arange(count + 1)).astype(np.int32)
     rings.anchor_start = wp.array(start, dtype=int, device=device)
     return rings

@@ -15,6 +15,7 @@ from arcgym.sim.contact import ContactSearch
 from arcgym.sim.ring_modes import MODES, RingModes
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall_parameters import WallParameters, wall_elements, wall_nodes
+from arcgym.sim.wall_topology import ring_mean
 
 REGULARISATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
@@ -42,6 +43,7 @@ class WallSolver:
         """
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
         self.vertex_count, self.ring_count = len(wall.points), len(modes.mass)
+        self.moves = bool(wall.mobile.any())
         self.nodes = wall_nodes(wall, device)
         self.kernels, self.elements = wall_elements(wall, device)
         self.space = self._space(wall, modes)
@@ -51,11 +53,13 @@ class WallSolver:
         self.tissue = wall_kernels.Tissue()
         self.tissue.moduli = wp.array(np.tile(wall.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
         self.tissue.anchor = wp.ones(num_envs, dtype=float, device=device)
+        self.tissue.rigid = wp.zeros(num_envs, dtype=int, device=device)
         count, rings = (self.vertex_count, num_envs), (self.ring_count, num_envs)
         self.x_prev = wp.zeros(count, dtype=wp.vec3, device=device)
         self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
+        self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
         self.chain = ChainSolver(num_envs, self.ring_count, device)
 
     def _space(self, wall: WallParameters, modes: RingModes) -> coarse_kernels.RingSpace:
@@ -65,6 +69,9 @@ class WallSolver:
         space.frame_weights = wp.array(modes.frame_weights, dtype=wp.vec2, device=self.device)
         space.members = wp.array(modes.members, dtype=int, device=self.device)
         space.rest_frame = wp.array(modes.rest_frame, dtype=wp.mat33, device=self.device)
+        space.loose = wp.array(ring_mean(wall.anchor.loose, wall.ring), dtype=float, device=self.device)
+        space.slack = wp.array(ring_mean(wall.anchor.slack, wall.ring), dtype=float, device=self.device)
+        space.rest_centre = wp.array(ring_mean(wall.points, wall.ring), dtype=wp.vec3, device=self.device)
         for name in ("stiffness", "coupling", "mass", "anchor"):
             setattr(space, name, wp.array(getattr(modes, name), dtype=float, device=self.device))
         return space
@@ -79,12 +86,14 @@ class WallSolver:
             body_q: Link poses at the end of the step, shape (W*L,).
             body_q_prev: Link poses at its start, shape (W*L,).
         """
+        if not self.moves:
+            return
         shape = (self.vertex_count, self.num_envs)
         decay = math.exp(-self.cfg.drag * self.dt)
         wp.launch(
             wall_kernels.predict,
             shape,
-            [x, v, self.nodes, decay, self.dt, self.x_prev, self.inertial],
+            [x, v, self.nodes, self.tissue, decay, self.dt, self.x_prev, self.inertial],
             device=self.device,
         )
         for _ in range(self.cfg.repeats):
@@ -113,11 +122,14 @@ class WallSolver:
             [self.nodes, self.elements, self.tissue, self.dt, self.inertial, *touching, x, self.force],
             device=self.device,
         )
-        wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation], device=self.device)
-        args = [x, self.force, self.space, self.rotation, self.tissue, 1.0 / self.dt**2, REGULARISATION]
+        wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
+        args = [x, self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
         args += [*touching, self.chain.diagonal, self.chain.upper, self.chain.rhs]
         wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
         self.chain.solve()
         wp.launch(
-            coarse_kernels.prolong, shape, [self.space, self.rotation, self.chain.rhs, self.cfg.largest_move, x], device=self.device
+            coarse_kernels.prolong,
+            shape,
+            [self.space, self.rotation, self.chain.rhs, self.cfg.largest_move, x],
+            device=self.device,
         )

@@ -70,6 +70,13 @@ def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool)
     return out
 
 
+def ring_mean(values: np.ndarray, ring: np.ndarray) -> np.ndarray:
+    """Mean over each ring's vertices of ``values``, shape (V, ...), with ``ring`` (V,); shape (R, ...)."""
+    out = np.zeros((int(ring.max()) + 1, *values.shape[1:]))
+    np.add.at(out, ring, values)
+    return out / np.bincount(ring).reshape(-1, *[1] * (values.ndim - 1))
+
+
 def face_neighbors(faces: np.ndarray) -> np.ndarray:
     """Face across the edge opposite to each corner, or -1 at a border, shape (F, 3), int32."""
     edges = np.sort(np.stack([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]], axis=1), axis=2).reshape(-1, 2)
