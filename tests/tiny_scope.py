@@ -27,6 +27,7 @@ def tiny_scope_spec(kind: str = "proximal", links: int = 6) -> EndoscopeSpec:
         link_radius=spec.link_radius[kept],
         link_mass=spec.link_mass[kept],
         bending_rigidity=spec.bending_rigidity[hinges],
+        torsional_rigidity=spec.torsional_rigidity[hinges],
         hinge_limit=spec.hinge_limit[hinges],
         bending_links=min(spec.bending_links, tip),
     )

@@ -17,11 +17,13 @@ from arcgym.anatomy import StageError
 from arcgym.assets.endoscope_spec import (
     SHAFT_LINK,
     TIP_LINK,
+    TORSIONAL_RIGIDITY,
     EndoscopeSpec,
     endoscope_specs,
     hinge_axis,
     magnetic_spec,
     proximal_spec,
+    shared_stiffness,
 )
 from arcgym.assets.endoscope_stage import author_endoscopes, read_endoscope
 from arcgym.utils.paths import ASSETS_ENV, assets_dir
@@ -37,7 +39,14 @@ def test_round_trip(spec: EndoscopeSpec) -> None:
     assert stage.bending_links == spec.bending_links
     for name in ("link_length", "link_radius", "link_mass", "lights"):
         np.testing.assert_allclose(getattr(stage, name), getattr(spec, name), rtol=1e-6, err_msg=name)
-    for name in ("hinge_stiffness", "hinge_damping", "hinge_limit", "hinge_armature", "stop_stiffness"):
+    for name in (
+        "hinge_stiffness",
+        "hinge_damping",
+        "hinge_limit",
+        "hinge_armature",
+        "stop_stiffness",
+        "twist_stiffness",
+    ):
         np.testing.assert_allclose(getattr(stage, name), getattr(spec, name), rtol=1e-6, err_msg=name)
     assert stage.camera.position == pytest.approx(spec.camera.position)
     assert stage.camera.quaternion == pytest.approx(spec.camera.quaternion)
@@ -67,6 +76,22 @@ def test_proximal_dimensions() -> None:
     assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / (2 * TIP_LINK))
     assert spec.hinge_limit[-10:][axes == "X"].sum() == pytest.approx(math.radians(180))
     assert spec.hinge_limit[-10:][axes == "Y"].sum() == pytest.approx(math.radians(160))
+
+
+def test_twist_of_the_whole_shaft_is_that_of_its_rigidity() -> None:
+    """Every second hinge twists; their compliances in series are those of the shaft between first and last centre."""
+    spec = proximal_spec()
+    stiffness = spec.twist_stiffness
+    assert (stiffness[0::2] == 0.0).all() and (stiffness[1::2] > 0.0).all()
+    length = spec.total_length - 0.5 * (spec.link_length[0] + spec.link_length[-1])
+    assert (1.0 / stiffness[1::2]).sum() == pytest.approx(length / TORSIONAL_RIGIDITY)
+    assert stiffness[21] == pytest.approx(TORSIONAL_RIGIDITY / (2 * SHAFT_LINK))
+
+
+def test_hinges_behind_the_last_that_twists_go_to_it() -> None:
+    # Compliances 1, 2 and 4 rad/(N m): the second hinge takes over all.
+    stiffness = shared_stiffness(np.array([1.0, 2.0, 4.0]), np.array([False, True, False]))
+    np.testing.assert_allclose(stiffness, [0.0, 1.0 / 7.0, 0.0])
 
 
 def test_magnetic_head_is_stiffer_than_its_tether() -> None:

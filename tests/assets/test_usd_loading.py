@@ -62,7 +62,7 @@ def test_wall_particles_are_the_stage_s_vertices(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "coords", "dofs"), [("capsule", 7, 6), ("magnetic", 2 + 5, 2 + 5), ("proximal", 2 + 5, 2 + 5)]
+    ("kind", "coords", "dofs"), [("capsule", 7, 6), ("magnetic", 2 + 7, 2 + 7), ("proximal", 2 + 7, 2 + 7)]
 )
 def test_root_coordinates_come_first(tmp_path: Path, kind: str, coords: int, dofs: int) -> None:
     path = write_tiny_scope(tmp_path / "scope.usda", kind)
@@ -219,7 +219,7 @@ def test_cantilever_bends_as_euler_bernoulli(tmp_path: Path) -> None:
         wrench[world, -1] = np.r_[across, np.cross(half, across)]
     for state in scope.states:
         state.body_f.assign(wrench.reshape(-1, 6))
-    angles = scope.run(1.0)[:, 2:]
+    angles = scope.run(1.0)[:, scope.stage.bend_coords]
     to_tip = length * np.arange(links - 1, 0, -1)
     deflection = np.abs([angles[0, 0::2] @ to_tip[0::2], angles[1, 1::2] @ to_tip[1::2]])
     stiffness = rigidity / (2 * length)

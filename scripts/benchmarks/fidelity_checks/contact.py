@@ -51,7 +51,6 @@ def contact_force_on_wall(sim: Any) -> np.ndarray:
     """
     import warp as wp
 
-    
     contact, wall, forces = sim.contact, sim.wall, []
     mobile = wp.clone(wall.elements.mobile)
     wall.elements.mobile.fill_(1)
@@ -111,7 +110,7 @@ def follow(sim: Any, tube: Tube, inserted: float) -> None:
     for coordinate in (data.joint_pos, data.joint_pos_target):
         coordinate[:, 0] = inserted - sim.endoscope.rest_insertion
     for hinge, angle in zip(pitch, turn, strict=True):
-        data.joint_pos[:, 2 + int(hinge)] = -float(angle)
+        data.joint_pos[:, int(stage.bend_coords[hinge])] = -float(angle)
     sim.contact.ring.fill_(-1)
     sim.forward()
 

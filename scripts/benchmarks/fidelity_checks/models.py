@@ -149,6 +149,7 @@ def shaft_spec(links: int, **changes: Any) -> EndoscopeSpec:
         link_radius=spec.link_radius[kept],
         link_mass=spec.link_mass[kept],
         bending_rigidity=spec.bending_rigidity[kept][: links - 1],
+        torsional_rigidity=spec.torsional_rigidity[kept][: links - 1],
         hinge_limit=spec.hinge_limit[kept][: links - 1],
         bending_links=0,
         **changes,
@@ -180,6 +181,7 @@ def build(
         path = run.folder / f"tube_{abs(hash(tube))}" / "colon.usda"
         colon_cfg.usd_path = str(path if path.exists() else write_colon(tube_stage(tube), path))
     if isinstance(scope, EndoscopeSpec):
-        scope = EndoscopeCfg(usd_path=str(write_endoscope(scope, run.folder / "scope.usda")))
+        path = run.folder / f"scope_{len(list(run.folder.glob('scope_*')))}.usda"  # USD keeps a file it has once read
+        scope = EndoscopeCfg(usd_path=str(write_endoscope(scope, path)))
     scope = replace(scope, **endoscope or {})
     return Simulation(SimulationCfg(device=run.device, **changes), Colon(colon_cfg), Endoscope(scope), num_envs)

@@ -34,7 +34,8 @@ def energy(run: Run) -> list[Row]:
     sim, _ = shaft_in_air(run, 1, **changes)
     hinges = np.arange(1, LINKS)
     bent = 0.1 * np.cos(np.pi * hinges / LINKS) * np.where(hinges % 2, 1.0, 0.6)
-    sim.endoscope.data.joint_pos[0, 2:] = sim.endoscope.data.joint_pos.new_tensor(bent)
+    joint_pos = sim.endoscope.data.joint_pos
+    joint_pos[0, sim.endoscope.stage.bend_coords] = joint_pos.new_tensor(bent)
     sim.forward()
     times, values = [0.0], [total_energy(sim)]
     for _ in range(120):
@@ -64,7 +65,8 @@ def total_energy(sim: Any) -> float:
     kinetic = (mass * data.body_lin_vel_w[0].square().sum(dim=1)).sum()
     kinetic = kinetic + torch.einsum("li,lij,lj->", spin, inertia, spin)
     kinetic = kinetic + (wp.to_torch(model.joint_armature) * data.joint_vel[0].square()).sum()
-    drives = [stage.slide_drive.stiffness, stage.roll_drive.stiffness, *stage.hinge_stiffness]
+    hinges = stage.by_turn(stage.hinge_stiffness, stage.twist_stiffness)
+    drives = [stage.slide_drive.stiffness, stage.roll_drive.stiffness, *hinges]
     stretch = data.joint_pos[0] - data.joint_pos_target[0]
     elastic = (torch.tensor(drives, dtype=torch.float32, device=sim.device) * stretch.square()).sum()
     return 0.5 * float(kinetic + elastic)

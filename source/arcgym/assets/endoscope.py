@@ -14,7 +14,7 @@ import warp as wp
 
 from arcgym.assets.endoscope_cfg import EndoscopeCfg
 from arcgym.assets.endoscope_data import EndoscopeData
-from arcgym.assets.endoscope_spec import capsule_half_height
+from arcgym.assets.endoscope_spec import capsule_half_height, shared_stiffness
 from arcgym.assets.endoscope_stage import read_endoscope
 from arcgym.assets.usd_loading import add_endoscope_usd
 from arcgym.utils.paths import resolve_asset
@@ -56,9 +56,9 @@ class Endoscope:
 
     @property
     def joint_names(self) -> list[str]:
-        """Names of the joint coordinates: the root's, then one a hinge."""
+        """Names of the joint coordinates: the root's, then those of each hinge, its bending before its twist."""
         root = ("slide", "roll") if self.stage.root == "slide_roll" else FREE_COORDS
-        return [*root, *(f"hinge_{i}" for i in range(1, self.num_bodies))]
+        return [*root, *(f"{'twist' if twist else 'hinge'}_{hinge}" for hinge, twist in self.stage.turns)]
 
     @property
     def num_joints(self) -> int:
@@ -94,7 +94,7 @@ class Endoscope:
             builder.body_inertia[body] = builder.body_inertia[body] * mass_scaling
             builder.body_inv_mass[body] /= mass_scaling
             builder.body_inv_inertia[body] = builder.body_inv_inertia[body] / mass_scaling
-        self._override_rigidity(builder, loaded.dofs[len(loaded.dofs) - self.num_bodies + 1 :])
+        self._override_rigidity(builder, loaded.dofs)
         if self.kind == "proximal":
             limits = (self.cfg.insertion_force_limit, self.cfg.roll_torque_limit)
             for dof, limit in zip(loaded.dofs, limits, strict=False):
@@ -104,17 +104,17 @@ class Endoscope:
         self._rest_insertion = float(last[2]) + self.tip_offset
 
     def _override_rigidity(self, builder: newton.ModelBuilder, dofs: Sequence[int]) -> None:
-        length = self.stage.link_length
-        lever = 0.5 * (length[:-1] + length[1:])
-        first_bent = len(dofs) - self.stage.bending_links
-        for hinge, dof in enumerate(dofs):
-            rigidity = self.cfg.tip_rigidity if hinge >= first_bent else self.cfg.shaft_rigidity
-            if rigidity is not None:
-                factor = rigidity / (2.0 * lever[hinge]) / builder.joint_target_ke[dof]
-                for values in (builder.joint_target_ke, builder.joint_target_kd, builder.joint_armature):
-                    values[dof] *= factor
-                for values in (builder.joint_limit_ke, builder.joint_limit_kd):
-                    values[dof] *= factor
+        stage, cfg = self.stage, self.cfg
+        lever = 0.5 * (stage.link_length[:-1] + stage.link_length[1:])
+        first_bent = stage.num_links - stage.bending_links
+        twist = shared_stiffness(lever / (cfg.torsional_rigidity or 1.0), stage.twist_stiffness > 0.0)
+        for dof, (hinge, twists) in zip(dofs[len(dofs) - len(stage.turns) :], stage.turns, strict=True):
+            rigidity = cfg.tip_rigidity if hinge >= first_bent else cfg.shaft_rigidity
+            stiffness = None if rigidity is None else rigidity / (2.0 * lever[hinge - 1])
+            if twists:
+                stiffness = None if cfg.torsional_rigidity is None else twist[hinge - 1]
+            if stiffness is not None:
+                _scale_turn(builder, dof, stiffness / builder.joint_target_ke[dof])
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
@@ -184,3 +184,9 @@ class Endoscope:
     def write_friction_to_sim(self, mu: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Set the friction coefficient between scope and wall, shape (n,), in the worlds ``env_ids``."""
         self._friction[slice(None) if env_ids is None else env_ids] = mu
+
+
+def _scale_turn(builder: newton.ModelBuilder, dof: int, factor: float) -> None:
+    """Scale all that belongs to the elasticity of a degree of freedom."""
+    for name in ("target_ke", "target_kd", "armature", "limit_ke", "limit_kd"):
+        getattr(builder, f"joint_{name}")[dof] *= factor

@@ -53,6 +53,8 @@ class EndoscopeCfg:
     """Bending rigidity EI of the hinges behind the bending section [N m^2], over the stage's."""
     tip_rigidity: float | None = None
     """Bending rigidity EI of the bending section [N m^2], over the stage's."""
+    torsional_rigidity: float | None = None
+    """Torsional rigidity GJ of the whole scope [N m^2/rad], over the stage's."""
     insertion_force_limit: float | None = None
     """Largest push on the base [N], over the stage's 25 N. Clinical peaks reach 43 N (Appleyard et al. 2000)."""
     roll_torque_limit: float | None = None

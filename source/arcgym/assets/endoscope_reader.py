@@ -23,7 +23,14 @@ from arcgym.assets.endoscope_spec import (
     capsule_half_height,
     hinge_axis,
 )
-from arcgym.assets.endoscope_writer import ENDOSCOPE_PATH, JOINTS_PATH, LINKS_PATH, ROOT_JOINT_PATH, hinge_name
+from arcgym.assets.endoscope_writer import (
+    ENDOSCOPE_PATH,
+    JOINTS_PATH,
+    LINKS_PATH,
+    ROOT_JOINT_PATH,
+    hinge_name,
+    twist_name,
+)
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,12 @@ class EndoscopeStage:
     """Armature inertia of each hinge [kg m^2], shape (L - 1,)."""
     stop_stiffness: np.ndarray
     """Stiffness of each hinge beyond its limit [N m/rad], shape (L - 1,)."""
+    twist_stiffness: np.ndarray
+    """Stiffness of the twist at each hinge [N m/rad], 0 at those that do not twist, shape (L - 1,)."""
+    twist_damping: np.ndarray
+    """Damping of the twist at each hinge [N m s/rad], shape (L - 1,)."""
+    twist_limit: np.ndarray
+    """Largest twist at each hinge to either side [rad], shape (L - 1,)."""
     slide_drive: DriveSpec | None
     """Drive of the root along Z; None for a free root."""
     roll_drive: DriveSpec | None
@@ -74,6 +87,26 @@ class EndoscopeStage:
     def total_length(self) -> float:
         """Sum of the link lengths [m]."""
         return float(self.link_length.sum())
+
+    @property
+    def root_coords(self) -> int:
+        """Joint coordinates of the root."""
+        return 2 if self.root == "slide_roll" else 7
+
+    @property
+    def turns(self) -> list[tuple[int, bool]]:
+        """(hinge number, whether it is its twist) of every joint coordinate behind the root's."""
+        hinges = enumerate(self.twist_stiffness, start=1)
+        return [(hinge, twist) for hinge, k in hinges for twist in ((False, True) if k > 0.0 else (False,))]
+
+    @property
+    def bend_coords(self) -> np.ndarray:
+        """Joint coordinate of the bending of each hinge, shape (L - 1,)."""
+        return self.root_coords + np.flatnonzero([not twist for _, twist in self.turns])
+
+    def by_turn(self, bend: np.ndarray, twist: np.ndarray) -> np.ndarray:
+        """Values of the hinges' bending and twist, shape (L - 1,) each, in the order of :attr:`turns`."""
+        return np.array([(twist if twists else bend)[hinge - 1] for hinge, twists in self.turns])
 
 
 def read_endoscope(path: str | Path) -> EndoscopeStage:
@@ -111,6 +144,9 @@ class _Reader:
         self._check_shapes(shapes, length, radius)
         hinges = [self._hinge(links, length, hinge) for hinge in range(1, len(links))]
         drives = np.array([self._hinge_drive(hinge) for hinge in hinges]).reshape(-1, 2)
+        twists = [self._twist(links, length, hinge) for hinge in range(1, len(links))]
+        twist = np.array([(*self._hinge_drive(t), self._hinge_limit(t)) if t else (0.0,) * 3 for t in twists])
+        twist = twist.reshape(-1, 3)
         slide, roll = self._root_drives(links[0])
         return EndoscopeStage(
             path=self.path,
@@ -125,6 +161,9 @@ class _Reader:
             hinge_limit=np.array([self._hinge_limit(hinge) for hinge in hinges]),
             hinge_armature=np.array([self._number(hinge, "newton:armature") for hinge in hinges]),
             stop_stiffness=np.degrees([self._number(hinge, "newton:limitStiffness") for hinge in hinges]),
+            twist_stiffness=twist[:, 0],
+            twist_damping=twist[:, 1],
+            twist_limit=twist[:, 2],
             slide_drive=slide,
             roll_drive=roll,
             bending_links=int(self._value(scope, "arcgym:bendingLinks")),
@@ -162,11 +201,25 @@ class _Reader:
 
     def _hinge(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim:
         """The prim of hinge number `hinge`, checked to join its two links end to end about the right axis."""
-        prim = self._prim(f"{JOINTS_PATH}/{hinge_name(hinge)}", UsdPhysics.RevoluteJoint)
-        self._expect_body(prim, "physics:body0", links[hinge - 1])
-        self._expect_body(prim, "physics:body1", links[hinge])
+        prim = self._turn(links, length, hinge, hinge_name(hinge))
         if self._value(prim, "physics:axis") != hinge_axis(hinge):
             raise self._error(prim, "physics:axis", "breaks the alternation", f"Set it to '{hinge_axis(hinge)}'.")
+        return prim
+
+    def _twist(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim | None:
+        """The prim of the twist at hinge number `hinge`, or None if it does not twist."""
+        if not self.usd.GetPrimAtPath(f"{JOINTS_PATH}/{twist_name(hinge)}"):
+            return None
+        prim = self._turn(links, length, hinge, twist_name(hinge))
+        if self._value(prim, "physics:axis") != "Z":
+            raise self._error(prim, "physics:axis", "is across the link", "Set it to 'Z'.")
+        return prim
+
+    def _turn(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int, name: str) -> Usd.Prim:
+        """A joint of hinge number `hinge`, checked to join its two links end to end."""
+        prim = self._prim(f"{JOINTS_PATH}/{name}", UsdPhysics.RevoluteJoint)
+        self._expect_body(prim, "physics:body0", links[hinge - 1])
+        self._expect_body(prim, "physics:body1", links[hinge])
         for attribute, end in (("physics:localPos0", length[hinge - 1]), ("physics:localPos1", -length[hinge])):
             self._expect(prim, attribute, self._value(prim, attribute)[2], 0.5 * end, "arcgym:length of its link")
         return prim

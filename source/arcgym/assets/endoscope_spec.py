@@ -26,6 +26,11 @@ TIP_LINKS = 10
 SCOPE_LENGTH = 1.5
 """Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside.
 With 59 links the chain has 60 degrees of freedom; above 64 MuJoCo Warp turns to a slower factorisation."""
+TORSIONAL_RIGIDITY = 0.42
+"""GJ of a colonoscope's shaft [N m^2/rad]: CF-140S, 68 to 88 N cm^2/deg at 24 C, less 7 % at 37 C (Flexural and torsional
+rigidity of colonoscopes)."""
+TWIST_LIMIT = 1.0
+"""Largest twist of a hinge to either side [rad]; 1 N m turns a shaft hinge by 0.12."""
 REST_TIP_HEIGHT = 0.02
 """Height of the tip above the anal verge in the rest pose [m]: in the straight part of the anal canal."""
 
@@ -63,7 +68,8 @@ class EndoscopeSpec:
 
     The links hang on hinges of alternating axes, X for odd i and Y for even i, where hinge i joins link i - 1 to
     link i. Bending in one plane is thus carried by every second hinge, which stands for two lever lengths of shaft:
-    its stiffness is EI / (2 lever), with the lever the mean length of its two links.
+    its stiffness is EI / (2 lever), with the lever the mean length of its two links. Even hinges also twist about the
+    link's Z axis, and stand for the shaft between them and the hinge that twisted last.
     """
 
     name: str
@@ -80,6 +86,8 @@ class EndoscopeSpec:
     """Real mass of each link [kg], shape (L,)."""
     bending_rigidity: np.ndarray
     """Bending rigidity EI of the shaft at each hinge [N m^2], shape (L - 1,)."""
+    torsional_rigidity: np.ndarray
+    """Torsional rigidity GJ of the shaft at each hinge [N m^2/rad], shape (L - 1,)."""
     hinge_limit: np.ndarray
     """Largest angle of each hinge to either side [rad], shape (L - 1,)."""
     camera: CameraSpec
@@ -110,10 +118,14 @@ class EndoscopeSpec:
         return float(self.link_length.sum())
 
     @property
+    def lever(self) -> np.ndarray:
+        """Mean length of the two links at each hinge [m], shape (L - 1,)."""
+        return 0.5 * (self.link_length[:-1] + self.link_length[1:])
+
+    @property
     def hinge_stiffness(self) -> np.ndarray:
         """Stiffness EI / (2 lever) of each hinge [N m/rad], shape (L - 1,)."""
-        lever = 0.5 * (self.link_length[:-1] + self.link_length[1:])
-        return self.bending_rigidity / (2.0 * lever)
+        return self.bending_rigidity / (2.0 * self.lever)
 
     @property
     def hinge_damping(self) -> np.ndarray:
@@ -126,6 +138,12 @@ class EndoscopeSpec:
         return self.armature_time * self.hinge_damping
 
     @property
+    def twist_stiffness(self) -> np.ndarray:
+        """Stiffness of the twist at each hinge [N m/rad], 0 at those that do not twist, shape (L - 1,)."""
+        twists = np.array([hinge_twists(hinge) for hinge in range(1, len(self.link_length))], dtype=bool)
+        return shared_stiffness(self.lever / self.torsional_rigidity, twists)
+
+    @property
     def stop_stiffness(self) -> np.ndarray:
         """Stiffness of each hinge beyond its limit [N m/rad], shape (L - 1,)."""
         return self.stop_ratio * self.hinge_stiffness
@@ -134,6 +152,29 @@ class EndoscopeSpec:
 def hinge_axis(hinge: int) -> Literal["X", "Y"]:
     """Axis of hinge number `hinge`, counted from 1: X (up and down) if odd, Y (left and right) if even."""
     return "X" if hinge % 2 else "Y"
+
+
+def hinge_twists(hinge: int) -> bool:
+    """Whether hinge number `hinge`, counted from 1, also twists: every second one does."""
+    return hinge % 2 == 0
+
+
+def shared_stiffness(compliance: np.ndarray, twists: np.ndarray) -> np.ndarray:
+    """Stiffness of the hinges that twist: each takes over the hinges since the last one, the last also those behind it.
+
+    Args:
+        compliance: Twist of the shaft at each hinge by torque [rad/(N m)], shape (H,).
+        twists: Whether the hinge twists, shape (H,).
+
+    Returns:
+        Stiffness [N m/rad], 0 where the hinge does not twist, shape (H,).
+    """
+    stiffness = np.zeros(len(compliance))
+    twisting = np.flatnonzero(twists)
+    if len(twisting):
+        carrier = np.minimum(np.searchsorted(twisting, np.arange(len(compliance))), len(twisting) - 1)
+        stiffness[twisting] = 1.0 / np.bincount(carrier, compliance)
+    return stiffness
 
 
 def capsule_half_height(length: float, radius: float, num_links: int) -> float:
@@ -164,6 +205,7 @@ def proximal_spec() -> EndoscopeSpec:
         link_radius=radius,
         link_mass=0.2 * length,
         bending_rigidity=rigidity,
+        torsional_rigidity=np.full(links - 1, TORSIONAL_RIGIDITY),
         hinge_limit=limit,
         camera=camera,
         lights=lights,
@@ -174,6 +216,8 @@ def proximal_spec() -> EndoscopeSpec:
             "dimensions": "Olympus CF-HQ190L data sheet: tube 12.8 mm, tip 13.2 mm, angulation 180 up/down, 160 sides",
             "rigidity": "CF-140S, EI 0.026-0.040 N m^2 at 24 C, less 17 % at 37 C (Flexural and torsional rigidity of "
             "colonoscopes); bending section: softer, assumed",
+            "torsion": "CF-140S, GJ 0.39-0.50 N m^2/rad at 24 C, less 7 % at 37 C (same source); the bending section's "
+            "is assumed to be the same",
             "forces": "Appleyard et al. 2000: peak push 43 N, more than 10 N during 5 % of the time; torque 1.0 N m",
             "mass": "0.2 kg/m, assumed",
         },
@@ -199,6 +243,7 @@ def magnetic_spec() -> EndoscopeSpec:
         link_radius=radius,
         link_mass=mass,
         bending_rigidity=rigidity,
+        torsional_rigidity=TORSIONAL_RIGIDITY * rigidity / 0.025,
         hinge_limit=np.full(links - 1, 0.9),
         camera=camera,
         lights=lights,
@@ -208,6 +253,7 @@ def magnetic_spec() -> EndoscopeSpec:
             "design": "magnetic flexible endoscope of Martin et al. 2020 (PMC7571595): tether about 6 mm, head about "
             "20 mm; here the head is slimmed to a colonoscope's 13.2 mm, the tether is 8 mm",
             "rigidity": "0.003 N m^2, assumed: a shaft of 0.025 N m^2 sticks in the first bend at a pull of 4 N",
+            "torsion": "GJ / EI as of the colonoscope, assumed",
             "mass": "tether: a colonoscope's 0.2 kg/m scaled by area; head: 3000 kg/m^3 with its magnet; both assumed",
         },
     )
@@ -225,6 +271,7 @@ def capsule_spec() -> EndoscopeSpec:
         link_radius=radius,
         link_mass=np.array([0.005]),
         bending_rigidity=np.empty(0),
+        torsional_rigidity=np.empty(0),
         hinge_limit=np.empty(0),
         camera=camera,
         lights=lights,

@@ -14,6 +14,7 @@ from arcgym.assets.endoscope_writer import (
     author_endoscopes,
     hinge_name,
     link_name,
+    twist_name,
     write_endoscope,
 )
 
@@ -27,5 +28,6 @@ __all__ = [
     "hinge_name",
     "link_name",
     "read_endoscope",
+    "twist_name",
     "write_endoscope",
 ]

@@ -13,6 +13,7 @@ from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdLux, UsdPhysics
 
 from arcgym.assets.endoscope_spec import (
     REST_TIP_HEIGHT,
+    TWIST_LIMIT,
     DriveSpec,
     EndoscopeSpec,
     capsule_half_height,
@@ -64,6 +65,11 @@ def link_name(link: int) -> str:
 def hinge_name(hinge: int) -> str:
     """Name of the prim of hinge number `hinge`, counted from 1."""
     return f"hinge_{hinge:02d}"
+
+
+def twist_name(hinge: int) -> str:
+    """Name of the prim of the twist at hinge number `hinge`, counted from 1."""
+    return f"twist_{hinge:02d}"
 
 
 def _write_header(stage: Usd.Stage, spec: EndoscopeSpec) -> None:
@@ -149,25 +155,37 @@ def _write_root(stage: Usd.Stage, spec: EndoscopeSpec, height: float) -> None:
 
 
 def _write_hinge(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int) -> None:
-    """The hinge between links `hinge` - 1 and `hinge`, whose drive carries the elasticity of the shaft."""
-    joint = UsdPhysics.RevoluteJoint.Define(stage, f"{JOINTS_PATH}/{hinge_name(hinge)}")
+    """The hinge between links `hinge` - 1 and `hinge`, whose drives carry the elasticity of the shaft.
+
+    A twist is a second joint of the same links, which Newton's importer merges with the hinge.
+    """
+    k = hinge - 1
+    _write_turn(stage, spec, hinge, hinge_name(hinge), hinge_axis(hinge), spec.hinge_stiffness[k], spec.hinge_limit[k])
+    if spec.twist_stiffness[k] > 0.0:
+        _write_turn(stage, spec, hinge, twist_name(hinge), "Z", spec.twist_stiffness[k], TWIST_LIMIT)
+
+
+def _write_turn(
+    stage: Usd.Stage, spec: EndoscopeSpec, hinge: int, name: str, axis: str, stiffness: float, limit: float
+) -> None:
+    """One elastic axis of a hinge, with its drive [N m/rad] and its stops [rad]."""
+    joint = UsdPhysics.RevoluteJoint.Define(stage, f"{JOINTS_PATH}/{name}")
     joint.CreateBody0Rel().SetTargets([f"{LINKS_PATH}/{link_name(hinge - 1)}"])
     joint.CreateBody1Rel().SetTargets([f"{LINKS_PATH}/{link_name(hinge)}"])
-    joint.CreateAxisAttr(hinge_axis(hinge))
+    joint.CreateAxisAttr(axis)
     _write_frames(joint, 0.5 * spec.link_length[hinge - 1], -0.5 * spec.link_length[hinge])
-    limit = math.degrees(spec.hinge_limit[hinge - 1])
-    joint.CreateLowerLimitAttr(-limit)
-    joint.CreateUpperLimitAttr(limit)
-    spring = DriveSpec(float(spec.hinge_stiffness[hinge - 1]), float(spec.hinge_damping[hinge - 1]))
-    _write_drive(joint.GetPrim(), "angular", spring, math.radians(1.0))
-    stop = math.radians(1.0) * float(spec.stop_stiffness[hinge - 1])
+    joint.CreateLowerLimitAttr(-math.degrees(limit))
+    joint.CreateUpperLimitAttr(math.degrees(limit))
+    damping = spec.damping_time * float(stiffness)
+    _write_drive(joint.GetPrim(), "angular", DriveSpec(float(stiffness), damping), math.radians(1.0))
+    stop = math.radians(1.0) * spec.stop_ratio * float(stiffness)
     joint.GetPrim().AddAppliedSchema("NewtonJointAPI")
-    for name, value in (
-        ("newton:armature", float(spec.hinge_armature[hinge - 1])),
+    for attribute, value in (
+        ("newton:armature", spec.armature_time * damping),
         ("newton:limitStiffness", stop),
         ("newton:limitDamping", spec.stop_damping_time * stop),
     ):
-        _set(joint.GetPrim(), name, Sdf.ValueTypeNames.Float, value)
+        _set(joint.GetPrim(), attribute, Sdf.ValueTypeNames.Float, value)
 
 
 def _write_frames(joint: UsdPhysics.Joint, height0: float, height1: float) -> None:

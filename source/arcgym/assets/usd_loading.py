@@ -34,6 +34,7 @@ from arcgym.assets.endoscope_stage import (
     EndoscopeStage,
     hinge_name,
     link_name,
+    twist_name,
 )
 
 PARTICLE_RADIUS = 0.0005
@@ -53,7 +54,8 @@ class EndoscopeIndices:
     joints: range
     """Root joint, then the hinges; the parent's before the child's."""
     coords: range
-    """Entries of ``joint_q`` and ``joint_target_q``: 2 (slide, roll) or 7 (position, quaternion), then the hinges."""
+    """Entries of ``joint_q`` and ``joint_target_q``: 2 (slide, roll) or 7 (position, quaternion), then the hinges,
+    the bending of each before its twist."""
     dofs: range
     """Entries of ``joint_qd``: 2 or 6, then the hinges."""
 
@@ -226,27 +228,37 @@ def _check_links(check: _Check, builder: ModelBuilder, indices: EndoscopeIndices
 
 def _check_joints(check: _Check, builder: ModelBuilder, indices: EndoscopeIndices, stage: EndoscopeStage) -> None:
     """Types, order, axes and ranges of the joints."""
-    hinges = [f"{JOINTS_PATH}/{hinge_name(hinge)}" for hinge in range(1, stage.num_links)]
     types = [JointType(kind).name for kind in np.take(builder.joint_type, indices.joints)]
     root = "FREE" if stage.root == "free" else "D6"
-    check.equal(JOINTS_PATH, "", types, [root] + ["REVOLUTE"] * len(hinges), "Join the links one after the other.")
+    hinges = ["D6" if twist > 0.0 else "REVOLUTE" for twist in stage.twist_stiffness]
+    check.equal(JOINTS_PATH, "", types, [root, *hinges], "Join the links one after the other.")
     links = list(indices.bodies)
     check.equal(JOINTS_PATH, "", list(np.take(builder.joint_child, indices.joints)), links, "Number joints as links.")
     parents = [-1, *links[:-1]]
     check.equal(JOINTS_PATH, "", list(np.take(builder.joint_parent, indices.joints)), parents, "Start at the base.")
     root_dofs = 6 if stage.root == "free" else 2
+    prims = _turn_prims(stage)
     mend = "Apply PhysicsLimitAPI with low < high for transZ and rotZ, and with low > high for the other axes."
-    check.equal(ROOT_JOINT_PATH, "apiSchemas", len(indices.dofs), root_dofs + len(hinges), mend)
+    check.equal(ROOT_JOINT_PATH, "apiSchemas", len(indices.dofs), root_dofs + len(prims), mend)
     first = indices.dofs.start + root_dofs
     axes = ["XYZ"[int(np.argmax(np.abs(axis)))] for axis in builder.joint_axis[first:]]
-    expected = [hinge_axis(hinge) for hinge in range(1, stage.num_links)]
-    check.equal(JOINTS_PATH, "physics:axis", axes, expected, "Alternate X and Y.")
+    expected = ["Z" if twist else hinge_axis(hinge) for hinge, twist in stage.turns]
+    check.equal(JOINTS_PATH, "physics:axis", axes, expected, "Alternate X and Y, each before its twist about Z.")
     lower, upper = builder.joint_limit_lower[first:], builder.joint_limit_upper[first:]
-    check.close(hinges, "physics:lowerLimit", lower, -stage.hinge_limit, "Author both limits, in degrees.")
-    check.close(hinges, "physics:upperLimit", upper, stage.hinge_limit, "Author both limits, in degrees.")
-    stops, mend = builder.joint_limit_ke[first:], "Apply NewtonJointAPI; its limit gains are per degree."
-    check.close(hinges, "newton:limitStiffness", stops, stage.stop_stiffness, mend)
-    check.close(hinges, "newton:armature", builder.joint_armature[first:], stage.hinge_armature, mend)
+    limit = stage.by_turn(stage.hinge_limit, stage.twist_limit)
+    check.close(prims, "physics:lowerLimit", lower, -limit, "Author both limits, in degrees.")
+    check.close(prims, "physics:upperLimit", upper, limit, "Author both limits, in degrees.")
+    bends = stage.bend_coords - stage.root_coords
+    hinge_prims = [prims[bend] for bend in bends]
+    stops, mend = np.asarray(builder.joint_limit_ke)[first + bends], "Apply NewtonJointAPI; its gains are per degree."
+    check.close(hinge_prims, "newton:limitStiffness", stops, stage.stop_stiffness, mend)
+    armature = np.asarray(builder.joint_armature)[first + bends]
+    check.close(hinge_prims, "newton:armature", armature, stage.hinge_armature, mend)
+
+
+def _turn_prims(stage: EndoscopeStage) -> list[str]:
+    """Paths of the joints in the order of ``EndoscopeStage.turns``."""
+    return [f"{JOINTS_PATH}/{(twist_name if twist else hinge_name)(hinge)}" for hinge, twist in stage.turns]
 
 
 def _check_drives(check: _Check, builder: ModelBuilder, indices: EndoscopeIndices, stage: EndoscopeStage) -> None:
@@ -254,12 +266,11 @@ def _check_drives(check: _Check, builder: ModelBuilder, indices: EndoscopeIndice
     if stage.slide_drive is None or stage.roll_drive is None:
         return
     roots = (stage.slide_drive, stage.roll_drive)
-    prims = [ROOT_JOINT_PATH] * 2 + [f"{JOINTS_PATH}/{hinge_name(hinge)}" for hinge in range(1, stage.num_links)]
-    hinges = stage.num_links - 1
+    prims = [ROOT_JOINT_PATH] * 2 + _turn_prims(stage)
     dofs = slice(indices.dofs.start, indices.dofs.stop)
-    stiffness = np.r_[[drive.stiffness for drive in roots], stage.hinge_stiffness]
-    damping = np.r_[[drive.damping for drive in roots], stage.hinge_damping]
-    effort = np.r_[[drive.max_force for drive in roots], np.full(hinges, math.inf)]
+    stiffness = np.r_[[drive.stiffness for drive in roots], stage.by_turn(stage.hinge_stiffness, stage.twist_stiffness)]
+    damping = np.r_[[drive.damping for drive in roots], stage.by_turn(stage.hinge_damping, stage.twist_damping)]
+    effort = np.r_[[drive.max_force for drive in roots], np.full(len(stage.turns), math.inf)]
     mend = "Apply PhysicsDriveAPI of type 'force'; gains of angles are per degree."
     check.close(prims, "drive:physics:stiffness", builder.joint_target_ke[dofs], stiffness, mend)
     check.close(prims, "drive:physics:damping", builder.joint_target_kd[dofs], damping, mend)

@@ -55,6 +55,8 @@ class Actuation:
         self._still = wp.zeros((1, num_envs), dtype=wp.vec3, device=device)
         self._guide, self._gravity = self._introducer(), wp.vec3(*cfg.gravity) / cfg.mass_scaling
         self._share, self._bend_limit = self._bending_section()
+        bends = self.stage.bend_coords[self.link_count - 1 - self.stage.bending_links :]
+        self._bend_coords = wp.array(bends, dtype=int, device=device)
 
     def _pull(self) -> kernels.TipPull:
         pull = kernels.TipPull()
@@ -112,9 +114,9 @@ class Actuation:
         target = control.joint_target_q
         args = [state.joint_q, self.coords, self.drive, self.insertion_velocity, self.roll_rate, dt, target]
         wp.launch(kernels.drive_base, self.num_envs, args, device=self.device)
-        bent = self.stage.bending_links
-        args = [self.bending_command, self.scope.bending_rate, self._bend_limit, dt, self.link_count - bent, bent]
-        args += [self.coords, self._share, self.bending, target]
+        first = self.link_count - self.stage.bending_links
+        args = [self.bending_command, self.scope.bending_rate, self._bend_limit, dt, first]
+        args += [self._bend_coords, self.coords, self._share, self.bending, target]
         wp.launch(kernels.drive_bending, self.num_envs, args, device=self.device)
 
     def _pull_tip(self, state: newton.State, dt: float) -> None:

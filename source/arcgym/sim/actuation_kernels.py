@@ -91,7 +91,7 @@ def drive_bending(
     limit: wp.vec2,
     dt: float,
     first: int,
-    hinges: int,
+    hinge_coords: wp.array(dtype=int),
     coords: int,
     share: wp.vec2,
     bending: wp.array(dtype=wp.vec2),
@@ -99,8 +99,8 @@ def drive_bending(
 ):
     """Turn the control wheels towards the command and spread the angle over the bending section. Launch (W,).
 
-    Hinges alternate between pitch (odd) and yaw (even); ``first`` is the number of the first actuated one, and
-    ``share`` the reciprocal of the number of hinges of either kind.
+    Hinges alternate between pitch (odd) and yaw (even); ``first`` is the number of the first actuated one,
+    ``hinge_coords`` the joint coordinate of each, and ``share`` the reciprocal of the number of hinges of either kind.
     """
     w = wp.tid()
     now = bending[w]
@@ -108,12 +108,12 @@ def drive_bending(
         goal = wp.clamp(command[w][k], -limit[k], limit[k])
         now[k] = now[k] + wp.clamp(goal - now[k], -rate * dt, rate * dt)
     bending[w] = now
-    for h in range(hinges):
+    for h in range(hinge_coords.shape[0]):
         hinge = first + h
         angle = now[0] * share[0]
         if hinge % 2 == 0:
             angle = now[1] * share[1]
-        target[w * coords + 1 + hinge] = angle
+        target[w * coords + hinge_coords[h]] = angle
 
 
 @wp.kernel

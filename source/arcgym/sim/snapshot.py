@@ -97,9 +97,9 @@ class SnapshotSet:
 
 
 def fingerprint(sim: Simulation) -> str:
-    """Short hash of what a state depends on: the wall's rest points and rings, the scope's links."""
+    """Short hash of what a state depends on: the wall's rest points and rings, the scope's links and joints."""
     wall, scope = sim.colon.wall, sim.endoscope.stage
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(" ".join(sim.endoscope.joint_names).encode())
     for array in (wall.points, wall.ring, scope.link_length, scope.link_radius):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:16]
