@@ -4,140 +4,98 @@
 
 from __future__ import annotations
 
-import numpy as np
-from scipy import ndimage
+from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
+
+from .clearance import coarse_clearance
 from .course import resample
+from .ends import Course, find_course
 from .errors import ColonImportError
 from .grid import Grid
+from .leaks import cut_off, fill_tube
+from .poles import off_the_wall, to_pole
+from .tree import LumenTree, lumen_tree
 
-_WIDE = 0.010
-"""Clearance [m] at which staying clear of the wall begins to matter."""
-
-_END_CLEARANCE = 0.004
 _SHORTEST = 0.4
 _WIDEST = 0.065
-_OUTSIDE = -1.0
+_FARTHEST_END = 0.05
+_CECUM_LOOK = 0.04
+LEAST_HOLE = 3e-7
+"""Holes in the rectum below this volume [m^3] are folds and noise, and are not told."""
 
 
-def find_path(grid: Grid, ends: list[np.ndarray | None]) -> np.ndarray:
-    """Finds the way between both ends of the lumen.
+@dataclass(frozen=True)
+class FoundPath:
+    """Way through the colon and what was changed in the lumen to find it."""
 
-    The cost of a step rises with the fourth power of the nearness of the wall, so that a window between two touching
-    loops costs more than the way round.
+    points: np.ndarray
+    """Positions from one end to the other [m], shape (n, 3)."""
+    cut: list[dict[str, Any]]
+    """What hung on the colon and was cut off."""
+    filled_hole: float
+    """Volume of the holes in the rectum, such as a tube's, that were filled [m^3]."""
+
+
+def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPath:
+    """Finds the way between both ends of the colon and cuts off, in the grid, what hangs on it.
 
     Args:
-        grid: The cleaned lumen.
-        ends: Position of the first and the last end [m], or None to take the ends that are farthest apart.
-
-    Returns:
-        Positions from the first end to the last [m], shape (n, 3).
+        grid: The cleaned lumen; its values are changed where something is cut off or filled.
+        ends: Position of the anus and of the caecal pole [m], or None to find them.
+        frame: How the grid's axes lie in the patient: a key of ``FRAMES``, or ``auto``.
 
     Raises:
-        ColonImportError: A given end is not in the lumen, or the lumen is too short.
+        ColonImportError: A given end is not in the lumen, or the lumen is too wide or too short for a colon.
     """
-    coarse = _coarse_clearance(grid)
-    clearance = coarse.values
-    if clearance.max() > _WIDEST:
-        raise ColonImportError(
-            f"No colon-like component: a ball of {2e3 * clearance.max():.0f} mm fits in; a colon is below "
-            f"{2e3 * _WIDEST:.0f} mm wide",
-            "Pass the mask of the colon's lumen, and --label and the units (--spacing, --units) if they are wrong.",
-        )
-    cost = np.where(clearance > 0, 1.0 + np.minimum((_WIDE / np.maximum(clearance, 1e-6)) ** 4, 2e3), _OUTSIDE)
-    wide = clearance >= min(_END_CLEARANCE, 0.5 * float(clearance.max()))
-    first, last = (None if end is None else _nearest_voxel(coarse, wide, end) for end in ends)
-    if first is None:
-        widest = np.array(np.unravel_index(clearance.argmax(), clearance.shape))
-        first = _farthest(cost, wide, widest if last is None else last)
-    if last is None:
-        last = _farthest(cost, wide, first)
-    path = resample(coarse.points(_trace(cost, first, last)), grid.spacing)
-    path = _extended(grid, path[::-1])[::-1] if ends[0] is None else path
-    path = _extended(grid, path) if ends[1] is None else path
-    length = float(np.linalg.norm(np.diff(path[::5], axis=0), axis=1).sum())
+    tree, course, clearance = _search(grid, ends, frame)
+    path = tree.points[course.nodes]
+    cut = cut_off(grid, course.attached, path, tree.clearance[course.nodes])
+    hole = fill_tube(grid, path[0])
+    if cut or hole > LEAST_HOLE:
+        anus = path[0] if ends[0] is None else ends[0]
+        tree, course, clearance = _search(grid, [anus, ends[1]], frame, prune=False)
+    points = resample(tree.points[course.nodes], 2 * grid.spacing)
+    points = to_pole(clearance, points, _CECUM_LOOK) if ends[1] is None else points
+    points = off_the_wall(clearance, points[::-1])[::-1] if ends[0] is None else points
+    length = float(np.linalg.norm(np.diff(points[::5], axis=0), axis=1).sum())
     if length < _SHORTEST:
         raise ColonImportError(
             f"No colon-like component: the lumen's centreline is only {1e3 * length:.0f} mm long",
             "Check the units (--spacing, --units), --label, --max-gap and --anus/--cecum.",
         )
-    return path
+    return FoundPath(points, cut, hole)
 
 
-def _coarse_clearance(grid: Grid) -> Grid:
-    """Returns the distance to the wall [m] on voxels of twice the size, the largest of eight: nothing is cut off."""
-    import SimpleITK as sitk
+def _search(
+    grid: Grid, ends: list[np.ndarray | None], frame: str, prune: bool = True
+) -> tuple[LumenTree, Course, Grid]:
+    clearance = coarse_clearance(grid)
+    widest = float(clearance.values.max())
+    if widest > _WIDEST:
+        raise ColonImportError(
+            f"No colon-like component: a ball of {2e3 * widest:.0f} mm fits in; a colon is below "
+            f"{2e3 * _WIDEST:.0f} mm wide",
+            "Pass the mask of the colon's lumen, and --label and the units (--spacing, --units) if they are wrong.",
+        )
+    given = [None if end is None else _nearest_voxel(clearance, end) for end in ends]
+    tree = lumen_tree(clearance, [voxel for voxel in given if voxel is not None])
+    if ends[0] is not None:
+        fixed = (0, None if ends[1] is None else tree.tips[1])
+    else:
+        fixed = (None, None if ends[1] is None else 0)
+    return tree, find_course(tree, frame, fixed, prune), clearance
 
-    mask = grid.mask
-    mask = np.pad(mask, [(0, size % 2) for size in mask.shape])
-    image = sitk.GetImageFromArray(mask.astype(np.uint8))
-    inside = sitk.SignedMaurerDistanceMap(image, insideIsPositive=True, squaredDistance=False)
-    distance = np.where(mask, sitk.GetArrayViewFromImage(inside) + 1.0, 0.0).astype(np.float32)
-    x, y, z = (size // 2 for size in mask.shape)
-    blocks = distance.reshape(x, 2, y, 2, z, 2).max(axis=(1, 3, 5))
-    return Grid(grid.spacing * blocks, grid.origin + 0.5 * grid.spacing, 2 * grid.spacing)
 
-
-def _nearest_voxel(grid: Grid, wide: np.ndarray, point: np.ndarray) -> np.ndarray:
-    inside = np.argwhere(wide)
-    distance = np.linalg.norm(grid.points(inside) - point, axis=1)
-    if distance.min() > 0.05:
+def _nearest_voxel(clearance: Grid, point: np.ndarray) -> np.ndarray:
+    inside = np.argwhere(clearance.values > 0)
+    distance = np.linalg.norm(clearance.points(inside) - point, axis=1)
+    if distance.min() > _FARTHEST_END:
         where = ", ".join(f"{1e3 * value:.0f}" for value in point)
         raise ColonImportError(
             f"The end given at {where} mm is {1e3 * distance.min():.0f} mm away from the lumen",
             "Pass --anus and --cecum in millimetres along the patient's right, anterior and cranial axes.",
         )
-    return inside[distance.argmin()]
-
-
-def _farthest(cost: np.ndarray, wide: np.ndarray, start: np.ndarray) -> np.ndarray:
-    from skimage.graph import MCP_Geometric
-
-    reach, _ = MCP_Geometric(cost).find_costs([tuple(start)])
-    reach = np.where(wide & np.isfinite(reach), reach, -1.0)
-    return np.array(np.unravel_index(reach.argmax(), reach.shape))
-
-
-def _trace(cost: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    from skimage.graph import MCP_Geometric
-
-    search = MCP_Geometric(cost)
-    reach, _ = search.find_costs([tuple(first)], [tuple(last)])
-    if not np.isfinite(reach[tuple(last)]):
-        raise ColonImportError("The two ends are in different pieces of the lumen", "Pass a larger --max-gap.")
-    return np.array(search.traceback(tuple(last)))
-
-
-def _extended(grid: Grid, path: np.ndarray, step: float = 0.0005) -> np.ndarray:
-    """Goes on from the path's end to the wall, along a narrow canal if there is one."""
-    path = _follow_canal(grid, path)
-    back = path[max(0, len(path) - 1 - round(0.02 / grid.spacing))]
-    way = path[-1] - back
-    way /= max(np.linalg.norm(way), 1e-9)
-    ray = path[-1] + step * np.arange(1, 80)[:, None] * way
-    inside = grid.sample(ray) > 0.5
-    count = len(inside) if inside.all() else int(inside.argmin())
-    return np.concatenate([path, ray[:count]])
-
-
-def _follow_canal(grid: Grid, path: np.ndarray, reach: float = 0.06) -> np.ndarray:
-    """Follows a tube that goes on beyond the end of the wide lumen, such as the anal canal."""
-    from skimage.graph import MCP_Geometric
-
-    end = np.rint(grid.index(path[-1])).astype(int)
-    half = round(reach / grid.spacing)
-    low = np.maximum(end - half, 0)
-    high = np.minimum(end + half + 1, grid.mask.shape)
-    part = grid.mask[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]
-    clearance = ndimage.distance_transform_edt(part) * grid.spacing
-    width = float(clearance[tuple(end - low)])
-    search = MCP_Geometric(np.where(part, 1.0 + np.minimum((0.003 / np.maximum(clearance, 1e-4)) ** 2, 20), _OUTSIDE))
-    search.find_costs([tuple(end - low)])
-    plain, _ = MCP_Geometric(np.where(part, 1.0, _OUTSIDE)).find_costs([tuple(end - low)])
-    way = path[-1] - path[max(0, len(path) - 1 - round(0.03 / grid.spacing))]
-    ahead = (np.indices(part.shape).reshape(3, -1).T - (end - low)) @ way > 0
-    plain = np.where(np.isfinite(plain) & ahead.reshape(part.shape), plain, -1.0)
-    far = np.unravel_index(plain.argmax(), plain.shape)
-    if plain[far] * grid.spacing < 2.5 * width + 0.010:
-        return path
-    return np.concatenate([path, grid.points(np.array(search.traceback(far)) + low)[1:]])
+    near = inside[distance < distance.min() + 0.012]
+    return near[clearance.values[tuple(near.T)].argmax()]

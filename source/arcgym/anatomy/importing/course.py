@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
+from scipy.spatial.transform import Rotation
 
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.segments import SEGMENTS
@@ -13,15 +14,17 @@ from arcgym.anatomy.segments import SEGMENTS
 from .grid import Grid
 from .polar import cast_rings
 
-SPACING = 0.004
+SPACING = 0.003
 """Distance of the points that are smoothed and moved [m]."""
 
-_SMOOTHING = 0.008
+_SMOOTHING = (0.004, 0.006, 0.009, 0.013, 0.018)
+_SMOOTHING_SHARE = 0.65
 _SECTORS = 24
-_LARGEST_SHIFT = 0.004
-_END_LENGTH = 0.03
-_TRIM = 2.4
-_CANAL = (0.012, 0.070)
+_LARGEST_SHIFT = 0.005
+_END_LENGTH = 0.015
+_FADE = 0.4
+_LENGTH_ROUNDS = 4
+_CANAL = (0.015, 0.070)
 
 
 def resample(points: np.ndarray, spacing: float) -> np.ndarray:
@@ -50,47 +53,65 @@ def plain_curve(points: np.ndarray) -> Curve:
     return Curve(points, np.linspace(0.0, 1.0, len(SEGMENTS) + 1)[1:])
 
 
-def centred(grid: Grid, path: np.ndarray, rounds: int = 3) -> np.ndarray:
-    """Smooths a path and moves it to the centroids of the lumen's cross-sections, shape (n, 3)."""
-    points = smooth(resample(smooth(path, 4.0), SPACING), _SMOOTHING / SPACING)
-    points = _both_to_the_wall(grid, _without_ends(grid, points))
+def centred(grid: Grid, path: np.ndarray, rounds: int = 4) -> np.ndarray:
+    """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
+
+    Returns:
+        Points at equal distances from wall to wall [m], shape (n, 3).
+    """
+    points = smooth(resample(path, SPACING), 1.5)
     for _ in range(rounds):
-        curve = plain_curve(points)
-        s = np.linspace(0.0, curve.length, len(points))
-        inner = np.clip(np.minimum(s, curve.length - s) / _END_LENGTH, 0.0, 1.0)
-        shift = _centroid_shift(grid, curve, s) * inner[:, None]
-        points = curve.position(s) + gaussian_filter1d(shift, 2.0, axis=0, mode="nearest")
-        points = smooth(resample(points, SPACING), _SMOOTHING / SPACING)
-    return resample(_both_to_the_wall(grid, points), SPACING)
+        points, radius = _centred_once(grid, points, free_ends=True)
+    for _ in range(rounds):
+        points, radius = _centred_once(grid, _to_both_walls(grid, points, radius), free_ends=False)
+    return resample(_to_both_walls(grid, points, radius), SPACING)
 
 
-def _both_to_the_wall(grid: Grid, points: np.ndarray) -> np.ndarray:
-    return _to_the_wall(grid, _to_the_wall(grid, points)[::-1])[::-1]
-
-
-def _without_ends(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Leaves out both ends as far as the lumen is wide there: the path may run into a corner."""
+def _centred_once(grid: Grid, points: np.ndarray, free_ends: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Returns points moved to the centroids and smoothed, and the lumen's radius there."""
     curve = plain_curve(points)
-    s = np.linspace(0.0, curve.length, len(points))
-    radius = _median_radius(grid, curve, s)
-    first = int(np.clip(_TRIM * np.median(radius[4:10]) / SPACING, 1, 15))
-    last = int(np.clip(_TRIM * np.median(radius[-10:-4]) / SPACING, 1, 15))
-    return points[first:-last]
+    s = np.linspace(0.0, curve.length, round(curve.length / SPACING) + 1)
+    shift, radius = _centroid_shift(grid, curve, s)
+    if not free_ends:
+        shift *= np.clip(np.minimum(s, curve.length - s) / np.maximum(_FADE * radius, 1e-3), 0.0, 1.0)[:, None]
+    moved = curve.position(s) + gaussian_filter1d(shift, 2.0, axis=0, mode="nearest")
+    return _smoothed_to_fit(moved, radius), radius
+
+
+def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Smooths over a share of the lumen's radius: where it is narrow, its bends may be as narrow."""
+    level = np.interp(_SMOOTHING_SHARE * radius, _SMOOTHING, np.arange(len(_SMOOTHING)))
+    out = np.zeros_like(points)
+    for k, sigma in enumerate(_SMOOTHING):
+        share = np.clip(1.0 - np.abs(level - k), 0.0, 1.0)[:, None]
+        out += share * smooth(points, sigma / SPACING)
+    return out
+
+
+def _to_both_walls(grid: Grid, points: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Leaves out what is near the ends, which has no sections of its own, and goes straight on to the wall."""
+    first, last = (int(np.clip(_FADE * radius[k] / SPACING, 2, 6)) for k in (8, -9))
+    return _to_the_wall(grid, _to_the_wall(grid, points[first:-last])[::-1])[::-1]
 
 
 def _to_the_wall(grid: Grid, points: np.ndarray, step: float = 0.0005) -> np.ndarray:
     """Goes straight on from the last point to the wall."""
-    way = points[-1] - points[-1 - round(_END_LENGTH / SPACING)]
-    way /= np.linalg.norm(way)
-    ray = points[-1] + step * np.arange(1, 100)[:, None] * way
+    last = points[-1 - round(_END_LENGTH / SPACING) :]
+    way = np.linalg.svd(last - last.mean(0), full_matrices=False)[2][0]
+    way = way if way @ (last[-1] - last[0]) > 0 else -way
+    ray = points[-1] + step * np.arange(1, 160)[:, None] * way
     inside = grid.sample(ray) > 0.5
     count = len(inside) if inside.all() else int(inside.argmin())
-    return np.concatenate([points, ray[7:count:8]]) if count > 8 else points
+    return (
+        np.concatenate([points, resample(np.stack([points[-1], ray[count - 1]]), SPACING)[1:]]) if count > 2 else points
+    )
 
 
-def _centroid_shift(grid: Grid, curve: Curve, s: np.ndarray) -> np.ndarray:
-    """Returns the way from the curve to the centroid of each cross-section [m], shape (n, 3)."""
-    radius = np.minimum(cast_rings(grid, curve, s, _SECTORS), 1.6 * _median_radius(grid, curve, s)[:, None])
+def _centroid_shift(grid: Grid, curve: Curve, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Returns the way from the curve to the centroid of each cross-section [m], shape (n, 3), and the radius, (n,)."""
+    rays = cast_rings(grid, curve, s, _SECTORS)
+    typical = gaussian_filter1d(np.median(rays, axis=1), 3.0, mode="nearest")
+    radius = np.minimum(rays, 1.6 * typical[:, None])
     theta = np.arange(_SECTORS) * 2 * np.pi / _SECTORS
     _, normal, binormal = curve.frame(s)
     area = 0.5 * (radius**2).sum(1)
@@ -98,41 +119,58 @@ def _centroid_shift(grid: Grid, curve: Curve, s: np.ndarray) -> np.ndarray:
     y = (radius**3 * np.sin(theta)).sum(1) / (3 * np.maximum(area, 1e-9))
     shift = x[:, None] * normal + y[:, None] * binormal
     size = np.linalg.norm(shift, axis=1, keepdims=True)
-    return shift * np.minimum(1.0, _LARGEST_SHIFT / np.maximum(size, 1e-9))
+    return shift * np.minimum(1.0, _LARGEST_SHIFT / np.maximum(size, 1e-9)), typical
 
 
-def _median_radius(grid: Grid, curve: Curve, s: np.ndarray) -> np.ndarray:
-    return gaussian_filter1d(np.median(cast_rings(grid, curve, s, _SECTORS), axis=1), 3.0, mode="nearest")
-
-
-def relaxed(points: np.ndarray, half_width: np.ndarray, iterations: int = 300) -> np.ndarray:
+def relaxed(points: np.ndarray, half_width: np.ndarray, iterations: int = 400) -> np.ndarray:
     """Opens bends that are too sharp for the wall and moves loops apart where the wall would not fit between them.
+
+    Lengths are kept: a bend is opened by moving it outwards, not by cutting its corner.
 
     Args:
         points: Centreline [m], shape (n, 3).
         half_width: Least radius of the outer wall at each point [m], shape (n,).
-        iterations: Small steps to take; points that fit already do not move.
+        iterations: Small steps to take; points that fit already hardly move.
     """
     out = points.copy()
-    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    edge = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    arc = np.r_[0.0, np.cumsum(edge)]
     need = half_width[:, None] + half_width[None]
     other = np.abs(arc[:, None] - arc[None]) > 2.2 * need
     a, b = np.nonzero(other & (np.linalg.norm(points[:, None] - points[None], axis=2) < need + 0.03))
     for _ in range(iterations):
-        shift = _opened(out, half_width)
-        if len(a):
-            offset = out[a] - out[b]
-            distance = np.linalg.norm(offset, axis=1)
-            push = np.clip(need[a, b] - distance, 0.0, None) / np.maximum(distance, 1e-6)
-            total = np.stack([np.bincount(a, push * offset[:, k], len(out)) for k in range(3)], 1)
-            shift += 0.25 * gaussian_filter1d(
-                total / np.maximum(np.bincount(a, push > 0, len(out)), 1)[:, None], 2.0, axis=0
-            )
+        shift = _opened(out, half_width) + _pushed_apart(out, a, b, need[a, b])
         shift[[0, -1]] = 0.0
         if np.abs(shift).max() < 1e-6:
             break
-        out = out + shift
+        out += shift
+        for _ in range(_LENGTH_ROUNDS):
+            _restore_lengths(out, edge)
     return out
+
+
+def _pushed_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:
+    """Returns a smooth shift that takes points of other loops apart where they are nearer than ``need``."""
+    shift = np.zeros_like(points)
+    if not len(a):
+        return shift
+    offset = points[a] - points[b]
+    distance = np.linalg.norm(offset, axis=1)
+    push = np.clip(need - distance, 0.0, None) / np.maximum(distance, 1e-6)
+    total = np.stack([np.bincount(a, push * offset[:, k], len(points)) for k in range(3)], 1)
+    count = np.maximum(np.bincount(a, push > 0, len(points)), 1)[:, None]
+    return 0.25 * gaussian_filter1d(total / count, 2.0, axis=0)
+
+
+def _restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
+    """Moves both ends of every edge so that it gets its length again; even edges first, then odd ones; in place."""
+    for first in (0, 1):
+        a, b = points[first:-1:2], points[first + 1 :: 2]
+        offset = b - a
+        length = np.linalg.norm(offset, axis=1, keepdims=True)
+        half = 0.5 * offset * (1.0 - edge[first::2, None] / np.maximum(length, 1e-9))
+        a += half
+        b -= half
 
 
 def _opened(points: np.ndarray, half_width: np.ndarray) -> np.ndarray:
@@ -146,19 +184,18 @@ def _opened(points: np.ndarray, half_width: np.ndarray) -> np.ndarray:
 
 
 def with_upright_canal(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Turns the first centimetres so that the anal canal rises along +Z, and puts the anal verge at the origin.
+    """Turns the first centimetres until the anal canal rises along +Z, and puts the anal verge at the origin.
 
     Returns:
         The new points [m] and the angle by which the canal was turned [rad]; lengths are kept, and everything beyond
         7 cm only moves.
     """
     edge = np.diff(points, axis=0)
-    length = np.linalg.norm(edge, axis=1, keepdims=True)
-    direction = edge / length
-    arc = np.cumsum(length[:, 0]) - 0.5 * length[:, 0]
+    length = np.linalg.norm(edge, axis=1)
+    arc = np.cumsum(length) - 0.5 * length
+    first = edge[arc < _CANAL[0]].sum(0)
+    upright, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [first])
     share = np.clip((arc - _CANAL[0]) / (_CANAL[1] - _CANAL[0]), 0.0, 1.0)
-    keep = (share * share * (3 - 2 * share))[:, None]
-    turned = keep * direction + (1.0 - keep) * np.array([0.0, 0.0, 1.0])
-    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-9)
-    angle = float(np.arccos(np.clip(direction[arc < 0.03].mean(0)[2], -1.0, 1.0)))
-    return np.concatenate([np.zeros((1, 3)), np.cumsum(length * turned, axis=0)]), angle
+    fade = 1.0 - share * share * (3 - 2 * share)
+    turned = Rotation.from_rotvec(fade[:, None] * upright.as_rotvec()).apply(edge)
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(turned, axis=0)]), float(upright.magnitude())

@@ -74,7 +74,7 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
     """
     names = list(FRAMES) if frame == "auto" else [frame]
     ways = [False] if ends_known else [False, True]
-    scores = {(name, way): _likeness(path, FRAMES[name], way) for name in names for way in ways}
+    scores = {(name, way): likeness(path, FRAMES[name], way) for name in names for way in ways}
     name, way = max(scores, key=lambda key: scores[key])
     best = scores[name, way]
     other = max((score for (_, w), score in scores.items() if w != way), default=-1.0)
@@ -85,12 +85,18 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
             f"{other:.2f} the other",
             "Pass --anus X,Y,Z with the one that is the anus (and --frame for a surface).",
         )
-    mirror = _likeness(path * [-1, 1, 1], FRAMES[name], way)
+    mirror = likeness(path * [-1, 1, 1], FRAMES[name], way)
     return Orientation(name, way, best, best - other, mirror > best + _LEAST_MARGIN)
 
 
-def _likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:
-    """Returns the correlation of two courses at equal shares of their lengths."""
+def likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:
+    """Returns the correlation with a typical course at equal shares of the length, 1 at best.
+
+    Args:
+        path: Course [m], shape (n, 3).
+        rotation: From its axes to the patient's.
+        backwards: Whether it is read from its last point.
+    """
     course = (path[::-1] if backwards else path) @ rotation.T
     arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(course, axis=0), axis=1))]
     share = np.linspace(0.0, 1.0, 60)

@@ -18,9 +18,9 @@ from arcgym.anatomy.landmarks import find_landmarks
 from arcgym.anatomy.stage_types import Centerline, ColonStage, TissueMaterial
 from arcgym.anatomy.texture import write_textures
 
-from .centerline import find_path
+from .centerline import LEAST_HOLE, find_path
 from .cleaning import keep_colon
-from .course import centred, plain_curve, relaxed, resample, with_upright_canal
+from .course import centred, plain_curve, relaxed, with_upright_canal
 from .errors import ColonImportError
 from .grid import Grid
 from .landmarks import find_segment_ends
@@ -103,7 +103,7 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
     progress.done(
         "clean", f"{cleaning.pieces} pieces, {len(cleaning.bridges)} bridged, {len(cleaning.dropped)} dropped"
     )
-    course, orientation = _course(grid, settings, source["kind"] == "surface")
+    course, orientation, cleaning.cut = _course(grid, settings, source["kind"] == "surface")
     grid, course = _turned(grid, course, FRAMES[orientation.frame])
     progress.done("centreline", f"likeness {orientation.likeness:.2f}, frame {orientation.frame}")
     grid = Grid(gaussian_filter(grid.values, _SMOOTHING / grid.spacing), grid.origin, grid.spacing)
@@ -141,13 +141,15 @@ def _read(path: Path, settings: ImportSettings) -> tuple[Grid, dict[str, str]]:
     raise ColonImportError(f"{path} is of no known kind", f"Pass a file that ends in {known}.")
 
 
-def _course(grid: Grid, settings: ImportSettings, is_surface: bool) -> tuple[np.ndarray, Orientation]:
-    """Returns the way from anus to caecum in the file's axes and how these lie in the patient."""
+def _course(grid: Grid, settings: ImportSettings, is_surface: bool) -> tuple[np.ndarray, Orientation, list[Any]]:
+    """Returns the way from anus to caecum in the file's axes, how these lie in the patient, and what was cut off."""
     ends = [None if end is None else 1e-3 * np.array(end) for end in (settings.anus, settings.cecum)]
-    path = resample(find_path(grid, ends), 2 * grid.spacing)
     frame = settings.frame if is_surface else "ras"
-    orientation = orient(path, frame, ends_known=any(end is not None for end in ends))
-    return (path[::-1] if orientation.reversed else path), orientation
+    found = find_path(grid, ends, frame)
+    orientation = orient(found.points, frame, ends_known=any(end is not None for end in ends))
+    if found.filled_hole > LEAST_HOLE:
+        found.cut.append({"kind": "hole in the rectum, filled", "volume_ml": round(1e6 * found.filled_hole, 1)})
+    return (found.points[::-1] if orientation.reversed else found.points), orientation, found.cut
 
 
 def _turned(grid: Grid, course: np.ndarray, rotation: np.ndarray) -> tuple[Grid, np.ndarray]:

@@ -1,0 +1,104 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Cuts what hangs on the colon off at its neck, and fills the hole that a rectal tube leaves."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from .cleaning import in_millimetres
+from .ends import Attached
+from .grid import Grid
+from .tree import calibre
+
+_MARGIN = 0.006
+_TUBE_REACH = 0.12
+_TUBE_SECTION = 3e-4
+
+
+def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: np.ndarray) -> list[dict[str, Any]]:
+    """Sets the voxels of attached pieces to 0, in place.
+
+    A voxel goes with the piece whose wall it is deeper within: the colon's or that of what hangs on it.
+
+    Args:
+        grid: The lumen; its values are changed.
+        attached: What to cut off.
+        path: Middle line of the colon [m], shape (n, 3).
+        clearance: Distance from it to the wall [m], shape (n,).
+
+    Returns:
+        What was cut, for the report.
+    """
+    colon, width = cKDTree(path), calibre(clearance, path)
+    told = []
+    for piece in attached:
+        reach = float(piece.clearance.max()) + _MARGIN
+        low = np.maximum(np.floor(grid.index(piece.points.min(0) - reach)).astype(int), 0)
+        high = np.minimum(np.ceil(grid.index(piece.points.max(0) + reach)).astype(int) + 1, grid.values.shape)
+        box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+        index = np.argwhere(grid.values[box] > 0) + low
+        points = grid.points(index)
+        away, nearest = cKDTree(piece.points).query(points, distance_upper_bound=1.4 * reach)
+        near = np.isfinite(away)
+        index, away, nearest = index[near], away[near], nearest[near]
+        depth = away - calibre(piece.clearance, piece.points)[nearest]
+        distance, own = colon.query(points[near])
+        gone = depth < distance - width[own]
+        lumen = grid.values[tuple(index[gone].T)] > 0.5
+        grid.values[tuple(index[gone].T)] = 0.0
+        told.append(_told(piece, float(lumen.sum()) * grid.spacing**3))
+    if attached:
+        _keep_connected(grid, path)
+    return told
+
+
+def _told(piece: Attached, volume: float) -> dict[str, Any]:
+    return {
+        "kind": piece.kind,
+        "length_mm": round(1e3 * piece.length),
+        "calibre_mm": round(2e3 * float(np.median(calibre(piece.clearance, piece.points))), 1),
+        "neck_mm": round(2e3 * piece.neck, 1),
+        "volume_ml": round(1e6 * volume, 1),
+        "place_mm": in_millimetres(piece.points[0]),
+    }
+
+
+def _keep_connected(grid: Grid, path: np.ndarray) -> None:
+    """Drops what the cut has left without a way to the colon."""
+    labels, _ = ndimage.label(grid.values > 0)
+    index = np.rint(grid.index(path)).astype(int)
+    names = labels[tuple(index.T)]
+    main = np.bincount(names[names > 0]).argmax()
+    grid.values[labels != main] = 0.0
+
+
+def fill_tube(grid: Grid, anus: np.ndarray, axis: int = 2) -> float:
+    """Fills, in place, holes in cross-sections of the rectum: a tube's wall and its own lumen.
+
+    Args:
+        grid: The lumen in the patient's frame.
+        anus: Anal end [m], shape (3,).
+        axis: Axis across which the sections lie.
+
+    Returns:
+        Filled volume [m^3].
+    """
+    low = np.maximum(np.floor(grid.index(anus - _TUBE_REACH)).astype(int), 0)
+    high = np.minimum(np.ceil(grid.index(anus + _TUBE_REACH)).astype(int), grid.values.shape)
+    box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+    part = np.moveaxis(grid.values[box], axis, 0)
+    filled = 0
+    for section in part:
+        inside = section > 0.5
+        labels, count = ndimage.label(ndimage.binary_fill_holes(inside) & ~inside)
+        area = np.bincount(labels.ravel(), minlength=count + 1) * grid.spacing**2
+        small = (area < _TUBE_SECTION) & (np.arange(count + 1) > 0)
+        hole = small[labels]
+        filled += int(hole.sum())
+        section[hole] = 1.0
+    return filled * grid.spacing**3
