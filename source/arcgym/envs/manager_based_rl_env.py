@@ -89,7 +89,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
             action: Action of every world, shape (N, A).
 
         Returns:
-            Observation of each group; reward, shape (N,); terminated and truncated, bool, shape (N,); and extras:
+            Observation of each group; reward, shape (N,); terminated and truncated, bool, shape (N,); and extras with
             ``log`` (of the episodes that ended), ``time_outs`` (N,), ``cost`` (N,), ``costs`` (each term's part of it)
             and, on request and if a world is done, ``final_obs``.
         """

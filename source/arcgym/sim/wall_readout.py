@@ -98,7 +98,7 @@ def inverse_rest(corners: np.ndarray) -> np.ndarray:
         corners: Corners [m], shape (F, 3, 3).
 
     Returns:
-        (1 / a, b / a, 1 / h), shape (F, 3): length a of the first edge, part b of the second along it and h across it.
+        (1 / a, b / a, 1 / h) of the first edge's length a and the second's parts b along it and h across, shape (F, 3).
     """
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     a = np.linalg.norm(first, axis=1)

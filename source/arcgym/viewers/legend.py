@@ -53,9 +53,9 @@ def _draw_wall(draw: ImageDraw.ImageDraw, right: float, top: float, wall: WallSc
     colors = to_display(wall.paint(wall.full * np.linspace(1.0, 0.0, _BAR[1])))
     for row, color in enumerate(colors.tolist()):
         draw.line([(right - _BAR[0], top + row), (right, top + row)], fill=tuple(color))
-    for share in (0.0, 0.5, 1.0):
-        y = top + (1.0 - share) * (_BAR[1] - 1)
-        label = f"{wall.per_unit * share * wall.full:.3g} {wall.unit}"
+    for tick in wall.ticks:
+        y = top + (1.0 - tick / wall.full) * (_BAR[1] - 1)
+        label = f"{wall.per_unit * tick:.3g} {wall.unit}"
         draw.text((right - _BAR[0] - 5, y), label, fill=_TEXT, font=font(_SIZE), anchor="rm")
     draw.text((right, top + _BAR[1] + 6), wall.title, fill=_TEXT, font=font(_SIZE), anchor="ra")
 

@@ -43,6 +43,8 @@ class WallScale:
     """Shown number of a value of one."""
     full: float
     """Value at the end of the scale."""
+    ticks: tuple[float, ...]
+    """Values to label."""
     colors: np.ndarray
     """Linear RGB at even steps from zero to ``full``, shape (K, 3)."""
 
@@ -69,9 +71,11 @@ def wall_scale(kind: str, full: float | None = None, tiers: Tiers = FORCE_TIERS)
     share = np.linspace(0.0, 1.0, 257)
     if kind == "force":
         full = full or 1.07 * tiers[-1].start
-        return WallScale("force on the wall", "N", 1.0, full, _force_table(share * full, tiers))
+        ticks = tuple(tier.start for tier in tiers[1:] if tier.start <= full)
+        return WallScale("force on the wall", "N", 1.0, full, ticks, _force_table(share * full, tiers))
     title, unit, per_unit, default = _SCALES[kind]
-    return WallScale(title, unit, per_unit, full or default, deformation_colors(share))
+    full = full or default
+    return WallScale(title, unit, per_unit, full, (0.0, 0.5 * full, full), deformation_colors(share))
 
 
 def _force_table(force: np.ndarray, tiers: Tiers) -> np.ndarray:
