@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image, ImageDraw
+from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import cKDTree
 
 if TYPE_CHECKING:
@@ -92,19 +93,21 @@ def outside_views(stage: ColonStage, width: int, height: int) -> list[np.ndarray
 
 def unrolled_wall(stage: ColonStage, width: int, height: int) -> np.ndarray:
     """Draws the wall cut open along its length: mucosa shaded by height, polyps green, diverticula blue."""
-    from arcgym.anatomy.visual import TEXTURE_LENGTH
-
     visual, line = stage.visual, stage.centerline
     s, u = wall_coordinates(stage)
     center = np.stack([np.interp(s, line.arc, line.points[:, k]) for k in range(3)], 1)
     reach = np.linalg.norm(visual.points - center, axis=1) / np.interp(s, line.arc, line.radius)
     x, y = np.meshgrid((np.arange(width) + 0.5) / width * stage.length, (np.arange(height) + 0.5) / height)
     around = 2 * np.pi * float(np.median(line.radius))
-    _, near = cKDTree(np.stack([s, around * u], 1)).query(np.stack([x.ravel(), around * y.ravel()], 1))
+    place, where = np.stack([s, around * u], 1), np.stack([x.ravel(), around * y.ravel()], 1)
+    _, near = cKDTree(place).query(where)
+    turn = np.exp(2j * np.pi * visual.uv)
+    uv = np.angle(LinearNDInterpolator(place, turn)(where)) / (2 * np.pi)
+    uv = np.where(np.isnan(uv), visual.uv[near], uv)
     with Image.open(stage.albedo_texture) as image:
         albedo = np.asarray(image.convert("RGB"), float)
-    rows = (np.mod(x / TEXTURE_LENGTH, 1.0) * (len(albedo) - 1)).astype(int)
-    columns = (y * (albedo.shape[1] - 1)).astype(int)
+    columns, rows = (np.mod(uv, 1.0) * [albedo.shape[1] - 1, len(albedo) - 1]).astype(int).T
+    columns, rows = columns.reshape(height, width), rows.reshape(height, width)
     shade = np.clip(1.6 - 0.85 * reach[near], 0.25, 1.25).reshape(height, width, 1)
     tint = visual.tint[near].reshape(height, width, 1)
     picture = albedo[rows, columns] * shade

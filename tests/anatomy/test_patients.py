@@ -95,7 +95,7 @@ def test_no_polyps_or_diverticula(stages: dict[str, ColonStage], name: str) -> N
     assert np.abs(stages[name].visual.tint).max() < 0.5
 
 
-@pytest.mark.parametrize("name", ["colon_2", "colon_3", "colon_4", "colon_5"])
+@pytest.mark.parametrize("name", list(PATIENTS))
 def test_caecum_has_valve_and_appendix(stages: dict[str, ColonStage], name: str) -> None:
     marks = stages[name].landmarks
     order = ["cecum_entry", "ileocecal_valve", "appendix_orifice", "cecum_pole"]

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .centerline import make_centerline
+from .compact import compact
 from .landmarks import find_landmarks
 from .lesions import Lesion, place_lesions
 from .posture import make_posed, repose
@@ -64,11 +65,12 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     folder.mkdir(parents=True, exist_ok=True)
     albedo, detail = write_textures(folder, spec.seed, spec.mucosa)
     openings = {_OPENINGS[lesion.kind]: lesion.s for lesion in lesions if lesion.kind in _OPENINGS}
+    fine = spec.visual_rows, spec.visual_columns, spec.visual_refinements
     return ColonStage(
         name=spec.name,
         wall=wall,
-        visual=sample_visual(surface, wall, lesions, spec.visual_rows, spec.visual_columns, spec.visual_refinements),
-        visual_proxy=sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1),
+        visual=compact(sample_visual(surface, wall, lesions, *fine)),
+        visual_proxy=compact(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1)),
         centerline=_sample_centerline(surface),
         landmarks=find_landmarks(surface.curve, openings),
         material=spec.material,

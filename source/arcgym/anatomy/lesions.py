@@ -12,16 +12,13 @@ from scipy.interpolate import PchipInterpolator
 
 from .segments import SEGMENTS
 from .spec import PolypSpec
-from .surface import DOME_LENGTH, Surface
+from .surface import DOME_LENGTH, SEAM_MARGIN, Surface
 
-WIDE_NECK = 0.005
-"""Neck radius from which a diverticulum is also in the simulated wall [m]: that of a 10 mm capsule."""
+WIDE_NECK = 0.007
+"""Neck radius from which a diverticulum is also in the simulated wall [m]: a 13 mm colonoscope fits into it."""
 
-_SEAM = 0.7
-"""Least angle from a lesion's middle to the texture's seam [rad]."""
-
-_MEDIAL = np.array([-0.8, -0.6, 0.0])
-"""Direction from the caecum to the ileum: the patient's left and back."""
+_BEND_NEAR, _BEND_SHARE = 0.02, 0.5
+"""How near a bend counts [m], and how far towards its centre a wide sac may reach as a share of its radius."""
 
 _PARIS = {"Ip": ("pedunculated", 1.2), "Is": ("sessile", 1.1), "IIa": ("flat", 0.45)}
 """Kind of lesion, and its height over its radius, by Paris class."""
@@ -69,16 +66,16 @@ def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
 
 
 def _openings(surface: Surface) -> list[Lesion]:
-    """Places the ileocaecal valve at the medial wall where the caecum begins, the appendix orifice 25 mm below."""
-    start, _ = surface.curve.bounds("cecum")
-    places = ("valve", start + 0.002, 0.011, 0.009), ("appendix", start + 0.026, 0.0028, 0.005)
-    found = []
-    for kind, s, size, depth in places:
-        s = min(s, surface.curve.length - DOME_LENGTH - 0.008)
-        _, normal, binormal = surface.curve.frame(np.array(s))
-        theta = float(np.arctan2(binormal @ _MEDIAL, normal @ _MEDIAL)) % (2 * np.pi)
-        found.append(Lesion(kind, s, float(np.clip(theta, _SEAM, 2 * np.pi - _SEAM)), size, depth, 1.0))
-    return found
+    """Places the ileocaecal valve on its fold at the medial wall, the appendix orifice 28 mm below."""
+    s, theta = surface.ileum
+    below = min(s + 0.028, surface.curve.length - DOME_LENGTH - 0.008)
+    angle = surface.medial_angle(below)
+    return [Lesion("valve", s, theta, 0.011, 0.0065, 1.0), Lesion("appendix", below, angle, 0.0028, 0.005, 1.0)]
+
+
+def _meets(surface: Surface, row: int, theta: float) -> bool:
+    """Tells whether the folds of a row reach to an angle."""
+    return bool(np.cos(theta - surface.taenia - (row + 0.5) * 2 * np.pi / 3) > 0.3)
 
 
 def _place(
@@ -87,7 +84,7 @@ def _place(
     start, end = surface.curve.bounds(name)
     for _ in range(4000):
         s = rng.uniform(start + 0.012, min(end - 0.012, surface.curve.length - 0.05))
-        lesion = _draw(surface, kind, s, rng.uniform(_SEAM, 2 * np.pi - _SEAM), rng)
+        lesion = _draw(surface, kind, s, rng.uniform(SEAM_MARGIN, 2 * np.pi - SEAM_MARGIN), rng)
         if _off_folds(surface, lesion) and all(_apart(surface, lesion, other) for other in others):
             return lesion
     raise ValueError(f"ColonSpec.segments['{name}']: no room for another {kind}; ask for fewer.")
@@ -99,7 +96,8 @@ def _draw(surface: Surface, kind: str | PolypSpec, s: float, theta: float, rng: 
         shape, height = _PARIS[kind.paris]
         return Lesion(shape, s, theta, 0.5 * kind.diameter, 0.5 * kind.diameter * height, 1.0)
     if kind == "wide diverticulum":
-        return Lesion("diverticulum", s, theta, rng.uniform(*spec.wide_neck), rng.uniform(0.010, 0.013), 1.2)
+        s, theta = _between_rings(surface, s, theta)
+        return Lesion("diverticulum", s, theta, rng.uniform(*spec.wide_neck), rng.uniform(0.011, 0.014), 1.15)
     if kind == "diverticulum":
         neck = rng.uniform(*spec.diverticulum_neck)
         return Lesion(kind, s, theta, neck, rng.uniform(0.006, 0.010), rng.uniform(1.25, 1.6))
@@ -108,14 +106,26 @@ def _draw(surface: Surface, kind: str | PolypSpec, s: float, theta: float, rng: 
     return Lesion(shape, s, theta, radius, radius * rng.uniform(0.9, 1.5), 1.0)
 
 
+def _between_rings(surface: Surface, s: float, theta: float) -> tuple[float, float]:
+    """Returns the middle of the wall's cell at a place: its four vertices then carry the sac together."""
+    arc, step = surface.ring_arc(), 2 * np.pi / surface.spec.sectors
+    k = int(np.clip(np.searchsorted(arc, s), 1, len(arc) - 1))
+    return float(0.5 * (arc[k - 1] + arc[k])), float((np.floor(theta / step) + 0.5) * step)
+
+
 def _off_folds(surface: Surface, lesion: Lesion) -> bool:
+    """Tells whether there is no fold or rectal valve on the patch, nor the inside of a bend behind a wide sac."""
+    wide = lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK
+    if wide:
+        s = lesion.s + np.array([-_BEND_NEAR, 0.0, _BEND_NEAR])
+        bend = surface.curve.interpolate(s, surface.curve.curvature_vector)
+        towards = (bend * surface.outwards(s, np.full(3, lesion.theta))).sum(1).max()
+        if towards * (float(surface.lumen_radius(s)[1]) + lesion.depth) > _BEND_SHARE:
+            return False
     if any(abs(lesion.s - valve.s) < lesion.patch + 0.012 for valve in surface.valves):
         return False
-    for k, row in enumerate(surface.rows):
-        middle = surface.taenia + (k + 0.5) * 2 * np.pi / 3
-        if np.cos(lesion.theta - middle) > 0.3 and np.abs(row.s - lesion.s).min() < 0.75 * lesion.patch:
-            return False
-    return True
+    near = [np.abs(row.s - lesion.s).min() for k, row in enumerate(surface.rows) if _meets(surface, k, lesion.theta)]
+    return all(distance >= (0.9 if wide else 0.75) * lesion.patch for distance in near)
 
 
 def _apart(surface: Surface, lesion: Lesion, other: Lesion) -> bool:
@@ -228,7 +238,7 @@ def wall_bulge(surface: Surface, lesions: Sequence[Lesion], s: np.ndarray, theta
     for lesion in lesions:
         if lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK:
             share = distance_to(surface, lesion, s, theta) / lesion.patch
-            bulge = np.maximum(bulge, lesion.depth * np.clip(1.0 - share**2, 0.0, 1.0))
+            bulge = np.maximum(bulge, lesion.depth * (1.0 - _ramp(0.6, 1.1, share)))
     return bulge
 
 

@@ -17,13 +17,15 @@ def colon_1() -> ColonSpec:
     segments["descending"] = replace(segments["descending"], diverticula=12)
     segments["transverse"] = replace(segments["transverse"], polyps=1)
     segments["sigmoid"] = replace(segments["sigmoid"], polyps=1)
-    return ColonSpec(
-        name="colon_1",
-        patient="man, 65 years: slightly redundant sigmoid with sharp angulations, descending diverticula; supine",
-        seed=3,
-        segments=segments,
-        sigmoid_shape="angulated",
-        openings=False,
+    return _compact(
+        ColonSpec(
+            name="colon_1",
+            patient="man, 65 years: slightly redundant sigmoid with sharp angulations, descending diverticula; supine",
+            seed=3,
+            segments=segments,
+            sigmoid_shape="angulated",
+            acute_bends=10,
+        )
     )
 
 
@@ -44,9 +46,10 @@ def colon_3() -> ColonSpec:
         ColonSpec(
             name="colon_3",
             patient="man, 51 years: redundant transverse colon, no polyps; supine (the patient of colon_2)",
-            seed=1,
+            seed=3,
             segments=segments,
-            sigmoid_shape="looped",
+            sigmoid_shape="angulated",
+            acute_bends=11,
             transverse_sag=0.17,
             mucosa=MucosaSpec(paleness=0.62, redness=0.12, vessels=1.15),
         )
@@ -75,6 +78,8 @@ def colon_4() -> ColonSpec:
             segments=lengths,
             sigmoid_shape="redundant",
             transverse_shape="redundant",
+            acute_bends=14,
+            min_bend_radius=0.028,
             transverse_sag=0.13,
             mucosa=MucosaSpec(paleness=0.35, redness=0.12, vessels=1.35),
         )
@@ -94,8 +99,8 @@ def colon_5() -> ColonSpec:
             seed=0,
             segments=segments,
             sigmoid_shape="looped",
+            acute_bends=11,
             polyp_list=COLON_5_POLYPS,
-            visual_refinements=2,
             mucosa=MucosaSpec(paleness=0.40, redness=0.34, vessels=0.8, stool=0.12),
         )
     )
@@ -121,8 +126,10 @@ def _with_lengths(**lengths: float) -> dict[str, SegmentSpec]:
 
 
 def _compact(spec: ColonSpec) -> ColonSpec:
-    """Makes files of about 3 MB instead of 8, as the repository holds them all."""
-    return replace(spec, visual_rows=450, visual_columns=54, mucosa=replace(spec.mucosa, width=512))
+    """Makes files of less than 3 MB instead of 7, as the repository holds them all."""
+    return replace(
+        spec, visual_rows=430, visual_columns=50, visual_refinements=2, mucosa=replace(spec.mucosa, width=512)
+    )
 
 
 PATIENTS: dict[str, Callable[[], ColonSpec]] = {

@@ -22,10 +22,13 @@ _LENGTH_TRIALS = 4
 
 
 def make_posed(spec: ColonSpec, reference: Curve, seed: int) -> Curve:
-    """Generates the course in the spec's posture, asking for other lengths until segments are as long as before."""
+    """Generates the course in the spec's posture, asking for other lengths until segments are as long as before.
+
+    Tied segments stay where they are; the wall keeps its acute bends, which turn another way.
+    """
     segments = dict(spec.segments)
     for _ in range(_LENGTH_TRIALS):
-        posed = make_centerline(replace(spec, segments=segments), np.random.default_rng(seed))
+        posed = make_centerline(replace(spec, segments=segments), np.random.default_rng(seed), reference)
         ratio = (reference.ends - reference.starts) / (posed.ends - posed.starts)
         segments = {
             name: replace(segment, length=float(segment.length * ratio[k]))

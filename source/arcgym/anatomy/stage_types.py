@@ -65,7 +65,8 @@ class VisualMesh:
     normals: np.ndarray
     """Unit normals towards the lumen, shape (M, 3), float32."""
     uv: np.ndarray
-    """Texture coordinates, u around the lumen (0 to 1), v = s / 0.24 m, shape (M, 2), float32."""
+    """Texture coordinates: u turns around the lumen, v along it, one unit each repeat of the texture (0.24 m of colon).
+    Both may leave 0 to 1; shape (M, 2), float32."""
     tint: np.ndarray
     """Above 0 on polyps, below 0 inside diverticula, in [-1, 1], shape (M,), float32."""
     skin_indices: np.ndarray

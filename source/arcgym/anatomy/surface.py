@@ -17,7 +17,20 @@ from .spec import ColonSpec
 DOME_LENGTH = 0.030
 """Length over which the caecum closes [m]."""
 
-_BEND_LIMIT = 0.85
+LAST_RING_GAP = 0.003
+"""Distance of the last ring from the caecal pole [m]."""
+
+SEAM_MARGIN = 0.7
+"""Least angle from a lesion's middle to the texture's seam [rad]."""
+
+_MEDIAL = np.array([-0.8, -0.6, 0.0])
+"""Direction from the caecum to the ileum: the patient's left and back."""
+
+_ILEUM = 0.004
+"""Where the ileum enters, above the beginning of the caecum [m]."""
+
+_BEND_LIMIT = 0.62
+"""Largest radius over the bend's on its inside: rings then keep a third of their spacing, and the lumen flattens."""
 
 
 class Surface:
@@ -30,12 +43,32 @@ class Surface:
         self.taenia = rng.uniform(0, 2 * np.pi)
         self.rows = make_fold_rows(spec, curve, rng)
         self.valves = make_valves(curve, rng)
+        s = curve.bounds("cecum")[0] + _ILEUM
+        self.ileum = s, self.medial_angle(s)
+        if spec.openings:
+            self._put_fold_at(*self.ileum)
+
+    def medial_angle(self, s: float) -> float:
+        """Returns the angle of the medial wall [rad], kept off the seam of the texture."""
+        _, normal, binormal = self.curve.frame(np.array(s))
+        theta = float(np.arctan2(binormal @ _MEDIAL, normal @ _MEDIAL)) % (2 * np.pi)
+        return float(np.clip(theta, SEAM_MARGIN, 2 * np.pi - SEAM_MARGIN))
+
+    def _put_fold_at(self, s: float, theta: float) -> None:
+        """Moves the nearest fold to a place: the ileocaecal valve sits on one."""
+        row = self.rows[int(self.sector(np.array([theta]))[0][0])]
+        row.s[np.abs(row.s - s).argmin()] = s
 
     def reposed(self, curve: Curve) -> Surface:
         """Returns the same surface along another course of the same length, see :mod:`arcgym.anatomy.posture`."""
         surface = copy(self)
         surface.curve = curve
         return surface
+
+    def ring_arc(self) -> np.ndarray:
+        """Returns the arc length of the wall's rings [m]; the last stands short of the pole, where the dome is wide."""
+        end = self.curve.length - LAST_RING_GAP
+        return np.linspace(0.0, end, round(end / self.spec.ring_spacing) + 1)
 
     def lumen_radius(self, s: np.ndarray) -> np.ndarray:
         """Returns the mean radius between folds at ``s`` [m], without the dome of the caecum."""

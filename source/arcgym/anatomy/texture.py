@@ -21,7 +21,7 @@ SLOPE_RANGE = 1.0
 HEIGHT_RANGE = 0.5
 """Height [mm] that the detail texture's blue encodes from 0 to 255, centred on 0."""
 
-_DETAIL_BITS = np.array([0xFE, 0xFE, 0xF8, 0xF8], np.uint8)
+_DETAIL_BITS = np.array([0xFC, 0xFC, 0xF0, 0xF0], np.uint8)
 """Bits kept of slopes, height and wetness: the rest is noise that would double the size of the file."""
 
 _PIXEL = 0.12
@@ -37,7 +37,7 @@ def write_textures(folder: Path, seed: int, look: MucosaSpec | None = None) -> t
         detail &= _DETAIL_BITS
     paths = folder / "mucosa_albedo.jpg", folder / "mucosa_detail.png"
     Image.fromarray(albedo).save(paths[0], quality=92, subsampling=0)
-    Image.fromarray(detail).save(paths[1], compress_level=7)
+    Image.fromarray(detail).save(paths[1], compress_level=9)
     return paths
 
 
@@ -63,9 +63,8 @@ def make_textures(
     """
     rng = np.random.default_rng([seed, 7])
     noise = _Noise(rng, height, width)
-    scale = width / WIDTH
-    trunks = draw_vessels(rng, height, width, count=round(26 * scale**2), trunk=5.5, steps=46)
-    fine = draw_vessels(rng, height, width, count=round(150 * scale**2), trunk=2.4, steps=24)
+    trunks = draw_vessels(rng, height, width)
+    fine = draw_vessels(rng, height, width, fine=True)
     look = look or MucosaSpec()
     albedo, detail = _albedo(noise, trunks, fine, look), _detail(noise, trunks)
     return _soil(noise, albedo, detail, look.stool) if look.stool else (albedo, detail)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from .bends import acute_bends
 from .measures import flipped_normal_fraction, tet_quality, tet_volumes, winds_outwards
 from .segments import SEGMENTS
 from .spec import ColonSpec
@@ -21,6 +22,15 @@ MIN_TET_QUALITY = 0.04
 
 LENGTH_TOLERANCE = 0.08
 """Largest relative error of a segment's length."""
+
+
+BEND_TOLERANCE = 0.85
+"""Least radius of the centreline over the wanted one: what relaxation leaves between bends that crowd each other."""
+
+RING_TOLERANCE = 0.32
+"""Least distance of two rings on the inside of a bend over their spacing; thinner triangles would hurt the solver."""
+
+_END_SAMPLES = 3
 
 
 @dataclass(frozen=True)
@@ -58,19 +68,27 @@ def validate_curve(spec: ColonSpec, surface: Surface) -> list[Check]:
     sharpest = float((curve.curvature * surface.mean_radius).max())
     wanted = np.array([spec.segments[name].length for name in SEGMENTS])
     error = np.abs((curve.ends - curve.starts) / wanted - 1.0).max()
-    return [
+    least = 1.0 / float(curve.curvature[_END_SAMPLES:-_END_SAMPLES].max())
+    checks = [
         Check("curvature times lumen radius", sharpest, 1.0, at_least=False),
+        Check("least bend radius [m]", least, BEND_TOLERANCE * spec.min_bend_radius, at_least=True),
         Check("relative error of segment lengths", float(error), LENGTH_TOLERANCE, at_least=False),
     ]
+    if spec.acute_bends is not None:
+        off = abs(len(acute_bends(curve.points, curve.s)) - spec.acute_bends)
+        checks.append(Check("acute bends more or less than wanted", off, 1, at_least=False))
+    return checks
 
 
 def validate_wall(wall: WallMesh, spec: ColonSpec | None = None) -> list[Check]:
     """Checks the wall: tetrahedra, gap between loops, room for the scope."""
     gap = 0.0 if spec is None else spec.clearance
     room = 0.0066 if spec is None else 0.95 * spec.min_lumen_radius
+    apart = 0.0 if spec is None else RING_TOLERANCE * spec.ring_spacing
     return [
         Check("least tetrahedron volume [m^3]", float(tet_volumes(wall.points, wall.tets).min()), 1e-12, at_least=True),
         Check("least tetrahedron quality", float(tet_quality(wall.points, wall.tets).min()), MIN_TET_QUALITY, True),
+        Check("least distance of rings [m]", ring_distance(wall), apart, at_least=True),
         Check("gap between loops [m]", loop_gap(wall), gap, at_least=True),
         Check("least lumen radius [m]", float(ring_radii(wall).min()), room, at_least=True),
     ]
@@ -119,6 +137,12 @@ def ring_centers(wall: WallMesh) -> np.ndarray:
     """Returns the mean position of each ring's inner vertices [m], shape (R, 3)."""
     inner = wall.points[wall.layer == 0]
     return inner.reshape(wall.num_rings, -1, 3).mean(1)
+
+
+def ring_distance(wall: WallMesh) -> float:
+    """Returns the least distance between vertices of neighbouring rings at the middle of the wall [m]."""
+    points = wall.points.reshape(wall.layer.max() + 1, wall.num_rings, -1, 3).astype(float)
+    return float(np.linalg.norm(np.diff(points.mean(0), axis=0), axis=-1).min())
 
 
 def ring_radii(wall: WallMesh) -> np.ndarray:

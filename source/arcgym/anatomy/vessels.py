@@ -10,9 +10,14 @@ import numpy as np
 from PIL import Image, ImageDraw
 from scipy.ndimage import gaussian_filter
 
+from .vessel_styles import STYLES, VesselStyle
+
 _STEP = 6.0
 _SUPERSAMPLE = 2
 _THINNEST = 0.7
+_FINE_STEPS = 24
+_FULL_WIDTH = 1024
+_OVER_THE_EDGE = 20.0
 _MURRAY = 1.0 / 3.0
 """By Murray's law (PNAS, 1926) the cubes of the branches' widths add up to the cube of their parent's."""
 
@@ -28,46 +33,57 @@ class _Branch:
     """Whether it comes up from the depth and so begins thin."""
 
 
-def draw_vessels(rng: np.random.Generator, height: int, width: int, count: int, trunk: float, steps: int) -> np.ndarray:
-    """Draws random vessel trees.
+def draw_vessels(rng: np.random.Generator, height: int, width: int, fine: bool = False) -> np.ndarray:
+    """Draws random vessel trees, those of each stretch of the colon in its band of the image.
 
     Args:
         rng: Source of randomness.
         height: Rows of the image.
         width: Columns of the image.
-        count: Number of trees.
-        trunk: Width of the widest vessel [px].
-        steps: Length of the longest unbranched vessel in steps of 6 px.
+        fine: Draws small vessels rather than trunks.
 
     Returns:
         Density of blood, 0 to 1, periodic in both directions, shape (height, width).
     """
     canvas = Image.new("L", (_SUPERSAMPLE * width, _SUPERSAMPLE * height), 0)
     pen = ImageDraw.Draw(canvas)
-    branches = [_trunk(rng, height, width, trunk, steps) for _ in range(count)]
-    while branches:
-        branch = branches.pop()
-        path, children = _grow(rng, branch)
-        _stroke(pen, path, branch, trunk, (width, height))
-        branches += children
-    image = np.asarray(canvas.resize((width, height), Image.Resampling.BOX), float) / 255
+    for style in STYLES:
+        thickest = style.fine_width if fine else style.trunk_width
+        share = (style.band[1] - style.band[0]) * (width / _FULL_WIDTH) ** 2
+        count = round(share * (style.fine if fine else style.trunks))
+        branches = [_trunk(rng, height, width, style, fine) for _ in range(count)]
+        band = np.array(style.band) * height + [-_OVER_THE_EDGE, _OVER_THE_EDGE]
+        while branches:
+            branch = branches.pop()
+            path, children = _grow(rng, branch, style.branching, band)
+            _stroke(pen, path, branch, thickest, (width, height))
+            branches += children
+    image = np.asarray(canvas.resize((width, height), Image.Resampling.BOX), np.float32) / 255
     return gaussian_filter(image, 0.45, mode="wrap")
 
 
-def _trunk(rng: np.random.Generator, height: int, width: int, trunk: float, steps: int) -> _Branch:
-    x, y, angle = rng.uniform(0, width), rng.uniform(0, height), rng.uniform(0, 2 * np.pi)
-    return _Branch(x, y, angle, trunk * rng.uniform(0.6, 1.0), int(steps * rng.uniform(0.5, 1.0)), True)
+def _trunk(rng: np.random.Generator, height: int, width: int, style: VesselStyle, fine: bool) -> _Branch:
+    x, y = rng.uniform(0, width), height * rng.uniform(*style.band)
+    angle = np.pi * rng.integers(2) + rng.normal(0.0, 3.0 if fine else style.spread)
+    thickest, steps = (style.fine_width, _FINE_STEPS) if fine else (style.trunk_width, style.trunk_steps)
+    return _Branch(x, y, angle, thickest * rng.uniform(0.6, 1.0), int(steps * rng.uniform(0.5, 1.0)), True)
 
 
-def _grow(rng: np.random.Generator, branch: _Branch) -> tuple[np.ndarray, list[_Branch]]:
-    """Walks along a smoothly winding vessel and lets side branches off; it ends in a fork."""
+def _grow(
+    rng: np.random.Generator, branch: _Branch, branching: float, band: np.ndarray
+) -> tuple[np.ndarray, list[_Branch]]:
+    """Walks along a smoothly winding vessel and lets side branches off; it ends in a fork, or where its band ends."""
     bend = np.cumsum(rng.normal(0, 0.05, branch.steps)) + 0.28 * np.sin(np.arange(branch.steps) / rng.uniform(3, 7))
     angle = branch.angle + bend - bend[0]
     path = np.stack([branch.x + _STEP * np.cumsum(np.cos(angle)), branch.y + _STEP * np.cumsum(np.sin(angle))], 1)
+    outside = (path[:, 1] < band[0]) | (path[:, 1] > band[1])
+    steps = int(outside.argmax()) if outside.any() else branch.steps
     children: list[_Branch] = []
-    for k in range(4, branch.steps - 2):
-        if rng.uniform() < 0.10:
+    for k in range(4, steps - 2):
+        if rng.uniform() < branching:
             children += _side(rng, branch, path[k], angle[k], rng.uniform(0.15, 0.45), k / branch.steps)
+    if steps < branch.steps:
+        return path[:steps], children
     share = rng.uniform(0.35, 0.65)
     for part, side in ((share, 1.0), (1.0 - share, -1.0)):
         child = _child(branch, path[-1], angle[-1] + side * rng.uniform(0.3, 0.75), part, 0.62)
@@ -90,6 +106,8 @@ def _child(branch: _Branch, at: np.ndarray, angle: float, share: float, length: 
 
 def _stroke(pen: ImageDraw.ImageDraw, path: np.ndarray, branch: _Branch, trunk: float, size: tuple[int, int]) -> None:
     """Draws one vessel, thinning towards its end, on the image and on its periodic copies."""
+    if len(path) < 2:
+        return
     ink = int(255 * min(1.0, 0.35 + 0.65 * branch.width / trunk))
     low, high = path.min(0) - branch.width, path.max(0) + branch.width
     shifts = [np.arange(-np.floor(high[k] / size[k]), -np.floor(low[k] / size[k]) + 1) for k in (0, 1)]

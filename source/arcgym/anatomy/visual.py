@@ -10,11 +10,16 @@ from .lesions import Lesion, distance_to, shape_lesion
 from .measures import face_normals
 from .refine import refine
 from .rows import row_positions
+from .segments import SEGMENTS
 from .stage_types import VisualMesh, WallMesh
 from .surface import DOME_LENGTH, Surface
+from .vessel_styles import texture_rows
 
 TEXTURE_LENGTH = 0.24
 """Length of colon that one repeat of the texture covers [m]."""
+
+_TWIST = 0.55
+_DOME_ROW = 0.875
 
 
 def sample_visual(
@@ -143,14 +148,15 @@ def _shaped_points(
 def _texture_coordinates(surface: Surface, s: np.ndarray, theta: np.ndarray, dome: np.ndarray) -> np.ndarray:
     """Returns u round the lumen and v along it; on the dome, equal distances from the pole in every direction.
 
-    A polar chart would squeeze the texture into streaks at the pole.
+    u turns slowly with the arc length, so that no two passes over a band of the texture look the same. A polar chart would squeeze the texture into streaks at the pole.
     """
-    uv = np.stack([theta / (2 * np.pi), s / TEXTURE_LENGTH], 1)
+    bounds = {name: surface.curve.bounds(name) for name in SEGMENTS}
+    uv = np.stack([theta / (2 * np.pi) + s / _TWIST, texture_rows(s, bounds, TEXTURE_LENGTH)], 1)
     edge = surface.curve.length - DOME_LENGTH
     rim = float(surface.lumen_radius(np.array(edge)))
     close = np.clip((surface.curve.length - s[dome]) / DOME_LENGTH, 0.0, 1.0)
     meridian = np.arccos(1.0 - close) * 0.5 * (rim + DOME_LENGTH)
     u = 0.5 + meridian * np.cos(theta[dome]) / (2 * np.pi * rim)
-    v = edge / TEXTURE_LENGTH + meridian * np.sin(theta[dome]) / TEXTURE_LENGTH
+    v = _DOME_ROW + meridian * np.sin(theta[dome]) / TEXTURE_LENGTH
     uv[dome] = np.stack([u, v], 1)
     return uv

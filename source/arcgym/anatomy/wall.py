@@ -12,6 +12,7 @@ from .lesions import Lesion, wall_bulge
 from .measures import tet_volumes
 from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from .stage_types import WallMesh
+from .surface import LAST_RING_GAP as LAST_RING_GAP
 from .surface import Surface
 
 FIXED_RINGS_START = 3
@@ -19,9 +20,6 @@ FIXED_RINGS_START = 3
 
 FIXED_RINGS_END = 2
 """Rings held still at the blind end, so that the simulated piece is held at both ends."""
-
-LAST_RING_GAP = 0.003
-"""Distance of the last ring from the caecal pole [m]."""
 
 
 def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarray, capped: bool = True) -> WallMesh:
@@ -133,11 +131,10 @@ def _frame_neighbors(layers: int, rings: int, sectors: int) -> np.ndarray:
 def sample_wall(surface: Surface, lesions: Sequence[Lesion] = ()) -> WallMesh:
     """Samples a surface on the ring grid of its spec and gives it thickness; of the lesions, wide diverticula show.
 
-    The last ring stands a few millimetres short of the caecal pole, where the dome is still wide, and is closed.
+    The last ring is closed.
     """
     spec, curve = surface.spec, surface.curve
-    end = curve.length - LAST_RING_GAP
-    arc = np.linspace(0.0, end, round(end / spec.ring_spacing) + 1)
+    arc = surface.ring_arc()
     theta = np.arange(spec.sectors) * 2 * np.pi / spec.sectors
     s, angle = np.meshgrid(arc, theta, indexing="ij")
     radius = surface.radius(s, angle, spec.wall_fold_depth, spec.wall_fold_width)
