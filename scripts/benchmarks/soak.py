@@ -50,7 +50,11 @@ def make_parser() -> argparse.ArgumentParser:
         "--robots", type=names, default=list(ROBOTS), help="robots (default: Capsule,Magnetic,Proximal)"
     )
     parser.add_argument("--segments", type=names, default=["Sigmoid"], help="segments of the tasks (default: Sigmoid)")
-    parser.add_argument("--num_envs", type=positive, help=f"worlds (default: {GPU_WORLDS} on a GPU, else {CPU_WORLDS})")
+    parser.add_argument(
+        "--num_envs",
+        type=positive,
+        help=f"worlds, 8 or more for all kinds of actions (GPU: {GPU_WORLDS}, CPU: {CPU_WORLDS})",
+    )
     parser.add_argument("--steps", type=positive, help=f"control steps of all tasks and worlds (GPU: {GPU_STEPS})")
     parser.add_argument("--minutes", type=float, help=f"longest time, shared by the tasks (CPU: {CPU_MINUTES:g})")
     parser.add_argument("--device", help="cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)")

@@ -17,6 +17,8 @@ LUMEN_EVERY = 10
 """Control steps between two searches for links outside the lumen."""
 FORCES = ("wall_force_w", "wall_force_peak", "base_force", "tip_pull_force_w")
 """Forces in the endoscope's data."""
+LOADS = ("wall_strain_peak", "anchor_tension_peak")
+"""Strains and forces in the colon's data."""
 
 
 class Watch:
@@ -61,12 +63,13 @@ class Watch:
             self._examined += examined.sum()
 
     def _count_not_finite(self, obs: Any, reward: torch.Tensor, extras: dict[str, Any]) -> None:
-        data = self._env.scene["endoscope"].data
+        data, colon = self._env.scene["endoscope"].data, self._env.scene["colon"].data
         returned = leaves("obs", obs) | leaves("extras", {key: extras[key] for key in ("cost", "costs")})
         state = leaves("state", self._env.sim.world_arrays())
         force = {f"force/{name}": getattr(data, name) for name in FORCES}
+        force |= {f"force/{name}": getattr(colon, name) for name in LOADS}
         for name, value in {**returned, "reward": reward, **state, **force}.items():
-            worlds = (~torch.isfinite(value)).view(len(value), -1).any(dim=1).sum()
+            worlds = (~torch.isfinite(value)).reshape(len(value), -1).any(dim=1).sum()
             self._not_finite[name] = self._not_finite.get(name, 0) + worlds
 
     def _note_largest(self) -> None:
@@ -76,6 +79,7 @@ class Watch:
             "base_force": data.base_force.abs(),
             "tip_pull": data.tip_pull_force_w.norm(dim=1),
             "wall_displacement": colon.nodal_displacement.amax(dim=1),
+            **{name.removesuffix("_peak"): getattr(colon, name).amax(dim=1) for name in LOADS},
             "link_speed": data.body_lin_vel_w.norm(dim=2).amax(dim=1),
         }
         for name, value in found.items():
