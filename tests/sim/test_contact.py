@@ -49,12 +49,7 @@ def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.nd
 
 def force_on_wall(sim: Simulation) -> np.ndarray:
     """Force on each wall vertex at rest [N], shape (V, 3): contact alone, friction left out."""
-    wall, contact = sim.wall, sim.contact
-    out = wp.zeros_like(sim.nodal_pos)
-    args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
-    args += [contact.links, contact.law, 1, sim.state.body_q, sim.nodal_pos, out]
-    wp.launch(wall.kernels.residual, out.shape, args, device="cpu")
-    return out.numpy()[:, 0]
+    return sim.wall.static_force(sim.nodal_pos, sim.contact, sim.state.body_q).numpy()[:, 0]
 
 
 def count(sim: Simulation) -> int:

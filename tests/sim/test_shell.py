@@ -94,12 +94,10 @@ def sim(tiny_sim: TinySim) -> Simulation:
 
 def elastic_force(sim: Simulation, points: np.ndarray) -> np.ndarray:
     """Force of the wall's elements at ``points`` [N], shape (V, 3), without anchors and inertia."""
-    wall, contact = sim.wall, sim.contact
     x = wp.array(points[:, None].astype(np.float32), dtype=wp.vec3, device="cpu")
-    out = wp.zeros_like(x)
-    args = [wall.nodes, wall.elements, wall.tissue, 1.0e6, x, contact.records, contact.links, contact.law, 1]
-    wp.launch(wall.kernels.residual, out.shape, [*args, sim.state.body_q, x, out], device="cpu")
-    anchors = wall.nodes.anchors.stiffness.numpy()[:, None] * (points - wall.nodes.anchors.rest.numpy())
+    out = sim.wall.static_force(x, sim.contact, sim.state.body_q)
+    nodes = sim.wall.nodes
+    anchors = nodes.anchors.stiffness.numpy()[:, None] * (points - nodes.anchors.rest.numpy())
     return out.numpy()[:, 0] + anchors
 
 

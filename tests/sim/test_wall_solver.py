@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import torch
-import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation, WallSolverCfg
@@ -27,12 +26,7 @@ def step_wall(sim: Simulation, steps: int) -> None:
 
 def force_on_wall(sim: Simulation) -> np.ndarray:
     """Elastic, anchor and contact force on each vertex that moves [N], shape (V, 3)."""
-    wall, contact = sim.wall, sim.contact
-    out = wp.zeros_like(sim.nodal_pos)
-    args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
-    args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
-    wp.launch(wall.kernels.residual, out.shape, args, device="cpu")
-    return out.numpy()[:, 0]
+    return sim.wall.static_force(sim.nodal_pos, sim.contact, sim.state.body_q).numpy()[:, 0]
 
 
 def held(sim: Simulation) -> np.ndarray:

@@ -26,6 +26,12 @@ class ShellGeometry:
     """[m^2], shape (F,)."""
     hinges: np.ndarray
     """Two opposite vertices, then start and end of the edge, shape (H, 4)."""
+    sides: np.ndarray
+    """Triangles of the two opposite vertices, shape (H, 2)."""
+    foot: np.ndarray
+    """Where along the edge the opposite vertices stand, from 0 at its start to 1 at its end, shape (H, 2)."""
+    length: np.ndarray
+    """Length of the edge [m], shape (H,)."""
     rest_angle: np.ndarray
     """Dihedral angle [rad], shape (H,)."""
     weight: np.ndarray
@@ -42,9 +48,13 @@ def shell_geometry(points: np.ndarray, triangles: np.ndarray) -> ShellGeometry:
     across = np.cross(normal / (2.0 * area[:, None]), along)
     edges = np.stack([np.stack([(d * along).sum(1), (d * across).sum(1)], 1) for d in (b - a, c - a)], axis=2)
     hinges, sides = _hinges(triangles)
-    length = np.linalg.norm(points[hinges[:, 3]] - points[hinges[:, 2]], axis=1)
+    edge = points[hinges[:, 3]] - points[hinges[:, 2]]
+    length = np.linalg.norm(edge, axis=1)
+    opposite = points[hinges[:, :2]] - points[hinges[:, 2:3]]
+    foot = np.einsum("hki,hi->hk", opposite, edge) / length[:, None] ** 2
     weight = BENDING_WEIGHT * 3.0 * length**2 / area[sides].sum(axis=1)
-    return ShellGeometry(triangles, np.linalg.inv(edges), area, hinges, fold_angles(points, hinges), weight)
+    angle = fold_angles(points, hinges)
+    return ShellGeometry(triangles, np.linalg.inv(edges), area, hinges, sides, foot, length, angle, weight)
 
 
 def _hinges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

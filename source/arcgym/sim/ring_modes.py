@@ -114,8 +114,8 @@ def _ring_basis(points: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.n
 def _ring_displacements(plane: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Affine displacements: three translations, two tilts, twist, dilation, two ways of flattening, shape (n, M, 3).
 
-    Flattening affinely stretches the ring, which a shell would avoid; modes that do avoid it at rest are far softer than
-    the wall once it is dented, and the correction then overshoots without bound.
+    Flattening affinely stretches the ring, which a shell would avoid; modes that do avoid it at rest are far softer
+    than the wall once it is dented, and the correction then overshoots without bound.
     """
     angle = np.arctan2(plane[:, 1], plane[:, 0])
     radial = np.cos(angle)[:, None] * p + np.sin(angle)[:, None] * q

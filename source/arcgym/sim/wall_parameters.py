@@ -5,19 +5,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 import warp as wp
 
 from arcgym.assets.anchors import AnchorSprings
 from arcgym.assets.shell_geometry import ShellGeometry
-from arcgym.sim import shell_kernels, solid_kernels
 from arcgym.sim.anchor_kernels import Anchors
 from arcgym.sim.ring_modes import ElasticPart
 from arcgym.sim.wall_kernels import WallNodes
-from arcgym.sim.wall_topology import vertex_entries
 
 
 @dataclass(frozen=True)
@@ -78,37 +74,3 @@ def wall_anchors(points: np.ndarray, springs: AnchorSprings, device: str) -> Anc
         setattr(anchors, name, wp.array(getattr(springs, name), dtype=float, device=device))
     anchors.rest = wp.array(points, dtype=wp.vec3, device=device)
     return anchors
-
-
-def wall_elements(wall: WallParameters, device: str) -> tuple[ModuleType, Any]:
-    """Kernels for the wall's kind and its elements on the device."""
-    if isinstance(wall.elements, ShellParameters):
-        return shell_kernels, _shell_elements(wall.elements.geometry, len(wall.points), device)
-    return solid_kernels, _solid_elements(wall.points, wall.elements.tets, device)
-
-
-def _solid_elements(points: np.ndarray, tets: np.ndarray, device: str) -> solid_kernels.SolidElements:
-    edges = (points[tets[:, 1:]] - points[tets[:, :1]]).transpose(0, 2, 1)
-    start, entry = vertex_entries(tets, len(points))
-    solid = solid_kernels.SolidElements()
-    solid.tets = wp.array(tets, dtype=wp.vec4i, device=device)
-    solid.inv_rest = wp.array(np.linalg.inv(edges), dtype=wp.mat33, device=device)
-    solid.volume = wp.array(np.linalg.det(edges) / 6.0, dtype=float, device=device)
-    solid.entry_start = wp.array(start, dtype=int, device=device)
-    solid.entry = wp.array(entry, dtype=int, device=device)
-    return solid
-
-
-def _shell_elements(geometry: ShellGeometry, vertices: int, device: str) -> shell_kernels.ShellElements:
-    shell = shell_kernels.ShellElements()
-    shell.triangles = wp.array(geometry.triangles, dtype=wp.vec3i, device=device)
-    shell.inv_rest = wp.array(geometry.inv_rest, dtype=wp.mat22, device=device)
-    shell.area = wp.array(geometry.area, dtype=float, device=device)
-    shell.hinges = wp.array(geometry.hinges, dtype=wp.vec4i, device=device)
-    shell.rest_angle = wp.array(geometry.rest_angle, dtype=float, device=device)
-    shell.weight = wp.array(geometry.weight, dtype=float, device=device)
-    for name, elements in (("triangle", geometry.triangles), ("hinge", geometry.hinges)):
-        start, entry = vertex_entries(elements, vertices)
-        setattr(shell, f"{name}_start", wp.array(start, dtype=int, device=device))
-        setattr(shell, f"{name}_entry", wp.array(entry, dtype=int, device=device))
-    return shell

@@ -14,7 +14,8 @@ from arcgym.sim.chain_solver import ChainSolver
 from arcgym.sim.contact import ContactSearch
 from arcgym.sim.ring_modes import MODES, RingModes
 from arcgym.sim.simulation_cfg import WallSolverCfg
-from arcgym.sim.wall_parameters import WallParameters, wall_elements, wall_nodes
+from arcgym.sim.wall_elements import wall_elements
+from arcgym.sim.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall_topology import ring_mean
 
 REGULARISATION = 1.0e-5
@@ -45,7 +46,7 @@ class WallSolver:
         self.vertex_count, self.ring_count = len(wall.points), len(modes.mass)
         self.moves = bool(wall.mobile.any())
         self.nodes = wall_nodes(wall, device)
-        self.kernels, self.elements = wall_elements(wall, device)
+        self.elements = wall_elements(wall, num_envs, device)
         self.space = self._space(wall, modes)
         self.colours = [
             wp.array(c[wall.mobile[c]], dtype=int, device=device) for c in wall.colours if wall.mobile[c].any()
@@ -97,6 +98,7 @@ class WallSolver:
             device=self.device,
         )
         for _ in range(self.cfg.repeats):
+            self.elements.measure(x, self.tissue)
             if self.cfg.coarse_correction:
                 self._correct_rings(x, contact, body_q)
             for _ in range(self.cfg.iterations):
@@ -106,22 +108,46 @@ class WallSolver:
     def _sweep(self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
         for colour in self.colours:
             wp.launch(
-                self.kernels.sweep_colour,
+                self.elements.kernels.sweep_colour,
                 (len(colour), self.num_envs),
-                [colour, self.nodes, self.elements, self.tissue, self.dt, self.inertial, self.x_prev, contact.records]
+                [
+                    colour,
+                    self.nodes,
+                    self.elements.data,
+                    self.tissue,
+                    self.dt,
+                    self.inertial,
+                    self.x_prev,
+                    contact.records,
+                ]
                 + [contact.links, contact.law, contact.friction, contact.link_count, body_q, body_q_prev, x],
                 device=self.device,
             )
 
+    def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
+        """Force on every mobile vertex at rest [N], shape (V, W), vec3: elements, anchors and contacts, no friction.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            contact: Contacts at hand.
+            body_q: Link poses, shape (W*L,).
+        """
+        force = wp.zeros_like(x)
+        self.elements.measure(x, self.tissue)
+        self._residual(x, x, contact, body_q, force)
+        return force
+
+    def _residual(
+        self, x: wp.array, inertial: wp.array, contact: ContactSearch, body_q: wp.array, force: wp.array
+    ) -> None:
+        args = [self.nodes, self.elements.data, self.tissue, self.dt, inertial, contact.records, contact.links]
+        args += [contact.law, contact.link_count, body_q, x, force]
+        wp.launch(self.elements.kernels.residual, x.shape, args, device=self.device)
+
     def _correct_rings(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> None:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
         touching = [contact.records, contact.links, contact.law, contact.link_count, body_q]
-        wp.launch(
-            self.kernels.residual,
-            shape,
-            [self.nodes, self.elements, self.tissue, self.dt, self.inertial, *touching, x, self.force],
-            device=self.device,
-        )
+        self._residual(x, self.inertial, contact, body_q, self.force)
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
         args = [x, self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
         args += [*touching, self.chain.diagonal, self.chain.upper, self.chain.rhs]
