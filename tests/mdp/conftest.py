@@ -71,6 +71,15 @@ class FakeColon:
     def write_stiffness_scale_to_sim(self, scale: torch.Tensor, env_ids: torch.Tensor) -> None:
         self.commands["stiffness"] = (scale.clone(), env_ids)
 
+    def write_material_to_sim(self, modulus: torch.Tensor, ratio: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["material"] = (torch.stack([modulus, ratio], dim=1), env_ids)
+
+    def write_anchor_scale_to_sim(self, scale: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["anchors"] = (scale.clone(), env_ids)
+
+    def write_rigid_to_sim(self, rigid: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["rigid"] = (rigid.clone(), env_ids)
+
 
 class FakeCamera:
     """Images that a test sets."""

@@ -113,6 +113,25 @@ def test_log_uniform_has_its_median_at_the_geometric_mean(env) -> None:
     assert math.log(value.median().item()) == pytest.approx(0.0, abs=0.1)
 
 
+def test_tissue_is_one_of_the_presets_in_each_world(env) -> None:
+    mdp.randomize_tissue(env, torch.arange(200), presets=("soft_nu045", "paper"))
+    value, _ = env.scene["colon"].commands["material"]
+    assert {(round(e), round(nu, 2)) for e, nu in value.tolist()} == {(500_000, 0.45), (5_000_000, 0.49)}
+
+
+def test_anchors_are_one_of_the_scales_in_each_world(env) -> None:
+    mdp.randomize_anchors(env, torch.arange(200))
+    value, _ = env.scene["colon"].commands["anchors"]
+    assert set(value.tolist()) == {0.25, 1.0, 4.0}
+
+
+@pytest.mark.parametrize("probability", [0.0, 1.0])
+def test_rigidity_has_its_probability(env, probability: float) -> None:
+    mdp.randomize_rigidity(env, torch.arange(20), probability=probability)
+    value, _ = env.scene["colon"].commands["rigid"]
+    assert value.dtype == torch.bool and value.float().mean().item() == probability
+
+
 def test_widen_reset_moves_linearly(env) -> None:
     cfg = EventTermCfg(func=mdp.perturb_tip, mode="reset", params={"std": 0.0})
     env.event_manager = SimpleNamespace(get_term_cfg={"aim": cfg}.get)

@@ -10,10 +10,13 @@ from arcgym.envs.mdp.costs import tip_force_above, view_blocked, wall_force_abov
 from arcgym.envs.mdp.curriculums import widen_reset
 from arcgym.envs.mdp.events import (
     perturb_tip,
+    randomize_anchors,
     randomize_color,
     randomize_friction,
     randomize_light,
+    randomize_rigidity,
     randomize_texture,
+    randomize_tissue,
     randomize_tissue_stiffness,
     reset_to_segment_start,
 )
@@ -160,10 +163,13 @@ __all__ = [
     "perturb_tip",
     "progress",
     "progress_fraction",
+    "randomize_anchors",
     "randomize_color",
     "randomize_friction",
     "randomize_light",
+    "randomize_rigidity",
     "randomize_texture",
+    "randomize_tissue",
     "randomize_tissue_stiffness",
     "reset_to_segment_start",
     "resolve_lumen",

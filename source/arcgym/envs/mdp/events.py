@@ -6,10 +6,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.assets.materials import anchor_scale, tissue_preset
 from arcgym.envs.mdp.segments import segment_span
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
@@ -108,11 +110,45 @@ def randomize_tissue_stiffness(
     env.scene["colon"].write_stiffness_scale_to_sim(_log_uniform(env, scale, len(env_ids)), env_ids)
 
 
+def randomize_tissue(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, presets: Sequence[str] = ("soft_nu049", "medium_nu049", "stiff_nu049")
+) -> None:
+    """Give each world Young's modulus and Poisson's ratio of one of ``presets``, all equally likely.
+
+    Thickness, density and attachments stay those of ``ColonCfg``; presets that leave the two open cannot be named. Use
+    it in place of :func:`randomize_tissue_stiffness`, which sets the modulus too.
+    """
+    tissues = [tissue_preset(name) for name in presets]
+    values = [(tissue.youngs_modulus, tissue.poissons_ratio) for tissue in tissues]
+    chosen = _choice(env, values, len(env_ids))
+    env.scene["colon"].write_material_to_sim(chosen[:, 0], chosen[:, 1], env_ids)
+
+
+def randomize_anchors(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, anchors: Sequence[str] = ("sparse", "default", "dense")
+) -> None:
+    """Hold each world's colon by one of :data:`arcgym.assets.materials.ANCHOR_SCALES`, all equally likely."""
+    scales = [anchor_scale(name) for name in anchors]
+    env.scene["colon"].write_anchor_scale_to_sim(_choice(env, scales, len(env_ids)), env_ids)
+
+
+def randomize_rigidity(env: ManagerBasedEnv, env_ids: torch.Tensor, probability: float = 0.5) -> None:
+    """Hold the wall of some worlds where it is; follows the reset in the same mode, and 1 holds all."""
+    rigid = torch.rand(len(env_ids), device=env.device) < probability
+    env.scene["colon"].write_rigid_to_sim(rigid, env_ids)
+
+
 def randomize_friction(
     env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.05, 0.2)
 ) -> None:
     """Set the friction coefficient between scope and wall, log-uniform within ``friction``."""
     env.scene["endoscope"].write_friction_to_sim(_log_uniform(env, friction, len(env_ids)), env_ids)
+
+
+def _choice(env: ManagerBasedEnv, values: Sequence[object], count: int) -> torch.Tensor:
+    """``count`` of ``values``, drawn with replacement, shape (count, ...)."""
+    pool = torch.tensor(values, dtype=torch.float32, device=env.device)
+    return pool[torch.randint(len(pool), (count,), device=env.device)]
 
 
 def _log_uniform(env: ManagerBasedEnv, bounds: tuple[float, float], *shape: int) -> torch.Tensor:
