@@ -10,11 +10,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import kstest, truncnorm
 
 from arcgym.anatomy import ColonSpec
+from arcgym.anatomy.bends import acute_bends
+from arcgym.anatomy.generate import AnatomyError, draw_surface
 from arcgym.anatomy.population import LENGTH_RANGE, draw_spec, segment_lengths
 from arcgym.anatomy.spec import FoldSpec, PolypSpec
 from arcgym.anatomy.spec_file import SpecError, read_spec
+from arcgym.anatomy.surface import Surface
+from arcgym.anatomy.validate import failed, validate_curve, validate_wall
+from arcgym.anatomy.wall import sample_wall
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -56,6 +62,20 @@ def test_every_kind_of_field(tmp_path: Path) -> None:
         ("polyp_radius: [0.003]", "polyp_radius is .* expected a list of 2 values"),
         ("polyp_list: [{segment: rectum}]", r"polyp_list\[0\]: missing \['diameter'\]"),
         ("name: [", "cannot be read"),
+        ("name: ''", "name = '' cannot name a folder"),
+        ("seed: -1", "seed = -1 is out of range; expected 0 to"),
+        ("acute_bends: 99", "acute_bends = 99 is out of range; expected 0 to 30"),
+        ("sectors: 3", "sectors = 3 is out of range; expected 6 to 64"),
+        ("visual_rows: 0", "visual_rows = 0 is out of range; expected 100 to 4000"),
+        ("mucosa: {paleness: 2}", "mucosa.paleness = 2 is out of range; expected 0 to 1"),
+        ("material: {poissons_ratio: 0.5}", "material.poissons_ratio = 0.5 is out of range"),
+        ("wide_neck: [0.009, 0.008]", "wide_neck = 0.009, 0.008 is in the wrong order"),
+        ("transverse_shape: knot", "transverse_shape = 'knot' is unknown; expected one of plain, redundant"),
+        ("segments: {sigmoid: {middle_diameter: 0.2}}", r"segments\['sigmoid'\].middle_diameter = 0.2 is out of range"),
+        ("segments: {sigmoid: {wide_diverticula: 2}}", r"diverticula \(of which 2 wide\) = 0 is out of range"),
+        ("segments: {sigmoid: {folds: {spacing: 0.01, width: 0.005}}}", "spacing = 0.01 leaves no room between folds"),
+        ("segments: {cecum: {folds: {depth: 3}}}", r"segments\['cecum'\].folds.depth = 3 is out of range"),
+        ("jitter: .nan", "jitter = nan is out of range"),
         ("just words", "'just words'; expected a mapping"),
     ],
 )
@@ -72,20 +92,65 @@ def test_segments_add_up_and_follow_the_two_groups() -> None:
         assert lengths["sigmoid"] == pytest.approx(sigmoid)
 
 
-def test_drawn_population_has_the_published_statistics() -> None:
-    """N(1.895, 0.263) m cut to 1.40-2.10 m has mean 1.816 and deviation 0.173 m; four standard errors are allowed."""
-    specs = [draw_spec(seed) for seed in range(600)]
-    lengths = np.array([sum(segment.length for segment in spec.segments.values()) for spec in specs])
-    diverticula = np.array([sum(segment.diverticula for segment in spec.segments.values()) for spec in specs])
-    assert lengths.mean() == pytest.approx(1.816, abs=4 * 0.173 / 600**0.5)
-    assert lengths.std() == pytest.approx(0.173, abs=0.02)
+@pytest.fixture(scope="module")
+def population() -> list[ColonSpec]:
+    return [draw_spec(seed) for seed in range(400)]
+
+
+def lengths_of(specs: list[ColonSpec]) -> np.ndarray:
+    return np.array([sum(segment.length for segment in spec.segments.values()) for spec in specs])
+
+
+def test_drawn_lengths_are_the_published_ones(population: list[ColonSpec]) -> None:
+    """1.895 +- 0.263 m (n = 505); four standard errors of the mean; the cut takes 0.025 m off the deviation."""
+    lengths = lengths_of(population)
+    assert lengths.mean() == pytest.approx(1.895, abs=4 * 0.263 / 400**0.5)
+    assert 0.22 < lengths.std() < 0.27
     assert lengths.min() > LENGTH_RANGE[0] - 0.01 and lengths.max() < LENGTH_RANGE[1] + 0.01
-    assert (diverticula > 0).mean() == pytest.approx(0.42, abs=0.08)
-    assert all(spec.segments["rectum"].diverticula == 0 for spec in specs)
+
+
+def test_length_distribution_is_normal_between_the_cuts(population: list[ColonSpec]) -> None:
+    """Kolmogorov-Smirnov against the published normal distribution cut to the range."""
+    low, high = ((bound - 1.895) / 0.263 for bound in LENGTH_RANGE)
+    assert kstest(lengths_of(population), truncnorm(low, high, 1.895, 0.263).cdf).pvalue > 0.01
+
+
+def test_womens_colons_are_longer(population: list[ColonSpec]) -> None:
+    """Published difference 0.079 m; four standard errors of the difference of two halves are 0.1 m."""
+    women = np.array(["woman" in spec.patient for spec in population])
+    lengths = lengths_of(population)
+    assert lengths[women].mean() - lengths[~women].mean() == pytest.approx(0.079, abs=0.1)
+    assert women.mean() == pytest.approx(0.52, abs=0.1)
+
+
+def test_drawn_bends_are_the_published_flexures(population: list[ColonSpec]) -> None:
+    """10.9 +- 2.4; four standard errors of the mean are 0.48. Longer colons have more (9.6 against 11.9)."""
+    bends, lengths = np.array([spec.acute_bends for spec in population]), lengths_of(population)
+    assert bends.mean() == pytest.approx(10.9, abs=0.48)
+    assert bends.std() == pytest.approx(2.4, abs=0.35)
+    assert bends[lengths > 2.0].mean() - bends[lengths < 1.75].mean() > 1.0
+
+
+def test_diverticula_are_as_common_as_published(population: list[ColonSpec]) -> None:
+    counts = np.array([sum(segment.diverticula for segment in spec.segments.values()) for spec in population])
+    assert (counts > 0).mean() == pytest.approx(0.42, abs=4 * (0.42 * 0.58 / 400) ** 0.5)
+    assert all(spec.segments["rectum"].diverticula == 0 for spec in population)
 
 
 def test_same_seed_same_patient() -> None:
     assert draw_spec(7) == draw_spec(7) and draw_spec(7) != draw_spec(8)
+
+
+def first_valid_surface(spec: ColonSpec) -> Surface:
+    """Returns the surface of the first seed that the generator would accept."""
+    for attempt in range(spec.max_attempts):
+        try:
+            surface, lesions = draw_surface(spec, spec.seed + 1000 * attempt)
+        except AnatomyError:
+            continue
+        if not failed([*validate_curve(spec, surface), *validate_wall(sample_wall(surface, lesions), spec)]):
+            return surface
+    raise AssertionError(f"no valid anatomy for {spec.name}")
 
 
 def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -100,8 +165,22 @@ def test_bad_spec_leaves_nothing_behind(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
-def test_random_patients_can_be_made(tmp_path: Path, seed: int) -> None:
-    result = run("--seed", str(seed), tmp_path / "out")
+def test_random_patients_have_their_bends_and_lengths() -> None:
+    """Twelve random colons as generated: three standard errors of the published mean are 0.23 m and 2.1 bends."""
+    bends, lengths, errors = [], [], []
+    for seed in range(12):
+        spec = draw_spec(seed)
+        surface = first_valid_surface(spec)
+        bends.append(len(acute_bends(surface.curve.points, surface.curve.s)))
+        lengths.append(surface.curve.length)
+        errors.append(abs(bends[-1] - (spec.acute_bends or 0)))
+    assert np.mean(lengths) == pytest.approx(1.895, abs=0.23)
+    assert np.mean(bends) == pytest.approx(10.9, abs=2.1)
+    assert max(errors) <= 1
+
+
+@pytest.mark.slow
+def test_a_random_patient_from_the_command_line(tmp_path: Path) -> None:
+    result = run("--seed", "2", tmp_path / "out")
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out" / "colon.usda").is_file()

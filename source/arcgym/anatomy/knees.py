@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Acute bends made while a course relaxes: where it turns most anyway, it is drawn towards an arc with straight legs."""
+"""Acute bends made while a course relaxes: where it turns most, it is drawn towards an arc with straight legs."""
 
 from __future__ import annotations
 

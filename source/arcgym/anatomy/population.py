@@ -11,11 +11,26 @@ import numpy as np
 from .segments import SEGMENTS
 from .spec import ColonSpec, MucosaSpec
 
-LENGTH_MEAN, LENGTH_DEVIATION = 1.895, 0.263
-"""Length of the colon [m], n = 505 (Khashab et al., Endoscopy 2009)."""
+LENGTH_MEAN = {"woman": 1.933, "man": 1.854}
+"""Mean length of the colon [m], n = 505 (Khashab et al., Endoscopy 2009)."""
 
-LENGTH_RANGE = 1.40, 2.10
-"""Lengths that are drawn [m]; longer colons do not fit into the courses at hand; 25 % of people lie beyond."""
+LENGTH_DEVIATION = 0.260
+"""Standard deviation of the length within a sex [m]; over both it is 0.263 (Khashab et al.)."""
+
+WOMEN = 0.52
+"""Share of women: that at which both means make the overall one, 1.895 m (Khashab et al.)."""
+
+LENGTH_RANGE = 1.37, 2.42
+"""Lengths that are drawn [m]: the mean and two standard deviations; 5 % of people lie beyond."""
+
+BENDS_MEAN, BENDS_DEVIATION = 10.9, 2.4
+"""Number of acute-angle flexures (Khashab et al.)."""
+
+REGULAR_BENDS, LONG_BENDS = 9.6, 11.9
+"""Mean number of acute-angle flexures in colons with complete and incomplete colonoscopy (Hanson et al., AJR 2007)."""
+
+BENDS_RANGE = 5, 16
+"""Numbers of acute bends that are drawn."""
 
 REGULAR_LENGTH, LONG_LENGTH = 1.670, 2.108
 """Mean length of colons with complete and with incomplete colonoscopy [m] (Hanson et al., AJR 2007)."""
@@ -33,12 +48,14 @@ DIVERTICULA_SITES = {"sigmoid": 0.75, "descending": 0.11, "transverse": 0.06, "a
 """Where diverticula are (Peery et al.)."""
 
 _MOST_DIVERTICULA = 24
+_LONG_TRANSVERSE = 0.56
 
 
 def draw_spec(seed: int) -> ColonSpec:
     """Draws one patient; the same seed always gives the same spec."""
     rng = np.random.default_rng([seed, 2009])
-    total = draw_length(rng)
+    sex = str(rng.choice(["woman", "man"], p=[WOMEN, 1.0 - WOMEN]))
+    total = draw_length(rng, sex)
     lengths = segment_lengths(total)
     default = ColonSpec()
     diverticula = _draw_diverticula(rng)
@@ -58,21 +75,32 @@ def draw_spec(seed: int) -> ColonSpec:
     return replace(
         default,
         name=f"patient_{seed}",
-        patient=f"random adult, seed {seed}, {total:.2f} m; supine",
+        patient=f"random {sex}, seed {seed}, {total:.2f} m; supine",
         seed=seed,
         segments=segments,
         sigmoid_shape=_draw_sigmoid(rng, lengths["sigmoid"]),
+        transverse_shape="plain" if lengths["transverse"] < _LONG_TRANSVERSE else "redundant",
         transverse_sag=float(np.clip(0.10 + 0.45 * (lengths["transverse"] - 0.40), 0.07, 0.17)),
+        acute_bends=draw_bends(rng, total),
         mucosa=MucosaSpec(paleness=rng.uniform(0.3, 0.6), redness=rng.uniform(0.1, 0.3), vessels=rng.uniform(0.7, 1.3)),
     )
 
 
-def draw_length(rng: np.random.Generator) -> float:
-    """Draws the length of a colon [m] from the normal distribution cut to :data:`LENGTH_RANGE`."""
+def draw_length(rng: np.random.Generator, sex: str) -> float:
+    """Draws the length of a colon [m] from the sex's normal distribution, cut to :data:`LENGTH_RANGE`."""
     while True:
-        length = float(rng.normal(LENGTH_MEAN, LENGTH_DEVIATION))
+        length = float(rng.normal(LENGTH_MEAN[sex], LENGTH_DEVIATION))
         if LENGTH_RANGE[0] <= length <= LENGTH_RANGE[1]:
             return length
+
+
+def draw_bends(rng: np.random.Generator, length: float) -> int:
+    """Draws the number of acute bends: more in longer colons, as between Hanson's groups; over all as Khashab found."""
+    per_metre = (LONG_BENDS - REGULAR_BENDS) / (LONG_LENGTH - REGULAR_LENGTH)
+    explained = per_metre * LENGTH_DEVIATION
+    mean = BENDS_MEAN + per_metre * (length - np.mean(list(LENGTH_MEAN.values())))
+    count = rng.normal(mean, np.sqrt(BENDS_DEVIATION**2 - explained**2))
+    return int(np.clip(round(count), *BENDS_RANGE))
 
 
 def segment_lengths(total: float) -> dict[str, float]:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .segments import SEGMENTS
 from .spec_checks import check_spec
 from .stage_types import TissueMaterial
 
@@ -111,8 +110,8 @@ class ColonSpec:
     transverse_shape: str = "plain"
     """Course of the transverse colon, a key of :data:`arcgym.anatomy.courses.TRANSVERSE_SHAPES`."""
     acute_bends: int | None = 10
-    """How many places shall turn by more than 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
-    None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute-angle flexures (Khashab et al., 2009)."""
+    """How many places shall turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
+    None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
     min_bend_radius: float = 0.030
     """Least radius of the centreline [m]. A colonoscope's bending section turns on about 25-30 mm."""
     transverse_sag: float = 0.10

@@ -148,7 +148,8 @@ def _shaped_points(
 def _texture_coordinates(surface: Surface, s: np.ndarray, theta: np.ndarray, dome: np.ndarray) -> np.ndarray:
     """Returns u round the lumen and v along it; on the dome, equal distances from the pole in every direction.
 
-    u turns slowly with the arc length, so that no two passes over a band of the texture look the same. A polar chart would squeeze the texture into streaks at the pole.
+    u turns slowly with the arc length, so that no two passes over a band of the texture look the same. A polar chart
+    would squeeze the texture into streaks at the pole.
     """
     bounds = {name: surface.curve.bounds(name) for name in SEGMENTS}
     uv = np.stack([theta / (2 * np.pi) + s / _TWIST, texture_rows(s, bounds, TEXTURE_LENGTH)], 1)

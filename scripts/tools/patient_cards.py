@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures the five patients and writes their cards, with pictures, into ``docs/patients.md`` between its two marks."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from arcgym.anatomy import ColonStage
+
+ROOT = Path(__file__).resolve().parents[2]
+BEGIN, END = "<!-- cards -->", "<!-- end of cards -->"
+
+
+def main() -> None:
+    """Parses the command line and writes the cards."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--no-pictures", action="store_true", help="write the tables only")
+    args = parser.parse_args()
+    from preview_colon import draw_page
+
+    from arcgym.anatomy import read_colon
+    from arcgym.anatomy.patients import PATIENTS
+
+    cards = []
+    for name in PATIENTS:
+        stage = read_colon(ROOT / "assets" / "usd" / name / "colon.usda")
+        cards.append(card(name, stage))
+        if not args.no_pictures:
+            draw_page(stage).save(ROOT / "docs" / "images" / "patients" / f"{name}.jpg", quality=66, optimize=True, progressive=True)
+        print(name, flush=True)
+    page = ROOT / "docs" / "patients.md"
+    before, rest = page.read_text().split(BEGIN)
+    after = rest.split(END)[1]
+    page.write_text(f"{before}{BEGIN}\n\n" + "\n".join(cards) + f"\n{END}{after}")
+
+
+def card(name: str, stage: ColonStage) -> str:
+    """Returns one patient's card as Markdown."""
+    number = name.split("_")[1]
+    patient = str(stage.metadata["patient"])
+    rows = ["| Segment | Length [cm] | Diameter p5 / p50 / p95 [mm] |", "|---|---|---|"]
+    for segment, (start, end) in stage.segment_bounds().items():
+        rows.append(f"| {segment} | {100 * (end - start):.1f} | {diameters(stage, start, end)} |")
+    rows.append(f"| whole | {100 * stage.length:.0f} | {diameters(stage, 0.0, stage.length)} |")
+    title, picture = (
+        f"## Colon {number}\n\n{patient[0].upper() + patient[1:]}.",
+        f"![{name}](images/patients/{name}.jpg)",
+    )
+    return f"{title}\n\n{picture}\n\n" + "\n".join(rows) + f"\n\n{features(name, stage)}\n"
+
+
+def diameters(stage: ColonStage, start: float, end: float) -> str:
+    """Returns three percentiles of the lumen diameter between folds [mm]."""
+    import numpy as np
+
+    line = stage.centerline
+    part = 2e3 * line.radius[(line.arc >= start) & (line.arc <= end)]
+    return " / ".join(f"{value:.0f}" for value in np.quantile(part, [0.05, 0.5, 0.95]))
+
+
+def features(name: str, stage: ColonStage) -> str:
+    """Returns a sentence with the number of bends, folds and lesions, and the least bend radius."""
+    from arcgym.anatomy.bends import acute_bends
+    from arcgym.anatomy.generate import draw_surface
+    from arcgym.anatomy.lesions import WIDE_NECK
+    from arcgym.anatomy.patients import PATIENTS
+
+    surface, lesions = draw_surface(PATIENTS[name](), int(stage.metadata["seed"]))
+    bends = len(acute_bends(stage.centerline.points.astype(float), stage.centerline.arc.astype(float)))
+    polyps = sum(lesion.kind in ("sessile", "pedunculated", "flat") for lesion in lesions)
+    sacs = [lesion for lesion in lesions if lesion.kind == "diverticulum"]
+    wide = sum(lesion.size >= WIDE_NECK for lesion in sacs)
+    sharpest, folds = 1e3 / surface.curve.curvature[3:-3].max(), sum(len(row.s) for row in surface.rows)
+    return (
+        f"{bends} acute bends (least radius {sharpest:.0f} mm), {folds} semilunar folds,"
+        f" {len(surface.valves)} rectal valves, ileocaecal valve and appendix orifice,\n{polyps} polyps,"
+        f" {len(sacs)} diverticula, {wide} of them wide enough for a 13 mm tip."
+    )
+
+
+if __name__ == "__main__":
+    main()
