@@ -22,7 +22,7 @@ from pathlib import Path
 
 from fidelity_checks.table import CHECKS, Check, Row, Run
 
-GROUPS = ("scope", "wall", "insertion", "contact", "stability")
+GROUPS = ("scope", "wall", "indentation", "insertion", "contact", "transmission", "commands", "stability")
 """Files with checks, in the order of the table."""
 FORMAT = "{:26s}{:>12s}{:>12s}  {:6s}{:>10s}{:>9s}  {:6s} {}"
 """Columns of the table."""

@@ -23,8 +23,10 @@ CONTROL_STEP = 0.1
 """Time over which forces are averaged [s]."""
 DEPTH = 0.30
 """Inserted length at the end of a push through a tube [m]."""
-SIGMOID_DEPTH = 0.42
+SIGMOID_DEPTH = 0.36
 """Inserted length at the end of a push into the colon [m]: the tip is in the S of the sigmoid."""
+SIGMOID_MOBILE = 0.50
+"""Arc length up to which the colon's wall moves in all of these pushes [m]; the rest would only cost time."""
 PRESETS = {"stiff": "paper", "soft": "in_situ"}
 """Tissue presets by stiffness."""
 
@@ -44,7 +46,7 @@ class Trace:
     moved: list[float] = field(default_factory=list)
     """Largest displacement of the wall [m]."""
     volume: list[tuple[float, float]] = field(default_factory=list)
-    """Smallest and largest volume ratio of the wall's tets."""
+    """Smallest and largest volume ratio of the wall's elements."""
 
     def late(self, values: list[float]) -> float:
         """Mean over the second half of the push, when the tip is in the bend or beyond it."""
@@ -55,14 +57,14 @@ def converged() -> dict[str, Any]:
     """Settings near the limit of small steps, many iterations, and the scope's real mass."""
     from arcgym.sim import WallSolverCfg
 
-    return {"dt": 1.0 / 1920.0, "wall": WallSolverCfg(repeats=10), "mass_scaling": 1.0}
+    return {"dt": 1.0 / 1920.0, "wall": WallSolverCfg(repeats=4), "mass_scaling": 1.0}
 
 
 def tightest() -> dict[str, Any]:
-    """The shipped step with the wall solved ten times over."""
+    """The shipped step with the wall solved six times over."""
     from arcgym.sim import WallSolverCfg
 
-    return {"wall": WallSolverCfg(repeats=10)}
+    return {"wall": WallSolverCfg(repeats=6)}
 
 
 def push(run: Run, tube: Tube | None, depth: float, material: str = "paper", rest: float = 0.0, **cfg: Any) -> Trace:
@@ -78,7 +80,8 @@ def _push(run: Run, tube: Tube | None, depth: float, material: str, rest: float,
 
     from arcgym.assets import PROXIMAL_CFG
 
-    sim = build(run, PROXIMAL_CFG, tube, colon={"material": material}, **cfg)
+    mobile = SIGMOID_MOBILE if tube is None else None
+    sim = build(run, PROXIMAL_CFG, tube, colon={"material": material, "mobile_until": mobile}, **cfg)
     steps, trace, scope = round(CONTROL_STEP / sim.physics_dt), Trace(sim), sim.endoscope
     still = torch.zeros(1, device=sim.device)
     scope.set_insertion_command(still + SPEED, still)
@@ -96,13 +99,40 @@ def _push(run: Run, tube: Tube | None, depth: float, material: str, rest: float,
 
 
 def volume_ratios(sim: Any) -> tuple[float, float]:
-    """Smallest and largest volume of a wall tet, relative to its rest volume."""
-    from arcgym.anatomy.measures import tet_volumes
+    """Smallest and largest volume of a wall element, relative to its rest volume.
 
-    wall = sim.colon.stage.wall
-    now = tet_volumes(sim.colon.data.nodal_pos_w[0].cpu().numpy().astype(float), wall.tets)
-    ratio = now / tet_volumes(wall.points.astype(float), wall.tets)
+    A shell's triangle keeps no record of its thickness; in plane stress it changes by the strain
+    E33 = -nu / (1 - nu) (E11 + E22), and the volume by the area's ratio times sqrt(1 + 2 E33).
+    """
+    from arcgym.anatomy.measures import tet_volumes
+    from arcgym.anatomy.shell import ShellMesh
+
+    wall, points = sim.colon.wall, sim.colon.data.nodal_pos_w[0].cpu().numpy().astype(float)
+    if isinstance(wall, ShellMesh):
+        ratio = shell_volume_ratio(wall.points, points, wall.triangles, sim.colon.elasticity()[1])
+    else:
+        ratio = tet_volumes(points, wall.tets) / tet_volumes(wall.points.astype(float), wall.tets)
     return float(ratio.min()), float(ratio.max())
+
+
+def shell_volume_ratio(rest: np.ndarray, now: np.ndarray, triangles: np.ndarray, poissons_ratio: float) -> np.ndarray:
+    """Volume of a shell's triangles relative to their rest volume, shape (F,).
+
+    Args:
+        rest: Vertices at rest [m], shape (V, 3).
+        now: Vertices [m], shape (V, 3).
+        triangles: Vertices of each triangle, shape (F, 3).
+        poissons_ratio: Poisson's ratio.
+    """
+    metric = []
+    for points in (rest.astype(float), now):
+        corners = points[triangles]
+        edges = corners[:, 1:] - corners[:, :1]
+        metric.append(np.einsum("fai,fbi->fab", edges, edges))
+    stretch = np.linalg.solve(metric[0], metric[1])  # similar to F^T F
+    trace = 0.5 * (np.trace(stretch, axis1=1, axis2=2) - 2.0)
+    thickness = 1.0 - 2.0 * poissons_ratio / (1.0 - poissons_ratio) * trace
+    return np.sqrt(np.linalg.det(stretch) * np.maximum(thickness, 0.0))
 
 
 @check("straight_advance", quick=True)
@@ -161,7 +191,7 @@ def wall_motion(run: Run) -> list[Row]:
         tight = push(run, None, SIGMOID_DEPTH, material, **tightest())
         value, reference = ours.late(ours.moved), tight.late(tight.moved)
         rows.append(relative(f"wall_motion_{name}", value, reference, 0.10, "m"))
-        plot.lines.append((f"{name}, solved ten times", tight.inserted, [1.0e3 * m for m in tight.moved]))
+        plot.lines.append((f"{name}, solved six times", tight.inserted, [1.0e3 * m for m in tight.moved]))
         plot.points.append((f"{name}, shipped settings", ours.inserted, [1.0e3 * m for m in ours.moved]))
     run.plots.append(plot)
     return rows

@@ -22,14 +22,18 @@ def draw(plots: Sequence[Plot], folder: Path) -> list[Path]:
 
 
 def draw_one(plot: Plot, path: Path) -> Path:
-    """Draw references as lines and the shipped solver as points."""
+    """Draw published ranges as bands, references as lines and the shipped solver as points."""
     figure, axes = plt.subplots(figsize=(5.0, 3.4), layout="constrained")
+    for label, x, low, high in plot.bands:
+        axes.fill_between(x, low, high, label=label, color="0.85", linewidth=0.0)
     for label, x, y in plot.lines:
         axes.plot(x, y, label=label, linewidth=1.2)
     for label, x, y in plot.points:
         axes.plot(x, y, "o", label=label, markersize=3.5, fillstyle="none")
     axes.set_xlabel(plot.x_label)
     axes.set_ylabel(plot.y_label)
+    if plot.y_limit is not None:
+        axes.set_ylim(0.0, plot.y_limit)
     axes.legend(frameon=False)
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, dpi=110, metadata={"Software": None})

@@ -62,6 +62,10 @@ class Plot:
     """(label, x, y) of references, drawn as lines."""
     points: list[tuple[str, Sequence[float], Sequence[float]]] = field(default_factory=list)
     """(label, x, y) of the shipped solver, drawn as points."""
+    bands: list[tuple[str, Sequence[float], Sequence[float], Sequence[float]]] = field(default_factory=list)
+    """(label, x, lower y, upper y) of published ranges, drawn as bands."""
+    y_limit: float | None = None
+    """Top of the picture; ``None`` shows everything."""
 
 
 @dataclass

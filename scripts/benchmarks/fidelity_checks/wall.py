@@ -32,7 +32,7 @@ HELD_RINGS = (2, -2)
 
 def free_span(sim: Any) -> tuple[float, float]:
     """Arc lengths between which the wall is free [m]."""
-    arc = sim.colon.stage.wall.ring_arc
+    arc = sim.colon.wall.ring_arc
     return float(arc[HELD_RINGS[0]]), float(arc[HELD_RINGS[1]])
 
 
@@ -70,7 +70,7 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 def shipped_compliance(sim: Any, traction: Traction) -> float:
     """Displacement under the load, weighted by it, for one newton [m/N]."""
-    wall, rest = sim.colon.stage.wall, sim.colon.data.nodal_pos_w[0].clone()
+    wall, rest = sim.colon.wall, sim.colon.data.nodal_pos_w[0].clone()
     points = wall.points.astype(float)
     load = traction(np.arctan2(points[:, 1], points[:, 0]), points[:, 2] - free_span(sim)[0])
     load *= ((wall.layer == 0) & sim.colon.mobile())[:, None]

@@ -1,0 +1,144 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whatever the actions of the tasks can command, no link leaves the lumen and every world stays finite.
+
+Each robot starts in the bend of 100 degrees, in the softest tissue. Commands are the tasks' own, limits included.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from fidelity_checks.contact import follow
+from fidelity_checks.insertion import BEND, CONTROL_STEP
+from fidelity_checks.models import build
+from fidelity_checks.table import Row, Run, absolute, check
+
+ROBOTS = ("capsule", "magnetic", "proximal")
+"""All robots."""
+START = 0.19
+"""Inserted length at the start [m]: the tip is in the bend."""
+SPEED_TIME = 4.0
+"""Time for which each command is kept [s]."""
+RANDOM_WORLDS, RANDOM_TIME = 20, 30.0
+"""Worlds of random actions and time of each [s]: ten minutes in all."""
+REDRAW = 0.2
+"""Chance a control step that a world's random action is drawn anew."""
+
+
+def scene(run: Run, robot: str, num_envs: int) -> Any:
+    """Worlds with a robot, its tip in the bend."""
+    from arcgym import assets
+
+    sim = build(run, getattr(assets, f"{robot.upper()}_CFG"), BEND, num_envs, {"material": "in_situ"})
+    if robot == "capsule":
+        centre, angle = BEND.frame(np.array([START]))
+        half = -0.5 * float(angle[0])
+        pose = [*centre[0], math.sin(half), 0.0, 0.0, math.cos(half)]
+        sim.endoscope.data.joint_pos[:] = sim.endoscope.data.joint_pos.new_tensor(pose)
+        sim.contact.ring.fill_(-1)
+        sim.forward()
+    else:
+        follow(sim, BEND, START)
+    sim.step(24)
+    return sim
+
+
+def limits(robot: str) -> Any:
+    """Action term of the robot's tasks."""
+    import arcgym_tasks  # noqa: F401
+    from arcgym.utils.registry import load_cfg_from_registry
+
+    cfg = load_cfg_from_registry(f"ARC-Sigmoid-{robot.capitalize()}", "env_cfg_entry_point")
+    (term,) = [value for value in vars(cfg.actions).values() if hasattr(value, "class_type")]
+    return term
+
+
+def commander(sim: Any, robot: str) -> tuple[int, Callable[[Any], None]]:
+    """Number of actions, and what hands actions in [-1, 1], shape (N, A), to the robot as its action term does."""
+    term, scope = limits(robot), sim.endoscope
+    if robot != "proximal":
+
+        def pull(action: Any) -> None:
+            scope.set_tip_velocity_command(term.linear_scale * action[:, :3], term.angular_scale * action[:, 3:])
+
+        return 6, pull
+
+    def push(action: Any) -> None:
+        scope.set_insertion_command(term.insertion_scale * action[:, 0], term.roll_scale * action[:, 1])
+        target = scope.data.bending + term.bending_scale * CONTROL_STEP * action[:, 2:]
+        scope.set_bending_command(target[:, 0], target[:, 1])
+
+    return 4, push
+
+
+class Watch:
+    """Counts links outside the lumen and worlds that are not finite, control step by control step."""
+
+    def __init__(self, sim: Any):
+        """Watch a simulation."""
+        from soak_checks.lumen import LumenCheck
+
+        env = SimpleNamespace(scene={"colon": sim.colon, "endoscope": sim.endoscope}, sim=sim)
+        env.num_envs, env.device = sim.num_envs, sim.device
+        self._sim, self._check = sim, LumenCheck(env)
+        self.outside, self.broken, self.worlds = 0, 0, np.zeros(sim.num_envs, bool)
+
+    def look(self) -> None:
+        """Count the present state."""
+        outside, _ = self._check.outside()
+        lost = self._sim.non_finite
+        outside = outside & ~lost[:, None]
+        self.outside += int(outside.sum())
+        self.broken = int(lost.sum())
+        self.worlds |= (outside.any(dim=1) | lost).cpu().numpy()
+
+    def row(self, name: str, what: str) -> Row:
+        """Events counted; each world that is not finite at the end is one."""
+        note = f"{what}: {self.worlds.sum()} of {len(self.worlds)} worlds, {self.broken} not finite"
+        return absolute(name, float(self.outside + self.broken), 0.0, 0.0, "", note)
+
+
+def speeds(run: Run, robot: str) -> list[Row]:
+    """Every combination of full commands, each kept on in a world of its own."""
+    import torch
+
+    count = 4 if robot == "proximal" else 6
+    corners = torch.tensor(list(itertools.product((-1.0, 1.0), repeat=count)), device=run.device)
+    sim = scene(run, robot, len(corners))
+    _, command = commander(sim, robot)
+    watch = Watch(sim)
+    for _ in range(round(SPEED_TIME / CONTROL_STEP)):
+        command(corners)
+        sim.step(round(CONTROL_STEP / sim.physics_dt))
+        watch.look()
+    return [watch.row(f"speed_{robot}", f"full commands for {SPEED_TIME:g} s")]
+
+
+def random_actions(run: Run, robot: str) -> list[Row]:
+    """Ten minutes of uniform actions, each kept for five control steps on average."""
+    import torch
+
+    sim = scene(run, robot, RANDOM_WORLDS)
+    count, command = commander(sim, robot)
+    draw = torch.Generator().manual_seed(1)
+    action, watch = torch.zeros(RANDOM_WORLDS, count), Watch(sim)
+    for _ in range(round(RANDOM_TIME / CONTROL_STEP)):
+        fresh = 2.0 * torch.rand(RANDOM_WORLDS, count, generator=draw) - 1.0
+        action = torch.where(torch.rand(RANDOM_WORLDS, 1, generator=draw) < REDRAW, fresh, action)
+        command(action.to(sim.device))
+        sim.step(round(CONTROL_STEP / sim.physics_dt))
+        watch.look()
+    return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * RANDOM_TIME / 60.0:g} min")]
+
+
+for _robot in ROBOTS:
+    check(f"speed_{_robot}")(partial(speeds, robot=_robot))
+    check(f"random_{_robot}")(partial(random_actions, robot=_robot))
