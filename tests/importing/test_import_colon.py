@@ -69,7 +69,7 @@ def test_simulator_takes_the_wall(imported: Path) -> None:
 
     wall = read_colon(imported / "colon.usda").wall
     assert np.ptp(wall.ring[wall.tets], axis=1).max() == 1
-    topology = lumen_topology(inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
+    topology = lumen_topology(wall.points, inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
     assert topology.rings.shape == (wall.num_rings, wall.num_sectors)
 
 

@@ -23,7 +23,7 @@ SPRING = 10.0
 @pytest.fixture
 def readout() -> WallReadout:
     """Every vertex of ring 5 is held by a spring of 10 N/m, in world 1 by one of 5 N/m."""
-    lumen = lumen_topology(inner_faces(WALL.tets, WALL.layer), WALL.ring, WALL.layer)
+    lumen = lumen_topology(WALL.points, inner_faces(WALL.tets, WALL.layer), WALL.ring, WALL.layer)
     anchor = AnchorSprings.linear(np.where(WALL.ring == 5, SPRING, 0.0))
     scale = wp.array([1.0, 0.5], dtype=float)
     return WallReadout(lumen, WALL.points, WALL.ring, anchor, scale, "cpu")

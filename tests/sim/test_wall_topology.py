@@ -22,7 +22,7 @@ def wall() -> WallMesh:
 
 @pytest.fixture(scope="module")
 def lumen(wall: WallMesh) -> LumenTopology:
-    return lumen_topology(inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
+    return lumen_topology(wall.points, inner_faces(wall.tets, wall.layer), wall.ring, wall.layer)
 
 
 def test_faces_are_sorted_by_their_lowest_ring(wall: WallMesh, lumen: LumenTopology) -> None:

@@ -53,10 +53,12 @@ class ContactSearch:
         self.links.radius = wp.array(radius, dtype=float, device=device)
         self.law = self._law(cfg)
         self.law.wall_radius += surface_offset
+        self.law.widest = 2.0 * topology.radius + cfg.search_gap
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
         self.centres = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
+        self.away = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         shape = (num_envs, self.link_count, topology.candidates(cfg.search_reach))
         self.distance = wp.zeros(shape, dtype=float, device=device)
         self.records = self._records(cfg.capacity)
@@ -97,7 +99,7 @@ class ContactSearch:
     def track(self, body_q: wp.array) -> None:
         """Follow each link's ring; links whose ring is -1 are searched along the whole colon."""
         shape = (self.num_envs, self.link_count)
-        wp.launch(kernels.track_rings, shape, [self.centres, body_q, SPAN, self.ring], device=self.device)
+        wp.launch(kernels.track_rings, shape, [self.centres, body_q, SPAN, self.ring, self.away], device=self.device)
 
     def detect(self, x: wp.array, body_q: wp.array) -> None:
         """Fill the contact records for wall positions ``x`` (V, W) and link poses ``body_q`` (W*L,)."""
@@ -106,7 +108,7 @@ class ContactSearch:
         wp.launch(
             kernels.face_distances,
             self.distance.shape,
-            [x, body_q, self.links, self.surface, self.law, self.ring, self.distance],
+            [x, body_q, self.links, self.surface, self.law, self.ring, self.away, self.distance],
             device=self.device,
         )
         wp.launch(

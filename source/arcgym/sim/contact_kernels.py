@@ -59,6 +59,7 @@ class ContactLaw:
     slip_velocity: float  # speed under which friction is viscous [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
     search_gap: float  # distance up to which records are kept [m]
+    widest: float  # links farther than this from the centre of their ring touch nothing [m]
 
 
 @wp.kernel
@@ -74,9 +75,16 @@ def ring_centres(x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, centres: w
 
 @wp.kernel
 def track_rings(
-    centres: wp.array2d(dtype=wp.vec3), body_q: wp.array(dtype=wp.transform), span: int, ring: wp.array2d(dtype=int)
+    centres: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    span: int,
+    ring: wp.array2d(dtype=int),
+    away: wp.array2d(dtype=float),
 ):
-    """Ring nearest to each link among ``span`` on either side of the last one; all of them where it is -1."""
+    """Ring nearest to each link among ``span`` on either side of the last one, all of them where it is -1; and how far.
+
+    Launch (W, L).
+    """
     w, link = wp.tid()
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
     last = ring[w, link]
@@ -93,6 +101,7 @@ def track_rings(
             best = d
             found = r
     ring[w, link] = found
+    away[w, link] = wp.sqrt(best)
 
 
 @wp.kernel
@@ -103,10 +112,14 @@ def face_distances(
     surface: LumenSurface,
     law: ContactLaw,
     ring: wp.array2d(dtype=int),
+    away: wp.array2d(dtype=float),
     distance: wp.array3d(dtype=float),
 ):
     """Distance from each link's axis to each candidate face, or FAR. Launch (W, L, M)."""
     w, link, m = wp.tid()
+    if away[w, link] > law.widest + links.half_length[link] + links.radius[link]:
+        distance[w, link, m] = FAR
+        return
     nr = surface.ring_start.shape[0] - 1
     face = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)] + m
     d = float(FAR)

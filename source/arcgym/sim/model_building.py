@@ -79,4 +79,4 @@ def wall_lumen(colon: Colon) -> LumenTopology:
     """Faces of the wall that the scope touches, sorted along the centreline."""
     wall = colon.wall
     faces = wall.triangles if isinstance(wall, ShellMesh) else inner_faces(wall.tets, wall.layer)
-    return lumen_topology(faces, wall.ring, wall.layer)
+    return lumen_topology(wall.points, faces, wall.ring, wall.layer)

@@ -36,7 +36,8 @@ class ShellElements:
     hinge_entry: wp.array(dtype=int)  # 4 * hinge + corner, shape (4*H,)
     tilt: wp.array2d(dtype=wp.vec3)  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
     corner_force: wp.array2d(dtype=wp.vec3)  # membrane force on each corner [N], shape (3*F, W)
-    offset: wp.array2d(dtype=float)  # bend [rad] of each hinge less its linear part, shape (H, W)
+    bend: wp.array2d(dtype=float)  # angle of each hinge from rest [rad], shape (H, W)
+    offset: wp.array2d(dtype=float)  # the same less its linear part, shape (H, W)
 
 
 @wp.struct
@@ -95,32 +96,36 @@ def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d(dtype=
 
 @wp.struct
 class Fold:
-    """A hinge linearised: gradient of its angle at the two opposite vertices [rad/m], and the linear part [rad]."""
+    """Gradient of a hinge's angle at its two opposite vertices [rad/m]."""
 
     g0: wp.vec3
     g1: wp.vec3
-    linear: float
 
 
 @wp.func
-def fold_of(shell: ShellElements, hinge: int, x: wp.array2d(dtype=wp.vec3), w: int) -> Fold:
-    """The hinge with the normals last measured; feet and length of its edge are taken from rest."""
-    corners = shell.hinges[hinge]
-    sides = shell.sides[hinge]
-    foot = shell.foot[hinge]
+def fold_of(shell: ShellElements, h: int, w: int) -> Fold:
+    """The hinge with the normals last measured; the length of its edge is taken from rest."""
+    sides = shell.sides[h]
+    out = Fold()
+    out.g0 = -shell.length[h] * shell.tilt[sides[0], w]
+    out.g1 = -shell.length[h] * shell.tilt[sides[1], w]
+    return out
+
+
+@wp.func
+def linear_bend(shell: ShellElements, now: Fold, h: int, x: wp.array2d(dtype=wp.vec3), w: int) -> float:
+    """Part of a hinge's angle that is linear in its vertices [rad]."""
+    corners = shell.hinges[h]
+    foot = shell.foot[h]
     start = x[corners[2], w]
     edge = x[corners[3], w] - start
-    out = Fold()
-    out.g0 = -shell.length[hinge] * shell.tilt[sides[0], w]
-    out.g1 = -shell.length[hinge] * shell.tilt[sides[1], w]
-    out.linear = wp.dot(out.g0, x[corners[0], w] - start - foot[0] * edge)
-    out.linear += wp.dot(out.g1, x[corners[1], w] - start - foot[1] * edge)
-    return out
+    out = wp.dot(now.g0, x[corners[0], w] - start - foot[0] * edge)
+    return out + wp.dot(now.g1, x[corners[1], w] - start - foot[1] * edge)
 
 
 @wp.kernel
 def measure_hinges(shell: ShellElements, x: wp.array2d(dtype=wp.vec3)):
-    """Angle of every hinge from rest, less its linear part. Launch (H, W)."""
+    """Angle of every hinge from rest. Launch (H, W)."""
     h, w = wp.tid()
     corners = shell.hinges[h]
     sides = shell.sides[h]
@@ -128,8 +133,8 @@ def measure_hinges(shell: ShellElements, x: wp.array2d(dtype=wp.vec3)):
     n0 = shell.tilt[sides[0], w]
     n1 = shell.tilt[sides[1], w]
     angle = wp.atan2(wp.dot(wp.cross(n0, n1), wp.normalize(edge)), wp.dot(n0, n1))
-    now = fold_of(shell, h, x, w)
-    shell.offset[h, w] = angle - shell.rest_angle[h] - now.linear
+    shell.bend[h, w] = angle - shell.rest_angle[h]
+    shell.offset[h, w] = angle - shell.rest_angle[h] - linear_bend(shell, fold_of(shell, h, w), h, x, w)
 
 
 @wp.func
@@ -181,10 +186,10 @@ def add_bending(
     for k in range(shell.hinge_start[i], shell.hinge_start[i + 1]):
         entry = shell.hinge_entry[k]
         h = entry // 4
-        now = fold_of(shell, h, x, w)
+        now = fold_of(shell, h, w)
         turn = corner_turn(now, shell.foot[h], entry - 4 * h)
         stiffness = rigidity * shell.weight[h]
-        out.force -= (stiffness * (shell.offset[h, w] + now.linear)) * turn
+        out.force -= (stiffness * (shell.offset[h, w] + linear_bend(shell, now, h, x, w))) * turn
         out.hessian += stiffness * wp.outer(turn, turn)
     return out
 
@@ -242,6 +247,10 @@ def residual(
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
         for k in range(shell.triangle_start[i], shell.triangle_start[i + 1]):
             block.force += shell.corner_force[shell.triangle_entry[k], w]
-        block = add_bending(block, shell, x, i, w, tissue.moduli[w][2])
+        for k in range(shell.hinge_start[i], shell.hinge_start[i + 1]):
+            entry = shell.hinge_entry[k]
+            h = entry // 4
+            turn = corner_turn(fold_of(shell, h, w), shell.foot[h], entry - 4 * h)
+            block.force -= (tissue.moduli[w][2] * shell.weight[h] * shell.bend[h, w]) * turn
         block = add_contact(block, records, links, law, 0.0, link_count, dt, x, x, body_q, body_q, i, w)
     force[i, w] = block.force

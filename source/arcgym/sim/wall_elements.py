@@ -89,6 +89,7 @@ class Shell:
         triangles, hinges = len(geometry.triangles), len(geometry.hinges)
         data.tilt = wp.zeros((triangles, num_envs), dtype=wp.vec3, device=device)
         data.corner_force = wp.zeros((3 * triangles, num_envs), dtype=wp.vec3, device=device)
+        data.bend = wp.zeros((hinges, num_envs), dtype=float, device=device)
         data.offset = wp.zeros((hinges, num_envs), dtype=float, device=device)
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:

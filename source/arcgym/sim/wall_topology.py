@@ -23,6 +23,8 @@ class LumenTopology:
     """Lowest face around each wall vertex (F where there is none), shape (V,), int32."""
     ring_start: np.ndarray
     """First face of each ring, shape (R + 1,), int32."""
+    radius: float
+    """Largest distance at rest of an inner vertex from the centre of its ring [m]."""
 
     def candidates(self, reach: int) -> int:
         """Largest number of faces within ``reach`` rings on either side of one ring."""
@@ -32,10 +34,11 @@ class LumenTopology:
         return int((last - self.ring_start[np.maximum(0, ring - reach)]).max())
 
 
-def lumen_topology(faces: np.ndarray, ring: np.ndarray, layer: np.ndarray) -> LumenTopology:
+def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, layer: np.ndarray) -> LumenTopology:
     """Sort the lumen faces by ring and connect them.
 
     Args:
+        points: Rest positions [m], shape (V, 3).
         faces: Faces of the lumen side, normals into the wall, shape (F, 3).
         ring: Ring of each wall vertex, shape (V,).
         layer: Layer of each wall vertex, 0 = inner, shape (V,).
@@ -47,9 +50,10 @@ def lumen_topology(faces: np.ndarray, ring: np.ndarray, layer: np.ndarray) -> Lu
     ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
     owner = np.full(len(ring), len(faces), np.int32)
     np.minimum.at(owner, faces.ravel(), np.repeat(np.arange(len(faces), dtype=np.int32), 3))
-    return LumenTopology(
-        members(np.where(layer == 0)[0], ring, count, pad_first=True), faces, face_neighbors(faces), owner, ring_start
-    )
+    rings = members(np.where(layer == 0)[0], ring, count, pad_first=True)
+    away = points[rings] - points[rings].mean(axis=1, keepdims=True)
+    radius = float(np.linalg.norm(away, axis=2).max())
+    return LumenTopology(rings, faces, face_neighbors(faces), owner, ring_start, radius)
 
 
 def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool) -> np.ndarray:
