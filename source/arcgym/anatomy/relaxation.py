@@ -19,6 +19,7 @@ _ITERATIONS = 900
 _CHOOSING = (200, 400, 600)
 _CANAL_POINTS = 5
 _STIFFER = 0.006
+_NEIGHBOR_AGE, _NEIGHBOR_REACH = 5, 0.02
 
 
 def relax(
@@ -53,7 +54,9 @@ def relax(
             spacing = float(edge.mean())
             places = choose_knees(points, spacing, radius, spec) if bends is None else bends
             knees = make_knees(places, spacing, radius, spec)
-        points += _push_apart(points, need, other_loop)
+        if k % _NEIGHBOR_AGE == 0:
+            near = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
+        points += _push_apart(points, *near, need[near])
         points += hold[:, None] * (route - points)
         if knees:
             points += knees.pull(points)
@@ -65,14 +68,18 @@ def relax(
     return points
 
 
-def _push_apart(points: np.ndarray, need: np.ndarray, other_loop: np.ndarray) -> np.ndarray:
-    """Returns the shift of each point away from the points of other loops that are nearer than ``need``."""
-    square = (points**2).sum(1)
-    distance2 = square[:, None] + square[None] - 2.0 * points @ points.T
-    a, b = np.nonzero(other_loop & (distance2 < need**2))
+def _square_distances(points: np.ndarray) -> np.ndarray:
+    """Returns squared distances [m^2], shape (n, n); a matrix product is slow on busy cores."""
+    return sum((x[:, None] - x[None]) ** 2 for x in points.T)  # type: ignore[return-value]
+
+
+def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:
+    """Returns the shift of each point away from those of other loops that are nearer than ``need``, for pairs a, b."""
     offset = points[a] - points[b]
+    close = (offset**2).sum(1) < need**2
+    a, offset, need = a[close], offset[close], need[close]
     distance = np.linalg.norm(offset, axis=1) + 1e-9
-    overlap = need[a, b] - distance
+    overlap = need - distance
     total = np.bincount(a, overlap, len(points)) + 1e-12
     push = (overlap**2 / (total[a] * distance))[:, None] * offset
     return 0.3 * np.stack([np.bincount(a, push[:, k], len(points)) for k in range(3)], 1)
