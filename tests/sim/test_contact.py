@@ -42,7 +42,7 @@ def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.nd
     twist = wp.array([[*link_velocity, 0.0, 0.0, 0.0]], dtype=wp.spatial_vector, device="cpu")
     contact, loads, now = sim.contact, sim.coupling.solver.loads, 1.0e-9
     args = [sim.state.body_q, twist, sim.model.body_com, sim.nodal_pos, sim.nodal_vel, contact.links]
-    args += [contact.records, contact.law, contact.friction, 0.0, now, loads]
+    args += [contact.records, contact.law, contact.friction, now, loads]
     wp.launch(load_contacts, loads.wrench.shape, args, device="cpu")
     return loads.wrench.numpy()[0, 0, :3]
 

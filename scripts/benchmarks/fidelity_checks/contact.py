@@ -44,25 +44,17 @@ def balance(run: Run) -> list[Row]:
 
 
 def contact_force_on_wall(sim: Any) -> np.ndarray:
-    """Sum of the contact forces on the wall of a single world after a step [N], shape (3,).
-
-    It is the wall's residual with the step's contacts less the one without, over all vertices, held ones too. Friction,
-    of which a scope at rest has none, is not in it.
-    """
+    """Sum of the contact forces on the wall of a single world as its last step saw them [N], shape (3,)."""
     import warp as wp
 
-    contact, wall, forces = sim.contact, sim.wall, []
-    mobile = wp.clone(wall.elements.mobile)
-    wall.elements.mobile.fill_(1)
-    for _ in range(2):
-        out = wp.zeros_like(sim.nodal_pos)
-        args = [wall.nodes, wall.elements, wall.tissue, sim.cfg.dt, sim.nodal_pos, contact.records]
-        args += [contact.links, contact.law, contact.link_count, sim.state.body_q, sim.nodal_pos, out]
-        wp.launch(wall.kernels.residual, out.shape, args, device=sim.device)
-        forces.append(out.numpy().astype(float))
-        contact.records.vertex_head.fill_(-1)
-    wp.copy(wall.elements.mobile, mobile)
-    return (forces[0] - forces[1]).sum(axis=0)
+    from fidelity_checks.load_kernels import contact_on_wall
+
+    contact, wall, coupling = sim.contact, sim.wall, sim.coupling
+    out = wp.zeros_like(sim.nodal_pos)
+    args = [contact.records, contact.links, contact.law, contact.friction, contact.link_count, sim.cfg.dt]
+    args += [sim.nodal_pos, wall.x_prev, sim.state.body_q, coupling.body_q_prev, out]
+    wp.launch(contact_on_wall, out.shape, args, device=sim.device)
+    return out.numpy().astype(float).sum(axis=(0, 1))
 
 
 @check("capstan", quick=True)
@@ -172,16 +164,14 @@ def links_outside(sim: Any, world: int) -> int:
 
     Links near the open ends of the tube are left out.
     """
-    from arcgym.anatomy.wall import inner_faces
-
-    wall, data, margin = sim.colon.wall, sim.endoscope.data, 4
+    data, faces, margin = sim.endoscope.data, sim.contact.surface.faces.numpy(), 4
     if bool(sim.non_finite[world]):
         return sim.endoscope.num_bodies
     points = sim.colon.data.nodal_pos_w[world].cpu().numpy().astype(float)
     centres = data.body_pos_w[world].cpu().numpy().astype(float)
     ring = sim.contact.ring.numpy()[world]
     centres = centres[(ring >= margin) & (ring < sim.colon.num_rings - margin)]
-    return int((winding(points[inner_faces(wall.tets, wall.layer)], centres) < 0.5).sum())
+    return int((winding(points[faces], centres) < 0.5).sum())
 
 
 def winding(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -1,9 +1,11 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Forces that the checks put on links. One launch a scope substep."""
+"""Forces that the checks put on links, launched every scope substep, and those of the contacts on the wall."""
 
 import warp as wp
 
+from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
+from arcgym.sim.wall_kernels import VertexBlock, add_contact
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -31,3 +33,25 @@ def add_loads(
     lin = 2.0 * dt * dt * guide[i]
     ang = lin * wp.dot(arm, arm)
     resistance[link, w] = resistance[link, w] + wp.spatial_vector(lin, lin, lin, ang, ang, ang)
+
+
+@wp.kernel
+def contact_on_wall(
+    records: ContactRecords,
+    links: LinkShapes,
+    law: ContactLaw,
+    friction: wp.array(dtype=float),
+    link_count: int,
+    dt: float,
+    x: wp.array2d(dtype=wp.vec3),
+    x_prev: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    body_q_prev: wp.array(dtype=wp.transform),
+    force: wp.array2d(dtype=wp.vec3),
+):
+    """Contact force on every wall vertex at the end of a step. Launch (V, W)."""
+    i, w = wp.tid()
+    block = add_contact(
+        VertexBlock(), records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w
+    )
+    force[i, w] = block.force

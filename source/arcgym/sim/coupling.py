@@ -30,9 +30,10 @@ class Coupling(Protocol):
 class TwoLevelCoupling:
     """One wall step with K scope substeps in it.
 
-    Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, implicitly,
-    the wall moving on at its velocity; the wall solve then sees the scope's final pose. **What is stale:** the contact
-    points stay put for one step.
+    Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, implicitly;
+    the wall solve then sees the scope's final pose. **What is stale:** the contact points, and for the scope the place
+    of the wall, stay put for one step, which acts like a normal dashpot of stiffness * dt where the wall gives way.
+    Moving the wall on at its velocity meanwhile would undo that, but sets light walls swinging.
     """
 
     def __init__(
@@ -68,25 +69,26 @@ class TwoLevelCoupling:
         self.solver = SolverArticulatedChain(model)
         self.solver.resistance = actuation.resistance
         self.state = state
-        self._body_q_prev = wp.clone(state.body_q)
+        self.body_q_prev = wp.clone(state.body_q)
+        """Link poses at the start of the last step, shape (W*L,)."""
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
         count = self.cfg.scope_substeps
         dt = self.cfg.dt / count
-        wp.copy(self._body_q_prev, self.state.body_q)
+        wp.copy(self.body_q_prev, self.state.body_q)
         self.contact.detect(self.x, self.state.body_q)
-        for substep in range(count):
-            self._load_contacts(substep * dt, dt)
+        for _ in range(count):
+            self._load_contacts(dt)
             self.actuation.apply(self.state, self.control, dt)
             self.solver.step(self.state, self.state, self.control, None, dt)
             self._record(1.0 / count)
-        self.wall.step(self.x, self.v, self.contact, self.state.body_q, self._body_q_prev)
+        self.wall.step(self.x, self.v, self.contact, self.state.body_q, self.body_q_prev)
 
-    def _load_contacts(self, elapsed: float, dt: float) -> None:
+    def _load_contacts(self, dt: float) -> None:
         contact, state, loads = self.contact, self.state, self.solver.loads
         args = [state.body_q, state.body_qd, self.model.body_com, self.x, self.v, contact.links, contact.records]
-        args += [contact.law, contact.friction, elapsed, dt, loads]
+        args += [contact.law, contact.friction, dt, loads]
         wp.launch(link_load_kernels.load_contacts, loads.wrench.shape, args, device=self.model.device)
 
     def _record(self, weight: float) -> None:

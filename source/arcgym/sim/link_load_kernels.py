@@ -14,7 +14,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 def contact_load(
     law: ContactLaw, friction: float, gap: float, normal: wp.vec3, lin: wp.vec3, wall_v: wp.vec3, dt: float
 ) -> Articulated:
-    """Load of one contact at its point, which moves at ``lin``; ``gap`` is to the wall's place at the end of the step.
+    """Load of one contact at its point, which moves at ``lin``; the wall's at ``wall_v``.
 
     The normal spring and damper act with their values at the end of the step. Friction is a damper that gives Coulomb's
     force at the present slip: it brakes and holds at any friction coefficient, and creeps below the slip velocity.
@@ -46,11 +46,10 @@ def load_contacts(
     records: ContactRecords,
     law: ContactLaw,
     friction: wp.array(dtype=float),
-    elapsed: float,
     dt: float,
     loads: LinkLoads,
 ):
-    """Sum the contacts of each link, the wall moving on at its velocity for ``elapsed`` + ``dt``. Launch (L, W)."""
+    """Sum the contacts of each link with the wall where it is. Launch (L, W)."""
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
     pose = body_q[row]
@@ -61,7 +60,7 @@ def load_contacts(
         f = records.face[slot]
         u = records.bary[slot]
         wall_v = corner_point(v, f, u, w)
-        p = corner_point(x, f, u, w) + (elapsed + dt) * wall_v
+        p = corner_point(x, f, u, w)
         c = touch(p, records.normal[slot], pose, links.half_length[link], links.radius[link] + law.wall_radius)
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - centre)
         one = moved(contact_load(law, friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)
