@@ -21,9 +21,11 @@ _SMOOTHING = (0.004, 0.006, 0.009, 0.013, 0.018)
 _SMOOTHING_SHARE = 0.65
 _SECTORS = 24
 _LARGEST_SHIFT = 0.005
-_END_LENGTH = 0.015
-_FADE = 0.4
-_LENGTH_ROUNDS = 4
+_END_LENGTH = (0.015, 0.03)
+_CANAL_TURNING = 0.8
+_SHARPEST = 20.0
+_LENGTH_ROUNDS = 6
+_LENGTH_SMOOTHING = 0.009
 _CANAL = (0.015, 0.070)
 
 
@@ -53,29 +55,34 @@ def plain_curve(points: np.ndarray) -> Curve:
     return Curve(points, np.linspace(0.0, 1.0, len(SEGMENTS) + 1)[1:])
 
 
-def centred(grid: Grid, path: np.ndarray, rounds: int = 4) -> np.ndarray:
+def centred(grid: Grid, path: np.ndarray, rounds: int = 6) -> np.ndarray:
     """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
+
+    The canal goes on turning as it does before its end; the caecum is too short for that to be seen.
+
+    Args:
+        grid: The lumen.
+        path: Way from the anus to the caecum [m], its ends a radius away from the wall, shape (n, 3).
+        rounds: How often it is moved.
 
     Returns:
         Points at equal distances from wall to wall [m], shape (n, 3).
     """
     points = smooth(resample(path, SPACING), 1.5)
     for _ in range(rounds):
-        points, radius = _centred_once(grid, points, free_ends=True)
-    for _ in range(rounds):
-        points, radius = _centred_once(grid, _to_both_walls(grid, points, radius), free_ends=False)
-    return resample(_to_both_walls(grid, points, radius), SPACING)
+        points = _centred_once(grid, points)
+    points = _to_the_wall(grid, points, _END_LENGTH[1], turning=0.0)
+    points = _to_the_wall(grid, points[::-1], _END_LENGTH[0], turning=_CANAL_TURNING)[::-1]
+    return resample(points, SPACING)
 
 
-def _centred_once(grid: Grid, points: np.ndarray, free_ends: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Returns points moved to the centroids and smoothed, and the lumen's radius there."""
+def _centred_once(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Returns points moved to the centroids and smoothed."""
     curve = plain_curve(points)
     s = np.linspace(0.0, curve.length, round(curve.length / SPACING) + 1)
     shift, radius = _centroid_shift(grid, curve, s)
-    if not free_ends:
-        shift *= np.clip(np.minimum(s, curve.length - s) / np.maximum(_FADE * radius, 1e-3), 0.0, 1.0)[:, None]
     moved = curve.position(s) + gaussian_filter1d(shift, 2.0, axis=0, mode="nearest")
-    return _smoothed_to_fit(moved, radius), radius
+    return _smoothed_to_fit(moved, radius)
 
 
 def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
@@ -88,23 +95,23 @@ def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
     return out
 
 
-def _to_both_walls(grid: Grid, points: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Leaves out what is near the ends, which has no sections of its own, and goes straight on to the wall."""
-    first, last = (int(np.clip(_FADE * radius[k] / SPACING, 2, 6)) for k in (8, -9))
-    return _to_the_wall(grid, _to_the_wall(grid, points[first:-last])[::-1])[::-1]
-
-
-def _to_the_wall(grid: Grid, points: np.ndarray, step: float = 0.0005) -> np.ndarray:
-    """Goes straight on from the last point to the wall."""
-    last = points[-1 - round(_END_LENGTH / SPACING) :]
-    way = np.linalg.svd(last - last.mean(0), full_matrices=False)[2][0]
-    way = way if way @ (last[-1] - last[0]) > 0 else -way
-    ray = points[-1] + step * np.arange(1, 160)[:, None] * way
+def _to_the_wall(grid: Grid, points: np.ndarray, look: float, turning: float, step: float = 0.0005) -> np.ndarray:
+    """Goes on from the last point to the wall, straight or turning as a share of what the last points do."""
+    count = max(2, round(look / SPACING))
+    way, before = _direction(points[-1 - count :]), _direction(points[-1 - 2 * count : -count])
+    axis = np.cross(before, way)
+    rate = turning * min(float(np.linalg.norm(axis)) / look, _SHARPEST)
+    along = (rate * step * np.arange(160))[:, None] * axis / max(float(np.linalg.norm(axis)), 1e-9)
+    ray = points[-1] + np.cumsum(step * Rotation.from_rotvec(along).apply(way), axis=0)
     inside = grid.sample(ray) > 0.5
-    count = len(inside) if inside.all() else int(inside.argmin())
-    return (
-        np.concatenate([points, resample(np.stack([points[-1], ray[count - 1]]), SPACING)[1:]]) if count > 2 else points
-    )
+    length = len(inside) if inside.all() else int(inside.argmin())
+    return points if length < 3 else np.concatenate([points, resample(ray[:length], SPACING)])
+
+
+def _direction(points: np.ndarray) -> np.ndarray:
+    """Returns the unit vector along points that are almost on a line."""
+    way = np.linalg.svd(points - points.mean(0), full_matrices=False)[2][0]
+    return way if way @ (points[-1] - points[0]) > 0 else -way
 
 
 def _centroid_shift(grid: Grid, curve: Curve, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -144,8 +151,10 @@ def relaxed(points: np.ndarray, half_width: np.ndarray, iterations: int = 400) -
         if np.abs(shift).max() < 1e-6:
             break
         out += shift
+        longer = out.copy()
         for _ in range(_LENGTH_ROUNDS):
-            _restore_lengths(out, edge)
+            _restore_lengths(longer, edge)
+        out += gaussian_filter1d(longer - out, _LENGTH_SMOOTHING / SPACING, axis=0, mode="nearest")
     return out
 
 

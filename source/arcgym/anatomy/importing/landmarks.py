@@ -1,11 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Segments from the course of the centreline: where the flexures turn and the descending colon leaves its groove."""
+"""Segments from the course of the centreline: the tops of the flexures and heights between them."""
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from .errors import ColonImportError
 
@@ -15,11 +14,14 @@ RECTUM = 0.150
 CECUM = 0.064
 """Length of the caecum below the ileocaecal valve [m], about 6 cm (Gray's Anatomy)."""
 
-FLEXURES = {"splenic": (0.037, 0.081), "hepatic": (0.012, 0.098)}
-"""Where a flexure begins before and ends behind its top [m]: mean of seven colons of :mod:`arcgym.anatomy.centerline`.
+ILIAC_CREST = 0.43
+"""Height of the iliac crest, where the descending colon becomes the sigmoid, between anal verge and left flexure."""
 
-They spread by 10 mm. The top comes early, for the colon goes on turning forwards (splenic) or down (hepatic) behind it.
-"""
+SPLENIC_FLEXURE = (0.036, 0.115)
+"""How far below its top the left flexure begins and ends, as a share of the top's height above the anal verge."""
+
+HEPATIC_FLEXURE = (0.018, 0.295)
+"""The right flexure begins this far before its top [m] and ends at this share of the way down to the caecal pole."""
 
 BORDERS = (
     "rectosigmoid",
@@ -33,7 +35,7 @@ BORDERS = (
 """Landmarks between segments, in order."""
 
 _SHORTEST_SEGMENT = 0.02
-_GROOVE_DEPTH = 0.024
+_LONGEST_FLEXURE = 0.16
 _TYPICAL_SHARES = (0.088, 0.402, 0.532, 0.599, 0.818, 0.882, 0.963)
 
 
@@ -64,34 +66,40 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
 
 
 def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
-    length, share = arc[-1], arc / arc[-1]
+    """Finds the borders by the tops of both flexures and by heights.
+
+    The shares are means of generated colons (:mod:`arcgym.anatomy.routes`), which spread by 15 mm along the course.
+    """
+    length, share, height = arc[-1], arc / arc[-1], points[:, 2]
     splenic = _top(points * [-1, 1, 1], arc, (share > 0.30) & (share < 0.75), lateral=0.0)
     after = (arc > splenic + 0.12) & (arc < length - 0.12)
     hepatic = _top(points, arc, after, lateral=0.5) if after.any() else splenic
-    tops = {"splenic": splenic, "hepatic": hepatic}
-    found = {}
-    for name, (before, behind) in FLEXURES.items():
-        found[f"{name}_flexure_entry"] = tops[name] - before
-        found[f"{name}_flexure_exit"] = tops[name] + behind
-    return found | {
+    tall = float(np.interp(splenic, arc, height) - height[0])
+    level = float(np.interp(splenic, arc, height))
+    right = float(np.interp(hepatic, arc, height))
+    pole = float(height[arc > max(hepatic, length - 0.2)].min())
+    down = right - HEPATIC_FLEXURE[1] * max(right - pole, 0.0)
+    return {
         "rectosigmoid": min(RECTUM, 0.2 * length),
-        "sigmoid_descending": _groove_end(points, arc, splenic),
+        "sigmoid_descending": _below(arc, height, splenic, height[0] + ILIAC_CREST * tall, 0.7 * splenic, -1),
+        "splenic_flexure_entry": _below(arc, height, splenic, level - SPLENIC_FLEXURE[0] * tall, _LONGEST_FLEXURE, -1),
+        "splenic_flexure_exit": _below(arc, height, splenic, level - SPLENIC_FLEXURE[1] * tall, _LONGEST_FLEXURE, 1),
+        "hepatic_flexure_entry": hepatic - HEPATIC_FLEXURE[0],
+        "hepatic_flexure_exit": _below(arc, height, hepatic, down, _LONGEST_FLEXURE, 1),
         "cecum_entry": length - min(CECUM, 0.06 * length),
     }
+
+
+def _below(arc: np.ndarray, height: np.ndarray, top: float, level: float, most: float, way: int) -> float:
+    """Returns where the course, followed from a top backwards or forwards, is first below a level, or lowest."""
+    near = np.flatnonzero((way * (arc - top) > 0) & (way * (arc - top) < most))[::way]
+    if not len(near):
+        return top
+    below = near[height[near] < level]
+    return float(arc[below[0] if len(below) else near[height[near].argmin()]])
 
 
 def _top(points: np.ndarray, arc: np.ndarray, where: np.ndarray, lateral: float) -> float:
     """Returns where the course turns at the top of a flank: high, and on the side of positive x."""
     height = points[:, 2] + lateral * np.minimum(points[:, 0] - np.quantile(points[:, 0], 0.9), 0.0)
     return float(arc[np.where(where, height, -np.inf).argmax()])
-
-
-def _groove_end(points: np.ndarray, arc: np.ndarray, top: float) -> float:
-    """Follows the descending colon down from the flexure until the course leaves the lateral groove."""
-    step = arc[1] - arc[0]
-    way = gaussian_filter1d(np.gradient(points, step, axis=0), 0.012 / step, axis=0, mode="nearest")
-    steep = way[:, 2] / np.maximum(np.linalg.norm(way, axis=1), 1e-9)
-    flank = (arc > top - 0.16) & (arc < top - 0.06)
-    forwards = points[:, 1] - np.median(points[flank, 1])
-    below = np.flatnonzero((arc < top - 0.06) & ((steep < 0.35) | (forwards > _GROOVE_DEPTH)))
-    return float(arc[below[-1]]) if len(below) else 0.4 * top

@@ -13,7 +13,7 @@ from .grid import Grid
 
 _BACK = 1.1
 _LEAST_BACK = 0.015
-_LAST = 0.25
+_LAST = 0.15
 _CLEAR_OF_START = 1.4
 _LEAST_MORE = 0.6
 _BAND = 0.004
@@ -76,7 +76,8 @@ def _bands(clearance: Grid, kept: np.ndarray, beyond: float, tip: np.ndarray) ->
 
     shape = np.array(clearance.values.shape)
     reach = float(np.linalg.norm(tip - kept[-1])) + 3 * beyond
-    seeds = np.clip(np.rint(clearance.index(kept)).astype(int), 0, shape - 1)
+    step = float(np.linalg.norm(kept[-1] - kept[-2]))
+    seeds = np.clip(np.rint(clearance.index(kept[-round(_LAST / step) :])).astype(int), 0, shape - 1)
     half = int(reach / clearance.spacing) + 1
     low, high = np.maximum(seeds[-1] - half, 0), np.minimum(seeds[-1] + half + 1, shape)
     part = clearance.values[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] > 0

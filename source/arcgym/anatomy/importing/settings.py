@@ -43,8 +43,8 @@ class ImportSettings:
     """Wall vertices around a ring."""
     wall_thickness: float = 0.002
     """Thickness of the simulated wall [m]."""
-    min_lumen_radius: float = 0.010
-    """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through everywhere."""
+    min_lumen_radius: float = 0.008
+    """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through with 1.5 mm to spare."""
     clearance: float = 0.003
     """Least gap between the walls of two loops [m]."""
     visual_spacing: float = 0.0022

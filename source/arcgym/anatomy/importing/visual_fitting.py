@@ -35,7 +35,7 @@ def fit_visual(
     """
     rows = np.linspace(0.0, s[-1], round(s[-1] / spacing) + 1)
     theta = np.linspace(0.0, 2 * np.pi, columns + 1)
-    tube = bounded(curve, rows, _resampled(s, radius, rows, theta[:-1]))
+    tube = _resampled(s, radius, rows, theta[:-1])
     polar = np.linspace(0.0, 0.5 * np.pi, _DOME_STEPS + 1)[1:]
     cap = _resampled(np.linspace(0.0, 0.5 * np.pi, len(dome)), dome, polar, theta[:-1])
     cap[-1] = cap[-1].mean()
@@ -44,6 +44,7 @@ def fit_visual(
     change = _change(fitted, along, theta[:-1])
     fade = np.r_[np.ones(len(rows)), np.cos(polar)][:, None]
     rho = np.maximum(np.concatenate([tube, cap]) + fade * change, _LEAST_RADIUS)
+    rho[: len(rows)] = bounded(curve, rows, rho[: len(rows)])
     rho = np.concatenate([rho, rho[:, :1]], 1)
     points = _positions(curve, rows, polar, theta, rho)
     faces = grid_triangles(len(along), columns + 1)

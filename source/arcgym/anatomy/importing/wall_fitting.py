@@ -22,6 +22,7 @@ from .settings import ImportSettings
 _LEAST_QUALITY = 0.06
 _ITERATIONS = 80
 _SHRINK = 0.93
+_LEAST_RADIUS = 0.0072
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSe
         if not tight.any():
             break
         soft = gaussian_filter(tight, (0.6, 0.8), mode=("nearest", "wrap"))
-        floor = 0.7 * settings.min_lumen_radius
+        floor = min(settings.min_lumen_radius, _LEAST_RADIUS)
         inner = np.maximum(inner * (1.0 - (1.0 - _SHRINK) * np.maximum(soft, tight)), floor)
         wall = _build(curve, arc, inner, settings)
     quality = float(tet_quality(wall.points, wall.tets).min())
