@@ -82,8 +82,10 @@ def _place(
     surface: Surface, name: str, kind: str | PolypSpec, others: list[Lesion], rng: np.random.Generator
 ) -> Lesion:
     start, end = surface.curve.bounds(name)
+    low = start + 0.012
+    high = max(min(end - 0.012, surface.curve.length - 0.05), low + 0.002)
     for _ in range(4000):
-        s = rng.uniform(start + 0.012, min(end - 0.012, surface.curve.length - 0.05))
+        s = rng.uniform(low, high)
         lesion = _draw(surface, kind, s, rng.uniform(SEAM_MARGIN, 2 * np.pi - SEAM_MARGIN), rng)
         if _off_folds(surface, lesion) and all(_apart(surface, lesion, other) for other in others):
             return lesion

@@ -55,8 +55,8 @@ def relax(
             places = choose_knees(points, spacing, radius, spec) if bends is None else bends
             knees = make_knees(places, spacing, radius, spec)
         if k % _NEIGHBOR_AGE == 0:
-            near = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
-        points += _push_apart(points, *near, need[near])
+            a, b = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
+        points += _push_apart(points, a, b, need[a, b])
         points += hold[:, None] * (route - points)
         if knees:
             points += knees.pull(points)
