@@ -13,6 +13,8 @@ from arcgym.utils import warp_setup  # noqa: F401
 FAR = wp.constant(1.0e9)
 EDGE = wp.constant(1.0e-4)
 """Barycentric coordinate under which a point counts as on the opposite edge."""
+CLEAR = wp.constant(0.5)
+"""Share of its radius by which a link's axis must stay off the wall to count as inside."""
 
 
 @wp.struct
@@ -43,7 +45,7 @@ class ContactRecords:
     count: wp.array(dtype=int)  # shape (W*L,)
     face: wp.array(dtype=wp.vec3i)  # the three wall vertices, shape (W*L*capacity,)
     bary: wp.array(dtype=wp.vec3)
-    normal: wp.array(dtype=wp.vec3)  # wall's outward face normal at detection
+    normal: wp.array(dtype=wp.vec3)  # outward normal of the wall there at detection
     vertex_head: wp.array2d(dtype=int)  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
     ring_head: wp.array2d(dtype=int)  # first record whose lowest ring is this one, shape (R, W)
@@ -179,6 +181,46 @@ def lowest_around(
     return True
 
 
+@wp.func
+def side(
+    x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, face: int, w: int, centre: wp.vec3, axis: wp.vec3
+) -> float:
+    """Distance of the link's axis from the face [m], negative on the outer side of the wall."""
+    a = x[surface.faces[face, 0], w]
+    b = x[surface.faces[face, 1], w]
+    c = x[surface.faces[face, 2], w]
+    u = segment_triangle(centre - axis, centre + axis, a, b, c)
+    p = u[0] * a + u[1] * b + u[2] * c
+    t = segment_parameter(p, centre - axis, centre + axis)
+    if wp.dot(p - centre - (2.0 * t - 1.0) * axis, wp.cross(b - a, c - a)) < 0.0:
+        return -u[3]
+    return u[3]
+
+
+@wp.func
+def face_normal(surface: LumenSurface, face: int, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
+    """Unit normal of a face, from the lumen into the wall."""
+    a = x[surface.faces[face, 0], w]
+    return wp.normalize(wp.cross(x[surface.faces[face, 1], w] - a, x[surface.faces[face, 2], w] - a))
+
+
+@wp.func
+def surface_normal(
+    surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(dtype=wp.vec3), w: int
+) -> wp.vec3:
+    """Normal at barycentric ``u`` of ``face``; on an edge or a corner, the mean with the faces across the edges there.
+
+    The face's own normal may be at more than a right angle to the way off a sharp fold, and then tells the wrong side
+    (Baerentzen and Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal").
+    """
+    normal = face_normal(surface, face, x, w)
+    for k in range(3):
+        other = surface.neighbors[face, k]
+        if u[k] < EDGE and other >= 0:
+            normal += face_normal(surface, other, x, w)
+    return wp.normalize(normal)
+
+
 @wp.kernel
 def select_contacts(
     x: wp.array2d(dtype=wp.vec3),
@@ -192,7 +234,8 @@ def select_contacts(
     """Keep one record for each place where the link comes close. Launch (W, L).
 
     A closest point inside a face is one, so that a link in a corner is held by both sides; a closest point on an edge
-    or a corner is one if no neighbouring face is nearer.
+    or a corner is one if no neighbouring face is nearer. A link that is clear of the wall on the lumen's side has not
+    gone through it: what it sees from behind is the far side of a fold and no contact.
     """
     w, link = wp.tid()
     row = w * ring.shape[1] + link
@@ -200,6 +243,13 @@ def select_contacts(
     pose = body_q[row]
     centre = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+    nearest = int(0)
+    for m in range(distance.shape[2]):
+        if distance[w, link, m] < distance[w, link, nearest]:
+            nearest = m
+    clear = bool(False)
+    if distance[w, link, nearest] < FAR:
+        clear = side(x, surface, first + nearest, w, centre, axis) > CLEAR * links.radius[link]
     n = int(0)
     for m in range(distance.shape[2]):
         if distance[w, link, m] < FAR and n < records.capacity:
@@ -209,12 +259,14 @@ def select_contacts(
             k = surface.faces[face, 2]
             c = segment_triangle(centre - axis, centre + axis, x[i, w], x[j, w], x[k, w])
             u = wp.vec3(c[0], c[1], c[2])
-            inside = wp.min(u) > EDGE
-            if inside or (lowest_around(surface, distance, w, link, m, first) and owns_contact(surface, face, u)):
+            near = wp.min(u) > EDGE
+            if not near:
+                near = lowest_around(surface, distance, w, link, m, first) and owns_contact(surface, face, u)
+            if near and not (clear and side(x, surface, face, w, centre, axis) < 0.0):
                 slot = row * records.capacity + n
                 records.face[slot] = wp.vec3i(i, j, k)
                 records.bary[slot] = u
-                records.normal[slot] = wp.normalize(wp.cross(x[j, w] - x[i, w], x[k, w] - x[i, w]))
+                records.normal[slot] = surface_normal(surface, face, u, x, w)
                 n += 1
     records.count[row] = n
 
