@@ -11,9 +11,8 @@ import warp as wp
 
 from arcgym.sim.anchor_kernels import secant_share
 from arcgym.sim.chain_kernels import MODES, Unknowns
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, touch
-from arcgym.sim.geometry_kernels import corner_point
-from arcgym.sim.wall_kernels import Tissue
+from arcgym.sim.contact_kernels import ContactRecords
+from arcgym.sim.wall_kernels import Pressing, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -62,6 +61,24 @@ def ring_rotations(
 
 
 @wp.func
+def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int) -> wp.vec3:
+    """How mode ``m`` of ring ``r`` moves the point ``u`` of face ``f``, in the rest frame."""
+    out = wp.vec3(0.0)
+    for k in range(3):
+        if space.ring[f[k]] == r:
+            out += u[k] * space.basis[f[k], m]
+    return out
+
+
+@wp.func
+def contact_push(pressing: Pressing, slot: int, move: wp.vec3) -> wp.vec3:
+    """Stiffness of a contact times a move of its point."""
+    n = pressing.normal[slot]
+    k = pressing.stiffness[slot]
+    return ((k[0] - k[1]) * wp.dot(n, move)) * n + k[1] * move
+
+
+@wp.func
 def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.vec3) -> Unknowns:
     """How far each mode of ring ``r`` moves the point ``u`` of face ``f`` along ``direction`` (in the rest frame)."""
     out = Unknowns()
@@ -86,7 +103,6 @@ def anchor_entry(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: in
 
 @wp.kernel
 def assemble(
-    x: wp.array2d(dtype=wp.vec3),
     force: wp.array2d(dtype=wp.vec3),
     space: RingSpace,
     rotation: wp.array2d(dtype=wp.mat33),
@@ -95,10 +111,7 @@ def assemble(
     inv_dt2: float,
     regularisation: float,
     records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    link_count: int,
-    body_q: wp.array(dtype=wp.transform),
+    pressing: Pressing,
     diagonal: wp.array4d(dtype=float),
     upper: wp.array4d(dtype=float),
     rhs: wp.array3d(dtype=float),
@@ -128,20 +141,13 @@ def assemble(
         if lowest >= 0:
             slot = records.ring_head[lowest, w]
         while slot >= 0:
-            row = slot // records.capacity
-            link = row % link_count
-            f = records.face[slot]
-            u = records.bary[slot]
-            p = corner_point(x, f, u, w)
-            t = touch(
-                p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius
-            )
-            if t.gap < 0.0:
-                own = ring_share(space, f, u, r, back * t.normal)
-                own_row += (law.stiffness * own[a]) * own
+            if pressing.stiffness[slot][0] > 0.0:
+                f = records.face[slot]
+                u = records.bary[slot]
+                push = contact_push(pressing, slot, rotation[r, w] * point_move(space, f, u, r, a))
+                own_row += ring_share(space, f, u, r, back * push)
                 if which == 0 and r + 1 < rings:
-                    other = ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * t.normal)
-                    next_row += (law.stiffness * own[a]) * other
+                    next_row += ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * push)
             slot = records.ring_next[slot]
     for c in range(MODES):
         diagonal[r, a, c, w] = own_row[c]

@@ -205,9 +205,7 @@ def face_normal(surface: LumenSurface, face: int, x: wp.array2d(dtype=wp.vec3), 
 
 
 @wp.func
-def surface_normal(
-    surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(dtype=wp.vec3), w: int
-) -> wp.vec3:
+def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
     """Normal at barycentric ``u`` of ``face``; on an edge or a corner, the mean with the faces across the edges there.
 
     The face's own normal may be at more than a right angle to the way off a sharp fold, and then tells the wrong side

@@ -13,7 +13,15 @@ spares the sweep its normals and inverse tangents.
 import warp as wp
 
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
-from arcgym.sim.wall_kernels import Tissue, VertexBlock, WallNodes, add_contact, inertia_and_anchor
+from arcgym.sim.wall_kernels import (
+    Pressing,
+    Tissue,
+    VertexBlock,
+    WallNodes,
+    add_contact,
+    contact_force,
+    inertia_and_anchor,
+)
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -233,14 +241,11 @@ def residual(
     dt: float,
     inertial: wp.array2d(dtype=wp.vec3),
     records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    link_count: int,
-    body_q: wp.array(dtype=wp.transform),
+    pressing: Pressing,
     x: wp.array2d(dtype=wp.vec3),
     force: wp.array2d(dtype=wp.vec3),
 ):
-    """Total force on every mobile vertex where the elements were measured, friction left out. Launch (V, W)."""
+    """Total force on every mobile vertex where the elements were measured. Launch (V, W)."""
     i, w = wp.tid()
     block = VertexBlock()
     if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
@@ -252,5 +257,5 @@ def residual(
             h = entry // 4
             turn = corner_turn(fold_of(shell, h, w), shell.foot[h], entry - 4 * h)
             block.force -= (tissue.moduli[w][2] * shell.weight[h] * shell.bend[h, w]) * turn
-        block = add_contact(block, records, links, law, 0.0, link_count, dt, x, x, body_q, body_q, i, w)
+        block.force += contact_force(records, pressing, i, w)
     force[i, w] = block.force

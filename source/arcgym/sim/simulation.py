@@ -74,7 +74,8 @@ class Simulation:
             num_envs,
             self.device,
         )
-        self.wall = WallSolver(cfg.wall, wall, model_building.wall_modes(wall), cfg.dt, num_envs, self.device)
+        modes, slots = model_building.wall_modes(wall), len(self.contact.records.face)
+        self.wall = WallSolver(cfg.wall, wall, modes, cfg.dt, num_envs, slots, self.device)
         self.wall_readout = WallReadout(
             model_building.wall_lumen(colon), wall.points, wall.ring, wall.anchor, self.wall.tissue.anchor, self.device
         )

@@ -9,7 +9,15 @@ parameters; force and Hessian of a vertex are written in closed form.
 import warp as wp
 
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
-from arcgym.sim.wall_kernels import Tissue, VertexBlock, WallNodes, add_contact, inertia_and_anchor
+from arcgym.sim.wall_kernels import (
+    Pressing,
+    Tissue,
+    VertexBlock,
+    WallNodes,
+    add_contact,
+    contact_force,
+    inertia_and_anchor,
+)
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -103,18 +111,15 @@ def residual(
     dt: float,
     inertial: wp.array2d(dtype=wp.vec3),
     records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    link_count: int,
-    body_q: wp.array(dtype=wp.transform),
+    pressing: Pressing,
     x: wp.array2d(dtype=wp.vec3),
     force: wp.array2d(dtype=wp.vec3),
 ):
-    """Total force on every mobile vertex, friction left out. Launch (V, W)."""
+    """Total force on every mobile vertex. Launch (V, W)."""
     i, w = wp.tid()
     block = VertexBlock()
     if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
         block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
-        block = add_contact(block, records, links, law, 0.0, link_count, dt, x, x, body_q, body_q, i, w)
+        block.force += contact_force(records, pressing, i, w)
     force[i, w] = block.force

@@ -53,6 +53,49 @@ def inertia_and_anchor(
     return block
 
 
+@wp.struct
+class Press:
+    """One contact as the wall feels it: normal force [N], friction's secant stiffness [N/m], slip in this step [m]."""
+
+    push: float
+    drag: float
+    normal: wp.vec3
+    slip: wp.vec3
+
+
+@wp.func
+def press_of(
+    records: ContactRecords,
+    slot: int,
+    links: LinkShapes,
+    law: ContactLaw,
+    friction: float,
+    link_count: int,
+    dt: float,
+    x: wp.array2d(dtype=wp.vec3),
+    x_prev: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    body_q_prev: wp.array(dtype=wp.transform),
+    w: int,
+) -> Press:
+    """Contact in ``slot`` of world ``w``; both forces are zero where nothing touches."""
+    out = Press()
+    row = slot // records.capacity
+    link = row % link_count
+    f = records.face[slot]
+    u = records.bary[slot]
+    p = corner_point(x, f, u, w)
+    c = touch(p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius)
+    if c.gap < 0.0:
+        out.push = -law.stiffness * c.gap
+        out.normal = c.normal
+        local = wp.transform_point(wp.transform_inverse(body_q[row]), p)
+        slip = wp.transform_point(body_q_prev[row], local) - corner_point(x_prev, f, u, w)
+        out.slip = slip - c.normal * wp.dot(c.normal, slip)
+        out.drag = friction * out.push * slip_scale(wp.length(out.slip), law.slip_velocity * dt)
+    return out
+
+
 @wp.func
 def add_contact(
     block: VertexBlock,
@@ -75,26 +118,60 @@ def add_contact(
     entry = records.vertex_head[vertex, w]
     while entry >= 0:
         slot = entry // 3
-        row = slot // records.capacity
-        link = row % link_count
-        f = records.face[slot]
-        u = records.bary[slot]
-        weight = u[entry - 3 * slot]
-        p = corner_point(x, f, u, w)
-        c = touch(p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius)
-        if c.gap < 0.0:
-            push = -law.stiffness * c.gap
-            n = c.normal
-            out.force += weight * push * n
-            out.hessian += (weight * weight * law.stiffness) * wp.outer(n, n)
-            if friction > 0.0:
-                before = corner_point(x_prev, f, u, w)
-                local = wp.transform_point(wp.transform_inverse(body_q[row]), p)
-                slip = wp.transform_point(body_q_prev[row], local) - before
-                slip = slip - n * wp.dot(n, slip)
-                drag = friction * push * slip_scale(wp.length(slip), law.slip_velocity * dt)
-                out.force -= weight * drag * slip
-                out.hessian += (weight * weight * drag) * (eye - wp.outer(n, n))
+        weight = records.bary[slot][entry - 3 * slot]
+        c = press_of(records, slot, links, law, friction, link_count, dt, x, x_prev, body_q, body_q_prev, w)
+        if c.push > 0.0:
+            along = wp.outer(c.normal, c.normal)
+            out.force += weight * (c.push * c.normal - c.drag * c.slip)
+            out.hessian += (weight * weight) * (law.stiffness * along + c.drag * (eye - along))
+        entry = records.vertex_next[entry]
+    return out
+
+
+@wp.struct
+class Pressing:
+    """Contacts measured at the start of a wall solve, by record slot; zero where nothing touches."""
+
+    force: wp.array(dtype=wp.vec3)  # on the wall [N]
+    normal: wp.array(dtype=wp.vec3)  # from the scope into the wall
+    stiffness: wp.array(dtype=wp.vec2)  # along the normal and across it [N/m]
+
+
+@wp.kernel
+def measure_contacts(
+    records: ContactRecords,
+    links: LinkShapes,
+    law: ContactLaw,
+    friction: wp.array(dtype=float),
+    dt: float,
+    x: wp.array2d(dtype=wp.vec3),
+    x_prev: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    body_q_prev: wp.array(dtype=wp.transform),
+    pressing: Pressing,
+):
+    """Measure every contact at wall positions ``x``. Launch (L, W)."""
+    link, w = wp.tid()
+    link_count = links.radius.shape[0]
+    row = w * link_count + link
+    for k in range(records.count[row]):
+        slot = row * records.capacity + k
+        c = press_of(records, slot, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, w)
+        pressing.force[slot] = c.push * c.normal - c.drag * c.slip
+        pressing.normal[slot] = c.normal
+        pressing.stiffness[slot] = wp.vec2(0.0)
+        if c.push > 0.0:
+            pressing.stiffness[slot] = wp.vec2(law.stiffness, c.drag)
+
+
+@wp.func
+def contact_force(records: ContactRecords, pressing: Pressing, i: int, w: int) -> wp.vec3:
+    """Sum of the measured contacts on vertex ``i`` of world ``w`` [N]."""
+    out = wp.vec3(0.0)
+    entry = records.vertex_head[i, w]
+    while entry >= 0:
+        slot = entry // 3
+        out += records.bary[slot][entry - 3 * slot] * pressing.force[slot]
         entry = records.vertex_next[entry]
     return out
 

@@ -30,7 +30,14 @@ class WallSolver:
     """
 
     def __init__(
-        self, cfg: WallSolverCfg, wall: WallParameters, modes: RingModes, dt: float, num_envs: int, device: str
+        self,
+        cfg: WallSolverCfg,
+        wall: WallParameters,
+        modes: RingModes,
+        dt: float,
+        num_envs: int,
+        contact_slots: int,
+        device: str,
     ):
         """Allocate the solver.
 
@@ -40,6 +47,7 @@ class WallSolver:
             modes: Its ring modes.
             dt: Physics step [s].
             num_envs: Worlds, W.
+            contact_slots: Number of contact records of all worlds.
             device: Warp device.
         """
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
@@ -61,7 +69,15 @@ class WallSolver:
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
+        self.pressing = self._pressing(contact_slots)
         self.chain = ChainSolver(num_envs, self.ring_count, device)
+
+    def _pressing(self, slots: int) -> wall_kernels.Pressing:
+        pressing = wall_kernels.Pressing()
+        pressing.force = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        pressing.normal = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        pressing.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
+        return pressing
 
     def _space(self, wall: WallParameters, modes: RingModes) -> coarse_kernels.RingSpace:
         space = coarse_kernels.RingSpace()
@@ -98,9 +114,9 @@ class WallSolver:
             device=self.device,
         )
         for _ in range(self.cfg.repeats):
-            self.elements.measure(x, self.tissue)
+            self._measure(x, self.x_prev, contact, body_q, body_q_prev)
             if self.cfg.coarse_correction:
-                self._correct_rings(x, contact, body_q)
+                self._correct_rings(x, contact)
             for _ in range(self.cfg.iterations):
                 self._sweep(x, contact, body_q, body_q_prev)
         wp.launch(wall_kernels.finish, x.shape, [self.x_prev, self.dt, x, v], device=self.device)
@@ -133,24 +149,29 @@ class WallSolver:
             body_q: Link poses, shape (W*L,).
         """
         force = wp.zeros_like(x)
-        self.elements.measure(x, self.tissue)
-        self._residual(x, x, contact, body_q, force)
+        self._measure(x, x, contact, body_q, body_q)
+        self._residual(x, x, contact, force)
         return force
 
-    def _residual(
-        self, x: wp.array, inertial: wp.array, contact: ContactSearch, body_q: wp.array, force: wp.array
+    def _measure(
+        self, x: wp.array, x_prev: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array
     ) -> None:
-        args = [self.nodes, self.elements.data, self.tissue, self.dt, inertial, contact.records, contact.links]
-        args += [contact.law, contact.link_count, body_q, x, force]
+        self.elements.measure(x, self.tissue)
+        args = [contact.records, contact.links, contact.law, contact.friction, self.dt, x, x_prev, body_q, body_q_prev]
+        shape = (contact.link_count, self.num_envs)
+        wp.launch(wall_kernels.measure_contacts, shape, [*args, self.pressing], device=self.device)
+
+    def _residual(self, x: wp.array, inertial: wp.array, contact: ContactSearch, force: wp.array) -> None:
+        args = [self.nodes, self.elements.data, self.tissue, self.dt, inertial, contact.records, self.pressing]
+        args += [x, force]
         wp.launch(self.elements.kernels.residual, x.shape, args, device=self.device)
 
-    def _correct_rings(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> None:
+    def _correct_rings(self, x: wp.array, contact: ContactSearch) -> None:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
-        touching = [contact.records, contact.links, contact.law, contact.link_count, body_q]
-        self._residual(x, self.inertial, contact, body_q, self.force)
+        self._residual(x, self.inertial, contact, self.force)
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
-        args = [x, self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
-        args += [*touching, self.chain.diagonal, self.chain.upper, self.chain.rhs]
+        args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
+        args += [contact.records, self.pressing, self.chain.diagonal, self.chain.upper, self.chain.rhs]
         wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
         self.chain.solve()
         wp.launch(
