@@ -59,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--posture", choices=("supine", "prone"), default="supine", help="how the patient lay")
     parser.add_argument("--licence", default="unknown", help="licence of the data, kept in the stage")
     parser.add_argument("--patient", default="unknown", help="patient in words, kept in the stage")
-    parser.add_argument("--max-gap", type=float, default=30.0, help="longest gap to bridge [mm] (default: 30)")
+    parser.add_argument("--max-gap", type=float, default=50.0, help="longest gap to bridge [mm] (default: 50)")
     parser.add_argument("--min-lumen", type=float, default=8.0, help="least radius of the wall [mm] (default: 8)")
     parser.add_argument("--wall-thickness", type=float, default=2.0, help="thickness of the wall [mm] (default: 2)")
     return parser

@@ -21,9 +21,7 @@ _SMOOTHING = (0.004, 0.006, 0.009, 0.013, 0.018)
 _SMOOTHING_SHARE = 0.65
 _SECTORS = 24
 _LARGEST_SHIFT = 0.005
-_END_LENGTH = (0.015, 0.03)
-_CANAL_TURNING = 0.8
-_SHARPEST = 20.0
+_END_LENGTH = 0.03
 _LENGTH_ROUNDS = 6
 _LENGTH_SMOOTHING = 0.009
 _CANAL = (0.015, 0.070)
@@ -58,8 +56,6 @@ def plain_curve(points: np.ndarray) -> Curve:
 def centred(grid: Grid, path: np.ndarray, rounds: int = 6) -> np.ndarray:
     """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
 
-    The canal goes on turning as it does before its end; the caecum is too short for that to be seen.
-
     Args:
         grid: The lumen.
         path: Way from the anus to the caecum [m], its ends a radius away from the wall, shape (n, 3).
@@ -71,9 +67,8 @@ def centred(grid: Grid, path: np.ndarray, rounds: int = 6) -> np.ndarray:
     points = smooth(resample(path, SPACING), 1.5)
     for _ in range(rounds):
         points = _centred_once(grid, points)
-    points = _to_the_wall(grid, points, _END_LENGTH[1], turning=0.0)
-    points = _to_the_wall(grid, points[::-1], _END_LENGTH[0], turning=_CANAL_TURNING)[::-1]
-    return resample(points, SPACING)
+    points = _to_the_wall(grid, _to_the_wall(grid, points, rounds=0)[::-1], rounds=16)[::-1]
+    return resample(smooth(resample(points, SPACING), 1.5), SPACING)
 
 
 def _centred_once(grid: Grid, points: np.ndarray) -> np.ndarray:
@@ -95,23 +90,31 @@ def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
     return out
 
 
-def _to_the_wall(grid: Grid, points: np.ndarray, look: float, turning: float, step: float = 0.0005) -> np.ndarray:
-    """Goes on from the last point to the wall, straight or turning as a share of what the last points do."""
-    count = max(2, round(look / SPACING))
-    way, before = _direction(points[-1 - count :]), _direction(points[-1 - 2 * count : -count])
-    axis = np.cross(before, way)
-    rate = turning * min(float(np.linalg.norm(axis)) / look, _SHARPEST)
-    along = (rate * step * np.arange(160))[:, None] * axis / max(float(np.linalg.norm(axis)), 1e-9)
-    ray = points[-1] + np.cumsum(step * Rotation.from_rotvec(along).apply(way), axis=0)
+def _to_the_wall(grid: Grid, points: np.ndarray, rounds: int) -> np.ndarray:
+    """Goes on from the last point to the wall, through the middle of the lumen near the place where it gets there.
+
+    An open end has such a middle. The pole of a caecum that is round has none: with no rounds, the way is straight.
+    """
+    start = points[-1]
+    back = points[-1 - round(_END_LENGTH / SPACING)]
+    end = _wall_ahead(grid, start, start - back)
+    reach = float(np.linalg.norm(end - start))
+    axis = np.arange(-reach, reach + 1e-9, 0.001)
+    ball = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), -1).reshape(-1, 3)
+    ball = ball[np.linalg.norm(ball, axis=1) < reach]
+    for _ in range(rounds):
+        lumen = ball[grid.sample(end + ball) > 0.5]
+        if not len(lumen):
+            break
+        end = _wall_ahead(grid, start, end + lumen.mean(0) - start)
+    return points if reach < 0.5 * SPACING else np.concatenate([points, resample(np.stack([start, end]), SPACING)[1:]])
+
+
+def _wall_ahead(grid: Grid, start: np.ndarray, way: np.ndarray, step: float = 0.0005) -> np.ndarray:
+    """Returns the last point of the lumen on a ray, at most 80 mm away."""
+    ray = start + step * np.arange(160)[:, None] * way / max(float(np.linalg.norm(way)), 1e-9)
     inside = grid.sample(ray) > 0.5
-    length = len(inside) if inside.all() else int(inside.argmin())
-    return points if length < 3 else np.concatenate([points, resample(ray[:length], SPACING)])
-
-
-def _direction(points: np.ndarray) -> np.ndarray:
-    """Returns the unit vector along points that are almost on a line."""
-    way = np.linalg.svd(points - points.mean(0), full_matrices=False)[2][0]
-    return way if way @ (points[-1] - points[0]) > 0 else -way
+    return ray[-1] if inside.all() else ray[max(int(inside.argmin()) - 1, 0)]
 
 
 def _centroid_shift(grid: Grid, curve: Curve, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

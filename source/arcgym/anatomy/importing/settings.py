@@ -35,7 +35,7 @@ class ImportSettings:
     """Patient in words; kept in the metadata."""
     voxel: float = 0.001
     """Edge of the voxels that are worked on [m]. Smaller keeps finer folds and costs time and memory."""
-    max_gap: float = 0.03
+    max_gap: float = 0.05
     """Longest collapsed or fluid-filled stretch to bridge [m]."""
     ring_spacing: float = 0.0125
     """Distance of the wall's rings [m]."""
