@@ -27,8 +27,10 @@ START = 0.19
 """Inserted length at the start [m]: the tip is in the bend."""
 SPEED_TIME = 4.0
 """Time for which each command is kept [s]."""
-RANDOM_WORLDS, RANDOM_TIME = 20, 30.0
-"""Worlds of random actions and time of each [s]: ten minutes in all."""
+RANDOM_WORLDS = 20
+"""Worlds of random actions."""
+RANDOM_TIME = {"cpu": 6.0, "cuda": 30.0}
+"""Time of each of them by kind of device [s]: ten minutes in all on a GPU, two on a CPU."""
 REDRAW = 0.2
 """Chance a control step that a world's random action is drawn anew."""
 
@@ -107,11 +109,12 @@ class Watch:
 
 
 def speeds(run: Run, robot: str) -> list[Row]:
-    """Every combination of full commands, each kept on in a world of its own."""
+    """Every combination of full commands, each kept on in a world of its own; all three turns of a tip go together."""
     import torch
 
-    count = 4 if robot == "proximal" else 6
-    corners = torch.tensor(list(itertools.product((-1.0, 1.0), repeat=count)), device=run.device)
+    corners = torch.tensor(list(itertools.product((-1.0, 1.0), repeat=4)), device=run.device)
+    if robot != "proximal":
+        corners = torch.cat([corners, corners[:, 3:], corners[:, 3:]], dim=1)
     sim = scene(run, robot, len(corners))
     _, command = commander(sim, robot)
     watch = Watch(sim)
@@ -123,20 +126,21 @@ def speeds(run: Run, robot: str) -> list[Row]:
 
 
 def random_actions(run: Run, robot: str) -> list[Row]:
-    """Ten minutes of uniform actions, each kept for five control steps on average."""
+    """Uniform actions, each kept for five control steps on average."""
     import torch
 
     sim = scene(run, robot, RANDOM_WORLDS)
     count, command = commander(sim, robot)
     draw = torch.Generator().manual_seed(1)
     action, watch = torch.zeros(RANDOM_WORLDS, count), Watch(sim)
-    for _ in range(round(RANDOM_TIME / CONTROL_STEP)):
+    time = RANDOM_TIME[run.device.split(":")[0]]
+    for _ in range(round(time / CONTROL_STEP)):
         fresh = 2.0 * torch.rand(RANDOM_WORLDS, count, generator=draw) - 1.0
         action = torch.where(torch.rand(RANDOM_WORLDS, 1, generator=draw) < REDRAW, fresh, action)
         command(action.to(sim.device))
         sim.step(round(CONTROL_STEP / sim.physics_dt))
         watch.look()
-    return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * RANDOM_TIME / 60.0:g} min")]
+    return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * time / 60.0:g} min")]
 
 
 for _robot in ROBOTS:

@@ -27,10 +27,9 @@ LENGTH = 0.03
 """Length of the indenter [m]; it fits into the tube."""
 HEAVY = 1.0e6
 """Mass of the indenter [kg]: it keeps its speed."""
-SPEED = 0.02
-"""Speed of the indenter [m/s]. At three times the speed the curves are the same."""
-SAMPLE = 0.01
-"""Time over which a force is averaged [s]."""
+STRIDE, MOVE, WAIT, SAMPLE = 5.0e-4, 0.0125, 0.0125, 0.0125
+"""Way of the indenter between two samples [m], and times of moving, of waiting, and over which the force is averaged
+[s]. A contact that closes also damps by its stiffness times the physics step; a resting one does not."""
 TOUCH = 0.05
 """Force at which the tip touches the wall [N]."""
 PLACES = {"vertex": 0.0, "triangle": 1.0 / 3.0}
@@ -87,11 +86,14 @@ def indent(run: Run, tube: Tube, material: str, **cfg: Any) -> Curve:
     data.joint_pos[:, 3:] *= math.sqrt(0.5)
     sim.contact.ring.fill_(-1)
     sim.forward()
-    data.joint_vel[:, :3] = SPEED * across
     way, force = [], []
-    for _ in range(round((DEPTHS[material] + 2.0e-3) / (SPEED * SAMPLE))):
+    for _ in range(round((DEPTHS[material] + 2.0e-3) / STRIDE)):
+        data.joint_vel[:, :3] = STRIDE / MOVE * across
+        sim.step(round(MOVE / sim.physics_dt))
+        data.joint_vel.zero_()
+        sim.step(round(WAIT / sim.physics_dt))
         sim.step(round(SAMPLE / sim.physics_dt))
-        way.append(((data.body_pos_w[:, 0] - start) * across).sum(dim=1).cpu().numpy() - 0.5 * SPEED * SAMPLE)
+        way.append(((data.body_pos_w[:, 0] - start) * across).sum(dim=1).cpu().numpy())
         force.append(-(data.wall_force_w[:, 0] * across).sum(dim=1).cpu().numpy())
     depth, forces = np.array(way).T, np.array(force).T
     touch = [_crossing(x, f, TOUCH) for x, f in zip(depth, forces, strict=True)]

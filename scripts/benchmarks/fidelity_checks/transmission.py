@@ -13,6 +13,10 @@ from fidelity_checks.table import Plot, Row, Run, absolute, check
 
 SPEED = 0.05
 """Speed at which the tether is withdrawn [m/s]."""
+SAMPLE, SAMPLES = 0.05, 20
+"""Time over which forces are averaged [s] and number of such times: the tether moves by two links, its period."""
+ANGLES = np.linspace(0.1, 0.9, 9) * LOOP.bend
+"""Angles from the loaded end at which tensions are compared [rad]."""
 
 
 @check("bend_loss")
@@ -22,54 +26,49 @@ def bend_loss(run: Run) -> list[Row]:
     The published shape of the loss is exponential in contact angle times friction (Huan et al. 2020, of the tether of a
     magnetic colonoscope), a straight line of ln T over the angle.
     """
-    angle, tension = tension_along(run)
-    plot = Plot("bend_loss", "contact angle × friction coefficient", "tension / load")
-    shapes, rates = [], []
-    for k, friction in enumerate(FRICTION):
-        inside = (angle[k] > 0.05 * LOOP.bend) & (angle[k] < 0.95 * LOOP.bend)
-        x, y = angle[k][inside], np.log(tension[k][inside] / PULL)
-        slope, level = np.polyfit(x, y, 1)
-        rates.append(slope / friction if friction else 0.0)
-        shapes.append(1.0 - float(np.var(y - slope * x - level) / np.var(y)) if friction else 1.0)
-        if friction:
-            plot.points.append((f"μ = {friction:g}", friction * x, tension[k][inside] / PULL))
+    gain = np.log(tension_along(run))
+    gain -= gain[FRICTION.index(0.0)]
+    plot = Plot("bend_loss", "contact angle × friction coefficient", "tension / tension without friction")
+    shapes, rates = {}, {}
+    for friction, y in zip(FRICTION, gain, strict=True):
+        if friction > 0.0:
+            slope, level = np.polyfit(ANGLES, y, 1)
+            rates[friction] = slope / friction
+            shapes[friction] = 1.0 - float(np.var(y - slope * ANGLES - level) / np.var(y))
+            plot.points.append((f"μ = {friction:g}", friction * ANGLES, np.exp(y)))
     reach = np.linspace(0.0, max(FRICTION) * LOOP.bend, 50)
     plot.lines.append(("exp(μθ)", reach, np.exp(reach)))
     run.plots.append(plot)
-    shipped = FRICTION.index(0.1)
-    note = "growth over μ: " + ", ".join(f"{r:.2f} at {f:g}" for f, r in zip(FRICTION, rates, strict=True) if f)
-    return [absolute("bend_loss", shapes[shipped], 1.0, 0.01, "", note)]
+    note = "growth over μ: " + ", ".join(f"{rate:.2f} at {friction:g}" for friction, rate in rates.items())
+    return [absolute("bend_loss", shapes[0.1], 1.0, 0.01, "", note)]
 
 
-def tension_along(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Angle from the loaded end [rad] and tension [N] at every link, means over the pull, shape (W, L)."""
+def tension_along(run: Run) -> np.ndarray:
+    """Tension at the angles of the bend, geometric mean over the pull [N], shape (W, A)."""
     import torch
 
     sim, loads = rope(run)
     still = torch.zeros(sim.num_envs, device=sim.device)
     sim.endoscope.set_insertion_command(still - SPEED, still)
     sim.step(round(0.6 / sim.physics_dt))
-    angles, tensions = [], []
-    for _ in range(12):
-        sim.step(round(0.05 / sim.physics_dt))
-        angle, tension = link_tensions(sim, loads)
-        angles.append(angle)
-        tensions.append(tension)
-    return np.mean(angles, axis=0), np.mean(tensions, axis=0)
+    total = np.zeros((sim.num_envs, len(ANGLES)))
+    for _ in range(SAMPLES):
+        sim.step(round(SAMPLE / sim.physics_dt))
+        for world, (angle, tension) in enumerate(zip(*link_tensions(sim, loads), strict=True)):
+            order = np.argsort(angle)
+            total[world] += np.interp(ANGLES, angle[order], np.log(tension[order])) / SAMPLES
+    return np.exp(total)
 
 
 def link_tensions(sim: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Angle of each link to the load [rad], and pull in it [N]: the load and what the wall does to the links beyond."""
+    """Tension at the base end of every link: angle to the load [rad] and size [N], shape (W, L).
+
+    It is the sum of the load and of what the wall does to the link and to those beyond it.
+    """
     import torch
 
-    from arcgym.utils.math import quat_apply
-
-    data = sim.endoscope.data
-    axis = torch.tensor([0.0, 0.0, 1.0], device=sim.device).expand(*data.body_quat_w.shape[:2], 3)
-    direction = quat_apply(data.body_quat_w, axis)
     load = loads.force[:, -1:]
-    wall = data.wall_force_w
-    beyond = wall.flip(1).cumsum(1).flip(1) - 0.5 * wall
-    tension = ((load + beyond) * direction).sum(dim=2)
-    angle = torch.arccos((direction * load).sum(dim=2).div(PULL).clamp(-1.0, 1.0))
-    return angle.cpu().numpy(), tension.cpu().numpy()
+    tension = load + sim.endoscope.data.wall_force_w.flip(1).cumsum(1).flip(1)
+    size = torch.linalg.vector_norm(tension, dim=2)
+    angle = torch.arccos(((tension * load).sum(dim=2) / (size * PULL)).clamp(-1.0, 1.0))
+    return angle.cpu().numpy(), size.cpu().numpy()
