@@ -12,6 +12,7 @@ import warp as wp
 from arcgym.sim.anchor_kernels import secant_share
 from arcgym.sim.chain_kernels import MODES, Unknowns
 from arcgym.sim.contact_kernels import ContactRecords
+from arcgym.sim.geometry_kernels import shortened
 from arcgym.sim.wall_kernels import Pressing, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -168,7 +169,4 @@ def prolong(
     d = wp.vec3(0.0)
     for m in range(MODES):
         d += solution[r, m, w] * space.basis[i, m]
-    length = wp.length(d)
-    if length > largest_move:
-        d = d * (largest_move / length)
-    x[i, w] = x[i, w] + rotation[r, w] * d
+    x[i, w] = x[i, w] + rotation[r, w] * shortened(d, largest_move)

@@ -8,6 +8,15 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.func
+def shortened(move: wp.vec3, longest: float) -> wp.vec3:
+    """``move`` in its direction, no longer than ``longest``."""
+    length = wp.length(move)
+    if length > longest:
+        return move * (longest / length)
+    return move
+
+
+@wp.func
 def segment_parameter(p: wp.vec3, a: wp.vec3, b: wp.vec3) -> float:
     """Parameter in [0, 1] of the point of segment ``ab`` closest to ``p``."""
     d = b - a

@@ -13,6 +13,7 @@ spares the sweep its normals and inverse tangents.
 import warp as wp
 
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
+from arcgym.sim.geometry_kernels import shortened
 from arcgym.sim.wall_kernels import (
     Pressing,
     Tissue,
@@ -218,9 +219,10 @@ def sweep_colour(
     link_count: int,
     body_q: wp.array(dtype=wp.transform),
     body_q_prev: wp.array(dtype=wp.transform),
+    largest_move: float,
     x: wp.array2d(dtype=wp.vec3),
 ):
-    """One Newton step of every vertex of one colour, in place. Launch (len(colour), W)."""
+    """One Newton step of every vertex of one colour, in place, at most ``largest_move`` [m]. Launch (len(colour), W)."""
     k, w = wp.tid()
     if tissue.rigid[w] == 1:
         return
@@ -230,7 +232,7 @@ def sweep_colour(
     block = add_stretching(block, shell, x, i, w, moduli)
     block = add_bending(block, shell, x, i, w, moduli[2])
     block = add_contact(block, records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w)
-    x[i, w] = x[i, w] + wp.inverse(block.hessian) * block.force
+    x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
 
 
 @wp.kernel

@@ -48,9 +48,9 @@ class WallSolverCfg:
     drag: float = 20.0
     """Velocity decay of the wall [1/s], standing for the surrounding fat and fluid."""
     largest_move: float = 0.0005
-    """Largest displacement that one coarse correction may make [m]. The correction works with the stiffness at rest and
-    overshoots where a soft wall is crumpled: with 10 mm the ``in_situ`` wall blew up. 0.5 mm a step of 1/480 s is
-    still 240 mm/s."""
+    """Largest displacement that one coarse correction, and one step of a vertex in a sweep, may make [m]. Both
+    overshoot where a soft wall is crumpled: with 10 mm the ``in_situ`` wall blew up. 0.5 mm a step of 1/480 s is still
+    240 mm/s, on top of the wall's velocity."""
 
 
 @configclass

@@ -9,6 +9,7 @@ parameters; force and Hessian of a vertex are written in closed form.
 import warp as wp
 
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
+from arcgym.sim.geometry_kernels import shortened
 from arcgym.sim.wall_kernels import (
     Pressing,
     Tissue,
@@ -90,9 +91,10 @@ def sweep_colour(
     link_count: int,
     body_q: wp.array(dtype=wp.transform),
     body_q_prev: wp.array(dtype=wp.transform),
+    largest_move: float,
     x: wp.array2d(dtype=wp.vec3),
 ):
-    """One Newton step of every vertex of one colour, in place. Launch (len(colour), W)."""
+    """One Newton step of every vertex of one colour, in place, at most ``largest_move`` [m]. Launch (len(colour), W)."""
     k, w = wp.tid()
     if tissue.rigid[w] == 1:
         return
@@ -100,7 +102,7 @@ def sweep_colour(
     block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
     block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
     block = add_contact(block, records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w)
-    x[i, w] = x[i, w] + wp.inverse(block.hessian) * block.force
+    x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
 
 
 @wp.kernel

@@ -136,7 +136,8 @@ class WallSolver:
                     self.x_prev,
                     contact.records,
                 ]
-                + [contact.links, contact.law, contact.friction, contact.link_count, body_q, body_q_prev, x],
+                + [contact.links, contact.law, contact.friction, contact.link_count, body_q, body_q_prev]
+                + [self.cfg.largest_move, x],
                 device=self.device,
             )
 
