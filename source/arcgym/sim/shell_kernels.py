@@ -222,7 +222,7 @@ def sweep_colour(
     largest_move: float,
     x: wp.array2d(dtype=wp.vec3),
 ):
-    """One Newton step of every vertex of one colour, in place, at most ``largest_move`` [m]. Launch (len(colour), W)."""
+    """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
     k, w = wp.tid()
     if tissue.rigid[w] == 1:
         return
