@@ -39,12 +39,17 @@ class LinkLoads:
 
 
 def load_wall(sim: Any, force: np.ndarray) -> None:
-    """Put dead loads on the wall vertices of one world [N], shape (V, 3)."""
-    nodes = sim.wall.nodes
-    rest, anchor = nodes.rest.numpy().astype(float), nodes.anchor.numpy().astype(float)
-    total = anchor + WEAK_SPRING
-    nodes.rest.assign((rest + force / total[:, None]).astype(np.float32))
-    nodes.anchor.assign(total.astype(np.float32))
+    """Put dead loads on the vertices of a wall without anchors [N], shape (V, 3).
+
+    Raises:
+        ValueError: If the wall has anchors; their springs take the loads.
+    """
+    anchors = sim.wall.nodes.anchors
+    if anchors.stiffness.numpy().any():
+        raise ValueError("The wall has anchors; loads need one with anchor_stiffness=models.FREE.")
+    anchors.rest.assign((anchors.rest.numpy() + force / WEAK_SPRING).astype(np.float32))
+    anchors.stiffness.fill_(WEAK_SPRING)
+    anchors.loose.fill_(1.0)
 
 
 def settle(sim: Any, tolerance: float = 2.0e-6, longest: float = 30.0, block: int = 24) -> float:
