@@ -57,3 +57,22 @@ def test_a_long_brick_tube_bends_like_a_beam() -> None:
 
     # L^3 / 192 EI, and a few per cent for shear and for the load's width.
     assert tube.compliance(middle) == pytest.approx(length**3 / (192.0 * 5.0e6 * inertia), rel=0.05)
+
+
+@pytest.mark.parametrize(("poissons_ratio", "ratio"), [(0.0, 1.01), (0.5, 1.0)])
+def test_volume_of_a_stretched_shell(poissons_ratio: float, ratio: float) -> None:
+    """Pulled by 1 % and free sideways, it keeps its volume if incompressible, and grows by 1 % without contraction."""
+    from fidelity_checks.insertion import shell_volume_ratio
+
+    rest = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]])
+    now = rest * np.array([1.01, 1.0 - 0.01 * poissons_ratio, 1.0])
+    volume = shell_volume_ratio(rest, now, np.array([[0, 1, 2]]), poissons_ratio)
+    assert volume[0] == pytest.approx(ratio, abs=2e-4)
+
+
+def test_depth_under_a_load_is_interpolated() -> None:
+    from fidelity_checks.indentation import Curve
+
+    curve = Curve(np.array([[0.0, 1.0, 2.0]]), np.array([[0.0, 10.0, 30.0]]))
+    assert curve.depth_at(20.0)[0] == pytest.approx(1.5)
+    assert math.isnan(curve.depth_at(40.0)[0])

@@ -41,13 +41,17 @@ def test_row_names_are_unique(fidelity: Any) -> None:
 def test_a_row_out_of_bound_gives_status_1_and_stays_in_the_json(
     fidelity: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys, "argv", ["fidelity.py", "--rows", "torsion", "--json"])
+    from fidelity_checks.table import CHECKS, Check, relative
+
+    broken = Check(("broken",), lambda run: [relative("broken", 1.2, 1.0, 0.1)], quick=True)
+    monkeypatch.setattr(fidelity, "CHECKS", [*CHECKS, broken])
+    monkeypatch.setattr(sys, "argv", ["fidelity.py", "--rows", "broken", "--json"])
     with pytest.raises(SystemExit) as ended:
         fidelity.main()
     assert ended.value.code == 1
     (row,) = json.loads(capsys.readouterr().out.splitlines()[-1])["rows"]
     assert set(row) == {"name", "value", "reference", "error", "bound", "ok"}
-    assert row["name"] == "torsion" and not row["ok"]
+    assert row["name"] == "broken" and not row["ok"]
 
 
 def test_an_error_that_is_not_finite_is_not_ok() -> None:

@@ -19,7 +19,7 @@ ANGLES = np.linspace(0.1, 0.9, 9) * LOOP.bend
 """Angles from the loaded end at which tensions are compared [rad]."""
 
 
-@check("bend_loss")
+@check("bend_loss", quick=True)
 def bend_loss(run: Run) -> list[Row]:
     """Tension along a tether around the bend; the row is the share of ln T that a line over the angle explains.
 

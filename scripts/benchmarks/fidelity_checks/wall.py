@@ -87,7 +87,7 @@ def beam_mode(run: Run) -> list[Row]:
     return [stiffness_row(run, "wall_beam", Tube(0.45), transverse, BEAM_MESH, 0.10)]
 
 
-@check("wall_ring")
+@check("wall_ring", quick=True)
 def ring_mode(run: Run) -> list[Row]:
     """Tube pinched half way."""
     return [stiffness_row(run, "wall_ring", Tube(0.20), pinch, RING_MESH, 0.20)]
