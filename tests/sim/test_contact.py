@@ -12,6 +12,7 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
+from arcgym.assets import TipPullCfg
 from arcgym.sim import ContactCfg, Simulation
 from arcgym.sim.link_load_kernels import load_contacts
 
@@ -117,7 +118,7 @@ def test_a_capsule_outside_comes_back(tiny_sim: TinySim) -> None:
 
 
 def test_a_sliding_capsule_feels_coulomb_friction(sim: Simulation) -> None:
-    # Above the slip velocity of 10 mm/s friction is 0.1 times the normal force, against the motion.
+    # Above the slip velocity of 1 mm/s friction is 0.1 times the normal force, against the motion.
     place(sim, depth=1.0e-5)
     force = wall_force(sim, link_velocity=(0.0, 0.0, 0.05))
     assert force[2] == pytest.approx(0.1 * force @ SIDE, rel=1e-3)
@@ -126,7 +127,7 @@ def test_a_sliding_capsule_feels_coulomb_friction(sim: Simulation) -> None:
 def test_friction_is_viscous_below_the_slip_velocity(sim: Simulation) -> None:
     # At half the slip velocity the factor is (2 - 1/2) * 1/2 = 3/4.
     place(sim, depth=1.0e-5)
-    force = wall_force(sim, link_velocity=(0.0, 0.0, 0.005))
+    force = wall_force(sim, link_velocity=(0.0, 0.0, 0.0005))
     assert force[2] == pytest.approx(0.75 * 0.1 * force @ SIDE, rel=1e-3)
 
 
@@ -136,3 +137,35 @@ def test_a_link_without_a_ring_is_searched_along_the_whole_colon(sim: Simulation
     sim.contact.detect(sim.nodal_pos, sim.state.body_q)
     assert sim.contact.ring.numpy()[0, 0] == 12  # 150 mm / 12.5 mm
     assert count(sim) >= 1
+
+
+def resting(tiny_sim: TinySim, along: float) -> Simulation:
+    """A capsule on a rigid wall after 0.25 s under its weight across the side and ``along`` times it along the tube.
+
+    It cannot turn: it has one contact, at its deeper end, and would rock.
+    """
+    loose = TipPullCfg(stiffness=1.0e-3, damping=0.0, angular_stiffness=1.0, angular_damping=0.01, torque_limit=10.0)
+    pull = tuple(9.81 * (SIDE + [0.0, 0.0, along]))
+    rigid = {"mobile_until": 0.0, "wall_model": "solid"}
+    sim = tiny_sim("capsule", gravity=pull, colon=rigid, scope={"tip_pull": loose})
+    place(sim, depth=1.0e-5)
+    sim.step(120)
+    return sim
+
+
+def test_a_resting_capsule_dents_by_its_weight_over_the_stiffness(tiny_sim: TinySim) -> None:
+    sim = resting(tiny_sim, along=0.0)
+    depth = sim.endoscope.data.body_pos_w[0, 0].numpy() @ SIDE - (APOTHEM - REACH)
+    assert depth * 2000.0 * count(sim) == pytest.approx(0.005 * 9.81, rel=0.02)
+    np.testing.assert_allclose(sim.endoscope.data.wall_force_w[0, 0].numpy(), -0.005 * 9.81 * SIDE, atol=1e-4)
+
+
+def test_a_pull_below_the_friction_does_not_move_it(tiny_sim: TinySim) -> None:
+    sim = resting(tiny_sim, along=0.05)  # friction holds 0.1 times the weight; at half of it creep is 0.3 mm/s
+    assert 0.0 < sim.endoscope.data.body_lin_vel_w[0, 0, 2].item() < 3.0e-4
+    assert sim.endoscope.data.wall_force_w[0, 0, 2].item() == pytest.approx(-0.05 * 0.005 * 9.81, rel=0.02)
+
+
+def test_a_pull_above_the_friction_accelerates_it_by_the_rest(tiny_sim: TinySim) -> None:
+    sim = resting(tiny_sim, along=0.3)  # (0.3 - 0.1) g for 0.25 s
+    assert sim.endoscope.data.body_lin_vel_w[0, 0, 2].item() == pytest.approx(0.2 * 9.81 * 0.25, rel=0.06)

@@ -11,7 +11,7 @@ import numpy as np
 
 from fidelity_checks.insertion import BEND, CONTROL_STEP, DEPTH, push
 from fidelity_checks.loads import LinkLoads
-from fidelity_checks.models import Tube, build
+from fidelity_checks.models import Tube, build, wall_measures
 from fidelity_checks.references import capstan_ratio
 from fidelity_checks.table import Plot, Row, Run, absolute, check, relative
 
@@ -22,7 +22,7 @@ LIMP = 1.0e-4
 PULL = 3.0
 """Dead load on the rope's end [N]."""
 FRICTION = (0.0, 0.05, 0.1, 0.15, 0.2)
-"""Friction coefficients of the worlds; explicit friction is held to be exact up to 0.2."""
+"""Friction coefficients of the worlds."""
 SHOVE = 20.0
 """Sideways force on a link [N]."""
 
@@ -69,9 +69,20 @@ def capstan(run: Run) -> list[Row]:
     plot.lines.append(("exp(μθ)", product, np.exp(product)))
     plot.points.append(("shipped settings", product, tension / tension[0]))
     run.plots.append(plot)
-    exact = math.log(capstan_ratio(FRICTION[k], float(angle[k])))
+    thin = math.log(capstan_ratio(FRICTION[k], float(angle[k])))
+    exact = thin * surface_lever(sim)
     note = f"ln of the ratio; the ratio itself {math.exp(gain[k]) / math.exp(exact) - 1.0:+.1%}; without friction "
     return [relative("capstan", float(gain[k]), exact, 0.10, "", note + f"{tension[0] / PULL - 1.0:+.1%}")]
+
+
+def surface_lever(sim: Any) -> float:
+    """Distance of the shaft's surface from the bend's centre over that of its axis, both along the inner side.
+
+    Friction acts on the surface, which turns on a shorter lever than the axis, where the tension is.
+    """
+    radius = float(sim.endoscope.stage.link_radius[0])
+    surface = LOOP.bend_radius - wall_measures().radius
+    return surface / (surface + radius)
 
 
 def rope(run: Run) -> tuple[Any, LinkLoads]:

@@ -16,13 +16,13 @@ class TipPullCfg:
     stiffness: float = 400.0
     """[N/m]. The target leads the tip by at most ``force_limit / stiffness``."""
     damping: float = 4.0
-    """[N s/m]. Keep below the tip link's mass over the scope substep."""
+    """[N s/m]."""
     force_limit: float = 4.0
     """Largest pull [N]. Magnetic colonoscopes reach 1 to 2 N in practice; 4 N passes the sigmoid with a soft tether."""
     angular_stiffness: float = 0.02
     """[N m/rad]."""
     angular_damping: float = 1.5e-4
-    """[N m s/rad]. Keep below the tip link's inertia over the scope substep."""
+    """[N m s/rad]."""
     torque_limit: float = 0.05
     """Largest torque [N m]."""
 

@@ -18,17 +18,17 @@ BASE_LINK = 0.200
 """Length of the base link [m]: the part of the shaft that never enters the anus needs no hinges."""
 SHAFT_LINK = 0.025
 """Length of a shaft link [m]. The chain follows bends down to a radius of about 3 cm; the scope's cost grows with
-about the square of the number of links."""
+the number of links."""
 TIP_LINK = 0.010
 """Length of a link of the distal section [m]."""
 TIP_LINKS = 10
 """Number of distal links: 10 cm, about the actively bending length of a colonoscope (van der Stap 2016, 8 cm)."""
 SCOPE_LENGTH = 1.5
 """Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside.
-With 59 links the chain has 60 degrees of freedom; above 64 MuJoCo Warp turns to a slower factorisation."""
+With 59 links and 29 twists the chain has 89 degrees of freedom."""
 TORSIONAL_RIGIDITY = 0.42
-"""GJ of a colonoscope's shaft [N m^2/rad]: CF-140S, 68 to 88 N cm^2/deg at 24 C, less 7 % at 37 C (Flexural and torsional
-rigidity of colonoscopes)."""
+"""GJ of a colonoscope's shaft [N m^2/rad]: CF-140S, 68 to 88 N cm^2/deg at 24 C, less 7 % at 37 C (Flexural and
+torsional rigidity of colonoscopes)."""
 TWIST_LIMIT = 1.0
 """Largest twist of a hinge to either side [rad]; 1 N m turns a shaft hinge by 0.12."""
 REST_TIP_HEIGHT = 0.02

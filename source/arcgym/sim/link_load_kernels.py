@@ -12,26 +12,34 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.func
 def contact_load(
-    law: ContactLaw, friction: float, gap: float, normal: wp.vec3, lin: wp.vec3, wall_v: wp.vec3, dt: float
+    law: ContactLaw,
+    share: float,
+    friction: float,
+    gap: float,
+    normal: wp.vec3,
+    lin: wp.vec3,
+    wall_v: wp.vec3,
+    dt: float,
 ) -> Articulated:
-    """Load of one contact at its point, which moves at ``lin``; the wall's at ``wall_v``.
+    """Load of one contact, a ``share`` of a full one, at its point, which moves at ``lin``; the wall's at ``wall_v``.
 
     The normal spring and damper act with their values at the end of the step. Friction is a damper that gives Coulomb's
     force at the present slip: it brakes and holds at any friction coefficient, and creeps below the slip velocity.
     """
     out = Articulated()
+    stiffness = share * law.stiffness
     end = gap - dt * wp.dot(normal, lin)
     if end < 0.0:
         relative = lin - wall_v
         approach = wp.dot(normal, relative)
         damping = float(0.0)
         if approach > 0.0:
-            damping = law.damping
+            damping = share * law.damping
         slip = relative - approach * normal
-        drag = -friction * law.stiffness * wp.min(gap, 0.0) * slip_scale(wp.length(slip), law.slip_velocity)
-        out.force = (damping * approach - law.stiffness * end) * normal + drag * slip
+        drag = -friction * stiffness * wp.min(gap, 0.0) * slip_scale(wp.length(slip), law.slip_velocity)
+        out.force = (damping * approach - stiffness * end) * normal + drag * slip
         along = wp.outer(normal, normal)
-        out.ll = (dt * (damping + dt * law.stiffness)) * along + (dt * drag) * (wp.identity(n=3, dtype=float) - along)
+        out.ll = (dt * (damping + dt * stiffness)) * along + (dt * drag) * (wp.identity(n=3, dtype=float) - along)
     return out
 
 
@@ -63,7 +71,7 @@ def load_contacts(
         p = corner_point(x, f, u, w)
         c = touch(p, records.normal[slot], pose, links.half_length[link], links.radius[link] + law.wall_radius)
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - centre)
-        one = moved(contact_load(law, friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)
+        one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)
         total.ll += one.ll
         total.la += one.la
         total.aa += one.aa

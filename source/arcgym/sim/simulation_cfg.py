@@ -14,24 +14,24 @@ class ContactCfg:
     """Contact between the links and the inner wall."""
 
     stiffness: float = 2000.0
-    """Penalty stiffness of one contact [N/m]: a contact of 1 N gives by 0.5 mm, and a link in a bend has several. A
-    softer contact lets links tunnel at lower forces; a stiffer one needs a shorter ``SimulationCfg.dt``."""
+    """Penalty stiffness of a contact inside a wall face [N/m]: at 1 N it gives by 0.5 mm. Where a link lies along
+    several faces, each has its own. A softer contact lets links tunnel at lower forces; a stiffer one needs a shorter ``SimulationCfg.dt``."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
     friction: float = 0.1
     """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
-    slip_velocity: float = 0.01
-    """Speed under which friction is viscous [m/s]. Lower it to hold a parked scope more firmly."""
+    slip_velocity: float = 0.001
+    """Speed under which friction is viscous [m/s]: a link pulled by half of what friction holds creeps at 0.3 times it."""
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
-    search_gap: float = 0.003
+    search_gap: float = 0.002
     """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
     that link and wall close in one physics step."""
     search_reach: int = 3
     """Rings searched on either side of a link's own. Must span half a link; 3 rings of 12.5 mm suit 20 mm links."""
-    capacity: int = 16
-    """Contacts kept per link. A link in a bend of colon 1 has two to nine."""
+    capacity: int = 24
+    """Contacts kept per link, the nearest. A link in a bend of colon 1 has five to twenty."""
 
 
 @configclass
@@ -73,9 +73,8 @@ class SimulationCfg:
     more of them follow fast contacts more closely."""
     scope_iterations: int = 10
     """Constraint iterations of MuJoCo a substep, with ``solver="newton"``."""
-    mass_scaling: float = 3.0
-    """Factor on the scope's real link masses. Inertia hardly matters at 50 mm/s, and heavier links damp contact
-    noise; 1 is real and needs ``scope_substeps=4``."""
+    mass_scaling: float = 1.0
+    """Factor on the scope's real link masses. Inertia hardly matters at 50 mm/s; heavier links damp contact noise."""
     contact: ContactCfg = ContactCfg()
     """Contact law and search."""
     wall: WallSolverCfg = WallSolverCfg()
