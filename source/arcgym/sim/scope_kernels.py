@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Articulated-body algorithm of a serial chain (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7).
+"""What the articulated-body algorithm of a serial chain works on: inertias, loads and joint forces at a step's start.
 
 Linearly implicit Euler: springs, dampers and contacts act with their values at the end of the step, to first order in
 the acceleration. All vectors have world axes. Inertias refer to the link's joint (its *anchor*; the centre of mass of a
@@ -148,6 +148,47 @@ def contact_load(loads: LinkLoads, link: int, w: int) -> Articulated:
     return out
 
 
+@wp.func
+def prepare_axes(
+    chain: Chain,
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    joint_qd: wp.array(dtype=float),
+    here: wp.vec3,
+    link: int,
+    w: int,
+    work: ChainWork,
+):
+    """Axes and velocity products of a link's joint; its first axis is fixed in the link before, its last in its own."""
+    row = w * chain.links + link
+    parent = chain.parent_frame[link]
+    arm = wp.vec3(0.0)
+    spin = wp.vec3(0.0)
+    if link > 0:
+        parent = body_q[row - 1] * parent
+        arm = here - anchor(chain, link - 1, body_q[row - 1])
+        spin = wp.spatial_bottom(body_qd[row - 1])
+    child = body_q[row] * chain.child_frame[link]
+    drift_lin = wp.cross(spin, wp.cross(spin, arm))
+    drift_ang = wp.vec3(0.0)
+    first = chain.dof_start[link]
+    if link > 0 or chain.free == 0:
+        for d in range(first, chain.dof_start[link + 1]):
+            axis = wp.transform_vector(parent, chain.axis[d])
+            if d > first:
+                axis = wp.transform_vector(child, chain.axis[d])
+            work.axis[d, w] = axis
+            rate = axis * joint_qd[w * chain.dofs + d]
+            if chain.linear[d] == 1:
+                drift_lin += 2.0 * wp.cross(spin, rate)
+            else:
+                drift_ang += wp.cross(spin, rate)
+                spin += rate
+    work.arm[link, w] = arm
+    work.drift_lin[link, w] = drift_lin
+    work.drift_ang[link, w] = drift_ang
+
+
 @wp.kernel
 def prepare_links(
     chain: Chain,
@@ -181,34 +222,7 @@ def prepare_links(
     work.force[link, w] = body.force
     work.torque[link, w] = body.torque
     work.lever[link, w] = lever
-    # The joint: first axis fixed in the link before, last one in the link itself.
-    parent = chain.parent_frame[link]
-    arm = wp.vec3(0.0)
-    spin = wp.vec3(0.0)
-    if link > 0:
-        parent = body_q[row - 1] * parent
-        arm = here - anchor(chain, link - 1, body_q[row - 1])
-        spin = wp.spatial_bottom(body_qd[row - 1])
-    child = pose * chain.child_frame[link]
-    drift_lin = wp.cross(spin, wp.cross(spin, arm))
-    drift_ang = wp.vec3(0.0)
-    first = chain.dof_start[link]
-    end = chain.dof_start[link + 1]
-    if link > 0 or chain.free == 0:
-        for d in range(first, end):
-            axis = wp.transform_vector(parent, chain.axis[d])
-            if d > first:
-                axis = wp.transform_vector(child, chain.axis[d])
-            work.axis[d, w] = axis
-            rate = axis * joint_qd[w * chain.dofs + d]
-            if chain.linear[d] == 1:
-                drift_lin += 2.0 * wp.cross(spin, rate)
-            else:
-                drift_ang += wp.cross(spin, rate)
-                spin += rate
-    work.arm[link, w] = arm
-    work.drift_lin[link, w] = drift_lin
-    work.drift_ang[link, w] = drift_ang
+    prepare_axes(chain, body_q, body_qd, joint_qd, here, link, w, work)
 
 
 @wp.kernel
@@ -238,200 +252,3 @@ def prepare_joints(
         stop_inertia += dt * (chain.stop_damping[d] + dt * chain.stop_stiffness[d])
     work.stop[d, w] = stop
     work.stop_inertia[d, w] = stop_inertia
-
-
-@wp.func
-def without_joint(chain: Chain, work: ChainWork, d: int, w: int, body: Articulated) -> Articulated:
-    """The body seen through degree of freedom ``d``, which gives way; stores what recovers its acceleration."""
-    axis = work.axis[d, w]
-    u_lin = body.la * axis
-    u_ang = body.aa * axis
-    pivot = wp.dot(axis, u_ang)
-    rest = work.stop[d, w] - wp.dot(axis, body.torque)
-    if chain.linear[d] == 1:
-        u_lin = body.ll * axis
-        u_ang = axis * body.la
-        pivot = wp.dot(axis, u_lin)
-        rest = work.stop[d, w] - wp.dot(axis, body.force)
-    pivot += work.stop_inertia[d, w]
-    drive = work.drive[d, w]
-    inertia = work.drive_inertia[d, w]
-    at_end = drive - inertia * (rest + drive) / (pivot + inertia)
-    if wp.abs(at_end) > chain.effort[d]:
-        drive = wp.sign(at_end) * chain.effort[d]
-        inertia = 0.0
-        work.drive[d, w] = drive
-        work.drive_inertia[d, w] = inertia
-    scale = 1.0 / (pivot + inertia)
-    offset = scale * (rest + drive)
-    g_lin = scale * u_lin
-    g_ang = scale * u_ang
-    work.gain_lin[d, w] = g_lin
-    work.gain_ang[d, w] = g_ang
-    work.offset[d, w] = offset
-    out = Articulated()
-    out.ll = body.ll - wp.outer(u_lin, g_lin)
-    out.la = body.la - wp.outer(u_lin, g_ang)
-    out.aa = body.aa - wp.outer(u_ang, g_ang)
-    out.force = body.force + offset * u_lin
-    out.torque = body.torque + offset * u_ang
-    return out
-
-
-@wp.func
-def gather(chain: Chain, work: ChainWork, w: int) -> Articulated:
-    """Walk from the tip to the base; returns the whole chain as seen from the root's anchor."""
-    carried = Articulated()
-    for step in range(chain.links):
-        link = chain.links - 1 - step
-        body = Articulated()
-        body.ll = carried.ll + work.ll[link, w]
-        body.la = carried.la + work.la[link, w]
-        body.aa = carried.aa + work.aa[link, w]
-        body.force = carried.force + work.force[link, w]
-        body.torque = carried.torque + work.torque[link, w]
-        if link > 0 or chain.free == 0:
-            first = chain.dof_start[link]
-            count = chain.dof_start[link + 1] - first
-            for k in range(count):
-                body = without_joint(chain, work, first + count - 1 - k, w, body)
-            drift_lin = work.drift_lin[link, w]
-            drift_ang = work.drift_ang[link, w]
-            body.force += body.ll * drift_lin + body.la * drift_ang
-            body.torque += drift_lin * body.la + body.aa * drift_ang
-            carried = moved(body, work.arm[link, w])
-        else:
-            carried = body
-    return carried
-
-
-@wp.struct
-class LinkMotion:
-    """Pose of a link, velocity of its centre of mass and its spin."""
-
-    pose: wp.transform
-    lin: wp.vec3
-    ang: wp.vec3
-
-
-@wp.func
-def free_motion(
-    chain: Chain,
-    w: int,
-    lin: wp.vec3,
-    ang: wp.vec3,
-    dt: float,
-    body_q: wp.array(dtype=wp.transform),
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
-) -> LinkMotion:
-    """Integrate a free root with the accelerations ``lin`` and ``ang``."""
-    out = LinkMotion()
-    i = w * chain.dofs
-    out.lin = wp.vec3(joint_qd[i], joint_qd[i + 1], joint_qd[i + 2]) + dt * lin
-    out.ang = wp.vec3(joint_qd[i + 3], joint_qd[i + 4], joint_qd[i + 5]) + dt * ang
-    pose = body_q[w * chain.links]
-    turn = wp.length(out.ang) * dt
-    rot = wp.transform_get_rotation(pose)
-    if turn > 0.0:
-        rot = wp.normalize(wp.quat_from_axis_angle(wp.normalize(out.ang), turn) * rot)
-    com = wp.transform_point(pose, chain.com[0]) + dt * out.lin
-    out.pose = wp.transform(com - wp.quat_rotate(rot, chain.com[0]), rot)
-    for k in range(3):
-        joint_qd[i + k] = out.lin[k]
-        joint_qd[i + 3 + k] = out.ang[k]
-        joint_q[w * chain.coords + k] = out.pose[k]
-    for k in range(4):
-        joint_q[w * chain.coords + 3 + k] = out.pose[3 + k]
-    return out
-
-
-@wp.func
-def next_motion(
-    chain: Chain,
-    link: int,
-    w: int,
-    before: LinkMotion,
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
-) -> LinkMotion:
-    """Motion of a link from that of the one before it and the joint between them."""
-    out = LinkMotion()
-    joint = before.pose * chain.parent_frame[link]
-    shift = wp.vec3(0.0)
-    rot = wp.quat_identity()
-    rate = wp.vec3(0.0)
-    spin = wp.vec3(0.0)
-    for d in range(chain.dof_start[link], chain.dof_start[link + 1]):
-        q = joint_q[w * chain.coords + d + chain.coords - chain.dofs]
-        v = joint_qd[w * chain.dofs + d]
-        axis = chain.axis[d]
-        if chain.linear[d] == 1:
-            shift += q * axis
-            rate += v * axis
-        else:
-            spin += v * wp.quat_rotate(rot, axis)
-            rot = rot * wp.quat_from_axis_angle(axis, q)
-    here = joint * wp.transform(shift, rot)
-    out.pose = here * wp.transform_inverse(chain.child_frame[link])
-    out.ang = before.ang + wp.transform_vector(joint, spin)
-    place = wp.transform_get_translation(here)
-    com = wp.transform_point(out.pose, chain.com[link])
-    out.lin = before.lin + wp.transform_vector(joint, rate) + wp.cross(out.ang, com - place)
-    if link > 0:
-        out.lin += wp.cross(before.ang, place - wp.transform_point(before.pose, chain.com[link - 1]))
-    return out
-
-
-@wp.kernel
-def solve_chain(
-    chain: Chain,
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
-    dt: float,
-    work: ChainWork,
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
-    body_q_out: wp.array(dtype=wp.transform),
-    body_qd_out: wp.array(dtype=wp.spatial_vector),
-):
-    """Accelerations of all joints, then their new places and the links' new poses. Launch (W,).
-
-    ``joint_q`` and ``joint_qd`` are moved on in place.
-    """
-    w = wp.tid()
-    whole = gather(chain, work, w)
-    lin = wp.vec3(0.0)
-    ang = wp.vec3(0.0)
-    now = LinkMotion()
-    now.pose = wp.transform_identity()
-    for link in range(chain.links):
-        row = w * chain.links + link
-        omega = wp.spatial_bottom(body_qd[row])
-        if link == 0 and chain.free == 1:
-            inverse = wp.inverse(whole.ll)
-            coupled = inverse * whole.la
-            schur = whole.aa - wp.transpose(whole.la) * coupled
-            ang = wp.inverse(schur) * (whole.force * coupled - whole.torque)
-            lin = -(inverse * whole.force) - coupled * ang
-            now = free_motion(chain, w, lin, ang, dt, body_q, joint_q, joint_qd)
-        else:
-            lin += wp.cross(ang, work.arm[link, w]) + work.drift_lin[link, w]
-            ang += work.drift_ang[link, w]
-            for d in range(chain.dof_start[link], chain.dof_start[link + 1]):
-                a = work.offset[d, w] - wp.dot(work.gain_lin[d, w], lin) - wp.dot(work.gain_ang[d, w], ang)
-                if chain.linear[d] == 1:
-                    lin += a * work.axis[d, w]
-                else:
-                    ang += a * work.axis[d, w]
-                work.drive_force[d, w] = work.drive[d, w] - work.drive_inertia[d, w] * a
-                v = joint_qd[w * chain.dofs + d] + dt * a
-                i = w * chain.coords + d + chain.coords - chain.dofs
-                joint_qd[w * chain.dofs + d] = v
-                joint_q[i] = joint_q[i] + dt * v
-            now = next_motion(chain, link, w, now, joint_q, joint_qd)
-        lever = work.lever[link, w]
-        work.acc_lin[link, w] = lin + wp.cross(ang, lever) + wp.cross(omega, wp.cross(omega, lever))
-        work.acc_ang[link, w] = ang
-        body_q_out[row] = now.pose
-        body_qd_out[row] = wp.spatial_vector(now.lin, now.ang)

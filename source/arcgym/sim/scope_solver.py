@@ -13,6 +13,7 @@ from newton import JointType
 from newton.solvers import SolverBase
 
 from arcgym.sim import scope_kernels as kernels
+from arcgym.sim.scope_chain_kernels import solve_chain
 
 JOINTS = (JointType.REVOLUTE, JointType.PRISMATIC, JointType.D6, JointType.FIXED)
 """Joint types that may join two links, with at most two axes each."""
@@ -96,14 +97,18 @@ class SolverArticulatedChain(SolverBase):
         args = [chain, state_in.joint_q, state_in.joint_qd, control.joint_target_q, control.joint_f, dt, work]
         wp.launch(kernels.prepare_joints, (chain.dofs, worlds), args, device=device)
         args = [chain, state_in.body_q, state_in.body_qd, dt, work, state_out.joint_q, state_out.joint_qd]
-        wp.launch(kernels.solve_chain, worlds, [*args, state_out.body_q, state_out.body_qd], device=device)
+        wp.launch(solve_chain, worlds, [*args, state_out.body_q, state_out.body_qd], device=device)
 
 
 def _scratch(work: kernels.ChainWork, links: int, dofs: int, worlds: int, device: wp.Device) -> kernels.ChainWork:
-    by_dof = {"axis", "drive", "drive_inertia", "stop", "stop_inertia", "gain_lin", "gain_ang", "offset", "drive_force"}
-    for name, variable in kernels.ChainWork.vars.items():
-        rows = dofs if name in by_dof else links
-        setattr(work, name, wp.zeros((rows, worlds), dtype=variable.type.dtype, device=device))
+    for rows, dtype, names in (
+        (links, wp.mat33, "ll la aa"),
+        (links, wp.vec3, "force torque arm lever drift_lin drift_ang acc_lin acc_ang"),
+        (dofs, wp.vec3, "axis gain_lin gain_ang"),
+        (dofs, float, "drive drive_inertia stop stop_inertia offset drive_force"),
+    ):
+        for name in names.split():
+            setattr(work, name, wp.zeros((rows, worlds), dtype=dtype, device=device))
     return work
 
 

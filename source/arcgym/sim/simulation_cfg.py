@@ -15,14 +15,15 @@ class ContactCfg:
 
     stiffness: float = 2000.0
     """Penalty stiffness of a contact inside a wall face [N/m]: at 1 N it gives by 0.5 mm. Where a link lies along
-    several faces, each has its own. A softer contact lets links tunnel at lower forces; a stiffer one needs a shorter ``SimulationCfg.dt``."""
+    several faces, each has its own. A softer contact lets links tunnel at lower forces; a stiffer one needs a shorter
+    ``SimulationCfg.dt``."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
     friction: float = 0.1
     """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
     slip_velocity: float = 0.001
-    """Speed under which friction is viscous [m/s]: a link pulled by half of what friction holds creeps at 0.3 times it."""
+    """Speed under which friction is viscous [m/s]. A link pulled by half of what friction holds creeps at 0.3 of it."""
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
     search_gap: float = 0.002
