@@ -62,12 +62,6 @@ def test_neighbours_of_two_triangles() -> None:
     np.testing.assert_array_equal(face_neighbors(faces), [[1, -1, -1], [-1, -1, 0]])
 
 
-def test_owner_of_a_vertex_is_its_lowest_face(wall: WallMesh, lumen: LumenTopology) -> None:
-    for vertex in (0, 40, 135):
-        assert lumen.vertex_owner[vertex] == np.flatnonzero((lumen.faces == vertex).any(axis=1))[0]
-    assert (lumen.vertex_owner[wall.layer > 0] == len(lumen.faces)).all()
-
-
 def test_candidates_within_one_ring_are_three_bands(lumen: LumenTopology) -> None:
     assert lumen.candidates(reach=1) == 3 * 2 * SECTORS
 

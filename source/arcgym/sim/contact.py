@@ -65,7 +65,7 @@ class ContactSearch:
 
     def _surface(self, topology: LumenTopology, reach: int) -> kernels.LumenSurface:
         surface = kernels.LumenSurface()
-        for name in ("rings", "faces", "neighbors", "vertex_owner", "ring_start"):
+        for name in ("rings", "faces", "neighbors", "ring_start"):
             setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
         surface.reach = reach
         return surface
@@ -83,6 +83,8 @@ class ContactSearch:
         records.count = wp.zeros(rows, dtype=int, device=self.device)
         records.face = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
         records.bary = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+        for name in ("distance", "weight"):
+            setattr(records, name, wp.zeros(rows * capacity, dtype=float, device=self.device))
         records.normal = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
         records.vertex_next = wp.full(3 * rows * capacity, -1, dtype=int, device=self.device)

@@ -7,14 +7,16 @@ Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candi
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle
+from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, segment_triangle_mean
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
-EDGE = wp.constant(1.0e-4)
-"""Barycentric coordinate under which a point counts as on the opposite edge."""
-CLEAR = wp.constant(0.5)
-"""Share of its radius by which a link's axis must stay off the wall to count as inside."""
+BLUR = wp.constant(5.0e-5)
+"""How much farther than the closest point another point of a face may be and still draw the contact to it [m]."""
+RIM = wp.constant(0.1)
+"""Barycentric coordinate under which the face beyond the opposite edge shares a contact."""
+SHARE = wp.constant(0.45)
+"""Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
 
 
 @wp.struct
@@ -32,19 +34,23 @@ class LumenSurface:
     rings: wp.array2d(dtype=int)  # inner vertices of each ring, padded with the first, shape (R, S)
     faces: wp.array2d(dtype=int)  # shape (F, 3)
     neighbors: wp.array2d(dtype=int)  # face across the edge opposite to each corner or -1, shape (F, 3)
-    vertex_owner: wp.array(dtype=int)  # lowest face around each wall vertex, shape (V,)
     ring_start: wp.array(dtype=int)  # first face of each ring, shape (R + 1,)
     reach: int  # rings searched on either side of a link's own
 
 
 @wp.struct
 class ContactRecords:
-    """Contacts of every link: up to ``capacity`` slots a link, in ascending face order."""
+    """Contacts of every link: up to ``capacity`` slots a link, one for each face near it.
+
+    Everything about a contact is a continuous function of where link and wall are, so that nothing flutters.
+    """
 
     capacity: int
     count: wp.array(dtype=int)  # shape (W*L,)
     face: wp.array(dtype=wp.vec3i)  # the three wall vertices, shape (W*L*capacity,)
     bary: wp.array(dtype=wp.vec3)
+    distance: wp.array(dtype=float)  # of the link's axis from the face [m]
+    weight: wp.array(dtype=float)  # share of the contact stiffness
     normal: wp.array(dtype=wp.vec3)  # outward normal of the wall there at detection
     vertex_head: wp.array2d(dtype=int)  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
@@ -56,7 +62,7 @@ class ContactRecords:
 class ContactLaw:
     """Penalty contact with regularised Coulomb friction."""
 
-    stiffness: float  # [N/m]
+    stiffness: float  # of a contact inside a face [N/m]
     damping: float  # [N s/m], approach only
     slip_velocity: float  # speed under which friction is viscous [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
@@ -144,60 +150,6 @@ def face_distances(
 
 
 @wp.func
-def owns_contact(surface: LumenSurface, face: int, u: wp.vec3) -> bool:
-    """Whether ``face`` reports a touch at barycentric ``u``; shared vertices and edges belong to the lowest face."""
-    zeros = int(0)
-    for k in range(3):
-        if u[k] < EDGE:
-            zeros += 1
-    if zeros == 2:
-        corner = int(0)
-        if u[1] > 0.5:
-            corner = 1
-        if u[2] > 0.5:
-            corner = 2
-        return surface.vertex_owner[surface.faces[face, corner]] == face
-    if zeros == 1:
-        opposite = int(0)
-        if u[1] < EDGE:
-            opposite = 1
-        if u[2] < EDGE:
-            opposite = 2
-        other = surface.neighbors[face, opposite]
-        return other < 0 or other > face
-    return True
-
-
-@wp.func
-def lowest_around(
-    surface: LumenSurface, distance: wp.array3d(dtype=float), w: int, link: int, m: int, first: int
-) -> bool:
-    """Whether no neighbour of candidate face ``m`` is nearer to the link."""
-    for k in range(3):
-        other = surface.neighbors[first + m, k] - first
-        if surface.neighbors[first + m, k] >= 0 and other >= 0 and other < distance.shape[2]:
-            if distance[w, link, other] < distance[w, link, m] - 1.0e-6:
-                return False
-    return True
-
-
-@wp.func
-def side(
-    x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, face: int, w: int, centre: wp.vec3, axis: wp.vec3
-) -> float:
-    """Distance of the link's axis from the face [m], negative on the outer side of the wall."""
-    a = x[surface.faces[face, 0], w]
-    b = x[surface.faces[face, 1], w]
-    c = x[surface.faces[face, 2], w]
-    u = segment_triangle(centre - axis, centre + axis, a, b, c)
-    p = u[0] * a + u[1] * b + u[2] * c
-    t = segment_parameter(p, centre - axis, centre + axis)
-    if wp.dot(p - centre - (2.0 * t - 1.0) * axis, wp.cross(b - a, c - a)) < 0.0:
-        return -u[3]
-    return u[3]
-
-
-@wp.func
 def face_normal(surface: LumenSurface, face: int, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
     """Unit normal of a face, from the lumen into the wall."""
     a = x[surface.faces[face, 0], w]
@@ -205,8 +157,14 @@ def face_normal(surface: LumenSurface, face: int, x: wp.array2d(dtype=wp.vec3), 
 
 
 @wp.func
+def rim_share(u: float) -> float:
+    """0 away from the edge opposite to a corner with barycentric coordinate ``u``, 1 on it."""
+    return 1.0 - wp.clamp(u / RIM, 0.0, 1.0)
+
+
+@wp.func
 def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
-    """Normal at barycentric ``u`` of ``face``; on an edge or a corner, the mean with the faces across the edges there.
+    """Normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
 
     The face's own normal may be at more than a right angle to the way off a sharp fold, and then tells the wrong side
     (Baerentzen and Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal").
@@ -214,9 +172,24 @@ def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(d
     normal = face_normal(surface, face, x, w)
     for k in range(3):
         other = surface.neighbors[face, k]
-        if u[k] < EDGE and other >= 0:
-            normal += face_normal(surface, other, x, w)
+        if u[k] < RIM and other >= 0:
+            normal += rim_share(u[k]) * face_normal(surface, other, x, w)
     return wp.normalize(normal)
+
+
+@wp.func
+def free_slot(records: ContactRecords, distance: wp.array3d(dtype=float), w: int, link: int, n: int, d: float) -> int:
+    """Slot for a contact at distance ``d``: the next one, or the farthest contact's if all are taken, or -1."""
+    row = w * distance.shape[1] + link
+    if n < records.capacity:
+        return row * records.capacity + n
+    worst = int(-1)
+    for k in range(records.capacity):
+        slot = row * records.capacity + k
+        if records.distance[slot] > d:
+            d = records.distance[slot]
+            worst = slot
+    return worst
 
 
 @wp.kernel
@@ -229,43 +202,29 @@ def select_contacts(
     distance: wp.array3d(dtype=float),
     records: ContactRecords,
 ):
-    """Keep one record for each place where the link comes close. Launch (W, L).
-
-    A closest point inside a face is one, so that a link in a corner is held by both sides; a closest point on an edge
-    or a corner is one if no neighbouring face is nearer. A link that is clear of the wall on the lumen's side has not
-    gone through it: what it sees from behind is the far side of a fold and no contact.
-    """
+    """Make a record of every face near a link, nearest first where there are too many. Launch (W, L)."""
     w, link = wp.tid()
     row = w * ring.shape[1] + link
     first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
     pose = body_q[row]
     centre = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
-    nearest = int(0)
-    for m in range(distance.shape[2]):
-        if distance[w, link, m] < distance[w, link, nearest]:
-            nearest = m
-    clear = bool(False)
-    if distance[w, link, nearest] < FAR:
-        clear = side(x, surface, first + nearest, w, centre, axis) > CLEAR * links.radius[link]
     n = int(0)
     for m in range(distance.shape[2]):
-        if distance[w, link, m] < FAR and n < records.capacity:
+        d = distance[w, link, m]
+        slot = int(-1)
+        if d < FAR:
+            slot = free_slot(records, distance, w, link, n, d)
+        if slot >= 0:
             face = first + m
-            i = surface.faces[face, 0]
-            j = surface.faces[face, 1]
-            k = surface.faces[face, 2]
-            c = segment_triangle(centre - axis, centre + axis, x[i, w], x[j, w], x[k, w])
-            u = wp.vec3(c[0], c[1], c[2])
-            near = wp.min(u) > EDGE
-            if not near:
-                near = lowest_around(surface, distance, w, link, m, first) and owns_contact(surface, face, u)
-            if near and not (clear and side(x, surface, face, w, centre, axis) < 0.0):
-                slot = row * records.capacity + n
-                records.face[slot] = wp.vec3i(i, j, k)
-                records.bary[slot] = u
-                records.normal[slot] = surface_normal(surface, face, u, x, w)
-                n += 1
+            f = wp.vec3i(surface.faces[face, 0], surface.faces[face, 1], surface.faces[face, 2])
+            u = segment_triangle_mean(centre - axis, centre + axis, x[f[0], w], x[f[1], w], x[f[2], w], d, BLUR)
+            records.face[slot] = f
+            records.bary[slot] = u
+            records.distance[slot] = d
+            records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
+            records.normal[slot] = surface_normal(surface, face, u, x, w)
+            n = wp.min(n + 1, records.capacity)
     records.count[row] = n
 
 

@@ -123,3 +123,36 @@ def segment_triangle(p: wp.vec3, q: wp.vec3, a: wp.vec3, b: wp.vec3, c: wp.vec3)
         best = d
         u = wp.vec3(st[1], 0.0, 1.0 - st[1])
     return wp.vec4(u[0], u[1], u[2], best)
+
+
+@wp.func
+def blended(mean: wp.vec4, u: wp.vec3, distance: float, nearest: float, blur: float) -> wp.vec4:
+    """Running sum of barycentric coordinates and of their weights exp(-(distance - nearest) / blur)."""
+    weight = wp.exp((nearest - distance) / blur)
+    return mean + weight * wp.vec4(u[0], u[1], u[2], 1.0)
+
+
+@wp.func
+def segment_triangle_mean(
+    p: wp.vec3, q: wp.vec3, a: wp.vec3, b: wp.vec3, c: wp.vec3, nearest: float, blur: float
+) -> wp.vec3:
+    """Barycentric coordinates of where triangle ``abc`` is close to segment ``pq``, whose distance is ``nearest`` [m].
+
+    The mean of the candidates of :func:`segment_triangle` by their nearness: unlike the closest point itself, it does
+    not jump from edge to edge of a triangle that is parallel to the segment. ``blur`` [m] is how much farther a
+    candidate may be and still count.
+    """
+    u = closest_on_triangle(a, b, c, p)
+    mean = blended(wp.vec4(0.0), u, wp.length(triangle_point(a, b, c, u) - p), nearest, blur)
+    u = closest_on_triangle(a, b, c, q)
+    mean = blended(mean, u, wp.length(triangle_point(a, b, c, u) - q), nearest, blur)
+    st = segment_segment(p, q, a, b)
+    d = wp.length(p + (q - p) * st[0] - a - (b - a) * st[1])
+    mean = blended(mean, wp.vec3(1.0 - st[1], st[1], 0.0), d, nearest, blur)
+    st = segment_segment(p, q, b, c)
+    d = wp.length(p + (q - p) * st[0] - b - (c - b) * st[1])
+    mean = blended(mean, wp.vec3(0.0, 1.0 - st[1], st[1]), d, nearest, blur)
+    st = segment_segment(p, q, c, a)
+    d = wp.length(p + (q - p) * st[0] - c - (a - c) * st[1])
+    mean = blended(mean, wp.vec3(st[1], 0.0, 1.0 - st[1]), d, nearest, blur)
+    return wp.vec3(mean[0], mean[1], mean[2]) / mean[3]

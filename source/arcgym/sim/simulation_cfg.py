@@ -69,7 +69,7 @@ class SimulationCfg:
     solver: Literal["two_level", "newton"] = "two_level"
     """Wall solver and coupling: ``two_level`` (ring correction + vertex block descent, own coupling loop) or ``newton``
     (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
-    scope_substeps: int = 2
+    scope_substeps: int = 1
     """Scope substeps a physics step, at least 1. The scope is solved implicitly and is stable with any number;
     more of them follow fast contacts more closely."""
     scope_iterations: int = 10

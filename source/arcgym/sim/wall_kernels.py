@@ -55,9 +55,13 @@ def inertia_and_anchor(
 
 @wp.struct
 class Press:
-    """One contact as the wall feels it: normal force [N], friction's secant stiffness [N/m], slip in this step [m]."""
+    """One contact as the wall feels it.
+
+    Normal force [N] and its stiffness [N/m], friction's secant stiffness [N/m], slip in this step [m].
+    """
 
     push: float
+    stiffness: float
     drag: float
     normal: wp.vec3
     slip: wp.vec3
@@ -87,11 +91,17 @@ def press_of(
     p = corner_point(x, f, u, w)
     c = touch(p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius)
     if c.gap < 0.0:
-        out.push = -law.stiffness * c.gap
+        share = records.weight[slot]
+        out.push = -share * law.stiffness * c.gap
+        out.stiffness = share * law.stiffness
         out.normal = c.normal
         local = wp.transform_point(wp.transform_inverse(body_q[row]), p)
         slip = wp.transform_point(body_q_prev[row], local) - corner_point(x_prev, f, u, w)
-        out.slip = slip - c.normal * wp.dot(c.normal, slip)
+        opening = wp.dot(c.normal, slip)
+        if opening < 0.0:
+            out.push -= share * law.damping / dt * opening
+            out.stiffness += share * law.damping / dt
+        out.slip = slip - c.normal * opening
         out.drag = friction * out.push * slip_scale(wp.length(out.slip), law.slip_velocity * dt)
     return out
 
@@ -123,7 +133,7 @@ def add_contact(
         if c.push > 0.0:
             along = wp.outer(c.normal, c.normal)
             out.force += weight * (c.push * c.normal - c.drag * c.slip)
-            out.hessian += (weight * weight) * (law.stiffness * along + c.drag * (eye - along))
+            out.hessian += (weight * weight) * (c.stiffness * along + c.drag * (eye - along))
         entry = records.vertex_next[entry]
     return out
 
@@ -159,9 +169,7 @@ def measure_contacts(
         c = press_of(records, slot, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, w)
         pressing.force[slot] = c.push * c.normal - c.drag * c.slip
         pressing.normal[slot] = c.normal
-        pressing.stiffness[slot] = wp.vec2(0.0)
-        if c.push > 0.0:
-            pressing.stiffness[slot] = wp.vec2(law.stiffness, c.drag)
+        pressing.stiffness[slot] = wp.vec2(c.stiffness, c.drag)
 
 
 @wp.func

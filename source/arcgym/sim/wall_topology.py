@@ -19,8 +19,6 @@ class LumenTopology:
     """Vertices, wound so that normals point into the wall, shape (F, 3), int32."""
     neighbors: np.ndarray
     """Face across the edge opposite to each corner, or -1, shape (F, 3), int32."""
-    vertex_owner: np.ndarray
-    """Lowest face around each wall vertex (F where there is none), shape (V,), int32."""
     ring_start: np.ndarray
     """First face of each ring, shape (R + 1,), int32."""
     radius: float
@@ -48,12 +46,10 @@ def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, laye
     faces = faces[order].astype(np.int32)
     count = int(ring.max()) + 1
     ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
-    owner = np.full(len(ring), len(faces), np.int32)
-    np.minimum.at(owner, faces.ravel(), np.repeat(np.arange(len(faces), dtype=np.int32), 3))
     rings = members(np.where(layer == 0)[0], ring, count, pad_first=True)
     away = points[rings] - points[rings].mean(axis=1, keepdims=True)
     radius = float(np.linalg.norm(away, axis=2).max())
-    return LumenTopology(rings, faces, face_neighbors(faces), owner, ring_start, radius)
+    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, radius)
 
 
 def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool) -> np.ndarray:
