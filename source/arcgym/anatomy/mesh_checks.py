@@ -30,6 +30,11 @@ def count_crossings(points: np.ndarray, faces: np.ndarray) -> int:
         points: Vertices [m], shape (V, 3).
         faces: Triangles, shape (F, 3).
     """
+    return len(find_crossings(points, faces))
+
+
+def find_crossings(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Returns the vertices, two of an edge and three of a face, of each pair that crosses, shape (n, 5)."""
     points = points.astype(np.float64)
     edges, _ = edge_uses(faces)
     middle = points[edges].mean(1)
@@ -43,7 +48,9 @@ def count_crossings(points: np.ndarray, faces: np.ndarray) -> int:
     apart &= np.linalg.norm(middle[edge] - center[face], axis=1) < half[edge] + size[face]
     edge, face = edge[apart], face[apart]
     blocks = range(0, len(edge), _BLOCK)
-    return sum(int(_crosses(points, edges[edge[k : k + _BLOCK]], faces[face[k : k + _BLOCK]]).sum()) for k in blocks)
+    hit = [_crosses(points, edges[edge[k : k + _BLOCK]], faces[face[k : k + _BLOCK]]) for k in blocks]
+    crossing = np.concatenate(hit) if hit else np.zeros(0, bool)
+    return np.concatenate([edges[edge[crossing]], faces[face[crossing]]], axis=1)
 
 
 def _crosses(points: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from .tree import LumenTree, calibre
 _LEAST_LEAK = 0.035
 _LEAK_SHARE = 0.66
 _LEAK_CALIBRE = 0.016
-_LEAK_SLENDER = 6.0
+_LEAK_SLENDER = 8.0
 _OFF_AXIS = 0.5
 _MOST_CUT = 0.40
 _TUBE_CALIBRE = 0.008
@@ -107,12 +107,12 @@ def _without_leak(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray, list[
     start = _thin_tail(arc, width, _LEAK_SHARE, _LEAK_CALIBRE)
     if start is None or arc[start] < (1.0 - _MOST_CUT) * arc[-1]:
         return nodes, []
-    if arc[-1] - arc[start] < max(_LEAST_LEAK, _LEAK_SLENDER * float(np.median(width[start:]))):
-        return nodes, []
-    neck = float(clearance[start : start + 12].min())
-    leak = Attached("small bowel", points[start:], clearance[start:], neck)
     kept = nodes[: start + 1]
     stub = _other_end(tree, kept, nodes[start:], width)
+    if arc[-1] - arc[start] < max(_LEAST_LEAK, _LEAK_SLENDER * float(np.median(width[start:]))):
+        return (nodes if stub is None else stub), []
+    neck = float(clearance[start : start + 12].min())
+    leak = Attached("small bowel", points[start:], clearance[start:], neck)
     return (kept if stub is None else stub), [leak]
 
 
@@ -181,10 +181,8 @@ def _side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[Attached])
         out = distance > width[nearest] + 0.002
         start = int(out.argmax())
         rest = np.array(way[start:])
-        if not out.any() or tree.step[rest].sum() < _LEAST_LEAK:
-            continue
         thick = float(np.median(calibre(tree.clearance[rest], tree.points[rest])))
-        if thick > 0.8 * width[nearest[start]] and tree.step[rest].sum() < 3 * _LEAST_LEAK:
+        if not out.any() or tree.step[rest].sum() < max(_LEAST_LEAK, _LEAK_SLENDER * thick):
             continue
         taken |= set(way)
         neck = float(tree.clearance[way[: start + 6]].min())

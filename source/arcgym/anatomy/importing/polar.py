@@ -50,14 +50,16 @@ def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
     return out
 
 
-def bounded(curve: Curve, s: np.ndarray, radius: np.ndarray, wall: float = 0.0) -> np.ndarray:
+def bounded(
+    curve: Curve, s: np.ndarray, radius: np.ndarray, wall: float = 0.0, share: float = _BEND_LIMIT
+) -> np.ndarray:
     """Limits radii softly on the inside of bends, where a swept surface would fold over; shape (n, sectors)."""
     theta = np.arange(radius.shape[1]) * 2 * np.pi / radius.shape[1]
     _, normal, binormal = curve.frame(s)
     bend = curve.interpolate(s, curve.curvature_vector)
     across = np.stack([(bend * normal).sum(1), (bend * binormal).sum(1)], 1)
     towards = across[:, :1] * np.cos(theta) + across[:, 1:] * np.sin(theta)
-    limit = np.where(towards > 1e-3, _BEND_LIMIT / np.maximum(towards, 1e-3) - wall, 1.0)
+    limit = np.where(towards > 1e-3, share / np.maximum(towards, 1e-3) - wall, 1.0)
     excess = np.maximum(radius - 0.8 * limit, 0.0)
     return np.minimum(radius, 0.8 * limit) + 0.2 * limit * np.tanh(excess / (0.2 * limit))
 
