@@ -72,7 +72,7 @@ class ContactSearch:
 
     def _law(self, cfg: ContactCfg) -> kernels.ContactLaw:
         law = kernels.ContactLaw()
-        for name in ("stiffness", "damping", "slip_velocity", "wall_radius", "search_gap"):
+        for name in ("stiffness", "hardening", "damping", "slip_velocity", "wall_radius", "search_gap"):
             setattr(law, name, getattr(cfg, name))
         return law
 

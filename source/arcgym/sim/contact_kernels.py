@@ -62,7 +62,8 @@ class ContactRecords:
 class ContactLaw:
     """Penalty contact with regularised Coulomb friction."""
 
-    stiffness: float  # of a contact inside a face [N/m]
+    stiffness: float  # of a shallow contact inside a face [N/m]
+    hardening: float  # depth at which the stiffness has doubled, as a secant [m]
     damping: float  # [N s/m], approach only
     slip_velocity: float  # speed under which friction is viscous [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
@@ -250,6 +251,13 @@ def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRe
                 lowest = wp.min(lowest, vertex_ring[v])
             records.ring_next[slot] = records.ring_head[lowest, w]
             records.ring_head[lowest, w] = slot
+
+
+@wp.func
+def contact_push(law: ContactLaw, depth: float) -> wp.vec2:
+    """Normal force k d (1 + (d / h)^2) of a full contact [N] at a depth d > 0, and its derivative [N/m]."""
+    hard = depth / law.hardening
+    return law.stiffness * wp.vec2(depth * (1.0 + hard * hard), 1.0 + 3.0 * hard * hard)
 
 
 @wp.struct

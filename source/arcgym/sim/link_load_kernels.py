@@ -4,7 +4,7 @@
 
 import warp as wp
 
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, slip_scale, touch
+from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, contact_push, slip_scale, touch
 from arcgym.sim.geometry_kernels import corner_point
 from arcgym.sim.scope_kernels import Articulated, LinkLoads, moved
 from arcgym.utils import warp_setup  # noqa: F401
@@ -23,11 +23,11 @@ def contact_load(
 ) -> Articulated:
     """Load of one contact, a ``share`` of a full one, at its point, which moves at ``lin``; the wall's at ``wall_v``.
 
-    The normal spring and damper act with their values at the end of the step. Friction is a damper that gives Coulomb's
+    The normal spring and damper act with their values at the end of the step, the spring's stiffness as a secant that
+    lets it not pull. Friction is a damper that gives Coulomb's
     force at the present slip: it brakes and holds at any friction coefficient, and creeps below the slip velocity.
     """
     out = Articulated()
-    stiffness = share * law.stiffness
     end = gap - dt * wp.dot(normal, lin)
     if end < 0.0:
         relative = lin - wall_v
@@ -36,8 +36,11 @@ def contact_load(
         if approach > 0.0:
             damping = share * law.damping
         slip = relative - approach * normal
-        drag = -friction * stiffness * wp.min(gap, 0.0) * slip_scale(wp.length(slip), law.slip_velocity)
-        out.force = (damping * approach - stiffness * end) * normal + drag * slip
+        now = share * contact_push(law, wp.max(-gap, 0.0))
+        drag = friction * now[0] * slip_scale(wp.length(slip), law.slip_velocity)
+        push = share * contact_push(law, -end)
+        stiffness = wp.max(-push[0] / end, 0.5 * push[1])
+        out.force = (damping * approach + push[0]) * normal + drag * slip
         along = wp.outer(normal, normal)
         out.ll = (dt * (damping + dt * stiffness)) * along + (dt * drag) * (wp.identity(n=3, dtype=float) - along)
     return out

@@ -17,6 +17,9 @@ class ContactCfg:
     """Penalty stiffness of a contact inside a wall face [N/m]: at 1 N it gives by 0.5 mm. Where a link lies along
     several faces, each has its own. A softer contact lets links tunnel at lower forces; a stiffer one needs a shorter
     ``SimulationCfg.dt``."""
+    hardening: float = 0.002
+    """Depth at which a contact pushes twice as hard as its stiffness says [m], and from where the push grows with the
+    third power: a link cannot be pushed through the wall, while light contacts stay soft."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
     friction: float = 0.1
@@ -71,7 +74,7 @@ class SimulationCfg:
     (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
     scope_substeps: int = 1
     """Scope substeps a physics step, at least 1. The scope is solved implicitly and is stable with any number;
-    more of them follow fast contacts more closely."""
+    more of them follow fast contacts more closely. ``solver="newton"`` takes at least 2."""
     scope_iterations: int = 10
     """Constraint iterations of MuJoCo a substep, with ``solver="newton"``."""
     mass_scaling: float = 1.0

@@ -9,7 +9,7 @@ neighbouring worlds, read neighbouring memory.
 import warp as wp
 
 from arcgym.sim.anchor_kernels import Anchors, anchor_hessian, anchor_pull
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, slip_scale, touch
+from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, contact_push, slip_scale, touch
 from arcgym.sim.geometry_kernels import corner_point
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -92,8 +92,9 @@ def press_of(
     c = touch(p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius)
     if c.gap < 0.0:
         share = records.weight[slot]
-        out.push = -share * law.stiffness * c.gap
-        out.stiffness = share * law.stiffness
+        push = share * contact_push(law, -c.gap)
+        out.push = push[0]
+        out.stiffness = push[1]
         out.normal = c.normal
         local = wp.transform_point(wp.transform_inverse(body_q[row]), p)
         slip = wp.transform_point(body_q_prev[row], local) - corner_point(x_prev, f, u, w)
