@@ -35,8 +35,20 @@ def main() -> None:
     if told["guessed_landmarks"]:
         print(f"warning: landmarks at typical places: {', '.join(told['guessed_landmarks'])}; correct with --landmark")
     if args.preview:
-        webbrowser.open((args.out / "report.png").resolve().as_uri())
+        _show_preview(args.out)
     print(f"{args.out / 'colon.usda'}: {told['length_mm']:.0f} mm, least wall radius {told['least_wall_radius_mm']} mm")
+
+
+def _show_preview(folder: Path) -> None:
+    """Draws the colon from outside, unrolled and from inside, and opens the picture where there is a screen."""
+    from preview_colon import draw_page
+
+    from arcgym.anatomy import read_colon
+
+    picture = folder / "preview.png"
+    draw_page(read_colon(folder / "colon.usda")).save(picture)
+    print(picture)
+    webbrowser.open(picture.resolve().as_uri())
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -44,8 +56,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("input", type=Path, help=".mha .mha.gz .nii .nii.gz .nrrd, or .stl .obj .ply .vtk .vtp .glb")
     parser.add_argument("out", type=Path, help="folder that receives colon.usda, textures and report")
     parser.add_argument("--overwrite", action="store_true", help="replace the folder if it exists")
-    parser.add_argument("--preview", action="store_true", help="open the page of pictures when done")
-    parser.add_argument("--label", type=int, help="value of the colon in a volume with several labels")
+    parser.add_argument("--preview", action="store_true", help="draw and open preview.png: outside, unrolled, inside")
+    parser.add_argument(
+        "--label", type=int, nargs="+", help="value or values of the colon, if there are several labels"
+    )
     parser.add_argument(
         "--spacing", type=float, nargs=3, metavar=("X", "Y", "Z"), help="voxel spacing [mm], or factors"
     )
@@ -54,7 +68,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--anus", type=_point, metavar="X,Y,Z", help="place of the anus [mm], see docs/importing.md")
     parser.add_argument("--cecum", type=_point, metavar="X,Y,Z", help="place of the caecal pole [mm]")
     parser.add_argument(
-        "--landmark", action="append", default=[], metavar="NAME=MM", help="arc length of a landmark [mm]"
+        "--landmark", action="append", default=[], metavar="NAME=MM", help="landmark by arc length, or X,Y,Z [mm]"
     )
     parser.add_argument("--posture", choices=("supine", "prone"), default="supine", help="how the patient lay")
     parser.add_argument("--licence", default="unknown", help="licence of the data, kept in the stage")
@@ -70,7 +84,7 @@ def _settings(args: argparse.Namespace) -> object:
 
     return ImportSettings(
         name=args.out.name,
-        label=args.label,
+        label=args.label and tuple(args.label),
         spacing=args.spacing and tuple(args.spacing),
         units=args.units,
         frame=args.frame,
@@ -93,12 +107,12 @@ def _point(text: str) -> tuple[float, ...]:
     return values
 
 
-def _landmark(text: str) -> tuple[str, float]:
+def _landmark(text: str) -> tuple[str, float | tuple[float, ...]]:
     name, _, value = text.partition("=")
     try:
-        return name, 1e-3 * float(value)
-    except ValueError:
-        sys.exit(f"error: --landmark {text}: expected NAME=MM, such as rectosigmoid=150")
+        return name, _point(value) if "," in value else 1e-3 * float(value)
+    except (ValueError, argparse.ArgumentTypeError):
+        sys.exit(f"error: --landmark {text}: expected NAME=MM or NAME=X,Y,Z, such as rectosigmoid=150")
 
 
 if __name__ == "__main__":

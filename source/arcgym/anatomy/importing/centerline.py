@@ -81,6 +81,7 @@ def _search(
         )
     given = [None if end is None else _nearest_voxel(clearance, end) for end in ends]
     tree = lumen_tree(clearance, [voxel for voxel in given if voxel is not None])
+    fixed: tuple[int | None, int | None]
     if ends[0] is not None:
         fixed = (0, None if ends[1] is None else tree.tips[1])
     else:

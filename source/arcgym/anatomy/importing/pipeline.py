@@ -37,6 +37,8 @@ _MEASURE_SPACING = 0.001
 _MEASURE_COLUMNS = 72
 _SMOOTHING = 0.0006
 _DOME_ROWS = 12
+_FARTHEST_LANDMARK = 0.06
+_GRAVITY = {"supine": [0.0, -1.0, 0.0], "prone": [0.0, 1.0, 0.0]}
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,8 @@ class ImportedColon:
     """The cleaned lumen in the patient's frame."""
     path: np.ndarray
     """Centreline in the patient's frame [m], shape (n, 3)."""
+    rotation: np.ndarray
+    """From the file's axes to the patient's, shape (3, 3)."""
     fitted: FittedWall
     """The wall and how it differs from the measured surface."""
     report: dict[str, Any] = field(default_factory=dict)
@@ -110,7 +114,8 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
     measured = _measure(grid, course, settings)
     progress.done("radii", f"{1e3 * measured.curve.length:.0f} mm long")
     curve, measured, canal = _placed(measured)
-    ends, guessed = find_segment_ends(curve.points, curve.s, settings.landmarks)
+    given = _given_landmarks(settings, measured.curve, FRAMES[orientation.frame], curve.length)
+    ends, guessed = find_segment_ends(curve.points, curve.s, given)
     curve = Curve(curve.points, ends)
     fitted = fit_wall(curve, measured.s, measured.radius, settings)
     progress.done("wall", f"{len(fitted.wall.points)} vertices, {100 * fitted.widened:.0f} % widened")
@@ -125,7 +130,7 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
         "guessed_landmarks": guessed,
         "seconds": progress.seconds,
     }
-    return ImportedColon(stage, grid, measured.curve.points, fitted, report)
+    return ImportedColon(stage, grid, measured.curve.points, FRAMES[orientation.frame], fitted, report)
 
 
 def _read(path: Path, settings: ImportSettings) -> tuple[Grid, dict[str, str]]:
@@ -203,6 +208,23 @@ def _rolled(values: np.ndarray, columns: float) -> np.ndarray:
     return (1 - share) * np.roll(values, -whole, 1) + share * np.roll(values, -whole - 1, 1)
 
 
+def _given_landmarks(settings: ImportSettings, curve: Curve, rotation: np.ndarray, length: float) -> dict[str, float]:
+    """Returns the arc length [m] of the landmarks that the caller knows, of positions the nearest."""
+    arcs = {}
+    for name, place in settings.landmarks.items():
+        if isinstance(place, float | int):
+            arcs[name] = float(place)
+            continue
+        distance = np.linalg.norm(curve.points - 1e-3 * np.array(place) @ rotation.T, axis=1)
+        if distance.min() > _FARTHEST_LANDMARK:
+            raise ColonImportError(
+                f"The landmark {name} at {place} mm is {1e3 * distance.min():.0f} mm away from the centreline",
+                "Pass --landmark NAME=X,Y,Z in millimetres on the same axes as --anus.",
+            )
+        arcs[name] = float(curve.s[distance.argmin()]) * length / curve.length
+    return arcs
+
+
 def _transform(orientation: Orientation, measured: Measured, curve: Curve, canal: float) -> dict[str, Any]:
     """Describes how the file's coordinates became the stage's."""
     half = np.array(0.5 * curve.length)
@@ -241,6 +263,7 @@ def _stage(
         metadata={
             "patient": settings.patient,
             "posture": settings.posture,
+            "gravityInScan": _GRAVITY[settings.posture],
             "provenance": f"imported from {path.name} with scripts/tools/import_colon.py",
             "licence": settings.licence,
             **transform,

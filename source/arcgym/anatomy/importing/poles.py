@@ -15,7 +15,7 @@ _LEAST_BACK = 0.015
 _LAST = 0.15
 _NEAR = 0.030
 _ALIKE = 0.0015
-_TIP = 0.012
+_TIP = 0.020
 
 
 def to_pole(clearance: Grid, path: np.ndarray, look: float) -> np.ndarray:

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.anatomy.stage_checks import inspect_stage
 from arcgym.anatomy.stage_types import ColonStage
-from arcgym.anatomy.validate import ring_radii, validate_stage
+from arcgym.anatomy.validate import ring_radii
 
 from .pipeline import ImportedColon
 
@@ -44,7 +45,7 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
         "metadata": stage.metadata,
         "checks": [
             {"name": c.name, "value": float(c.value), "bound": float(c.bound), "ok": bool(c.ok)}
-            for c in validate_stage(stage)
+            for c in inspect_stage(stage)
         ],
     }
 
@@ -72,8 +73,20 @@ def _draw_page(imported: ImportedColon, path: Path) -> None:
         _draw_projection(figure.add_subplot(views[0, column]), imported, axes)
     _draw_radius(figure.add_subplot(views[1, :]), imported.stage)
     _draw_unrolled(figure.add_subplot(views[2, :]), imported.stage)
-    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm")
+    told = "\n".join(_cleaning_lines(imported.report["cleaning"]))
+    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm\n{told}", fontsize=9)
     figure.savefig(path, dpi=110)
+
+
+def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
+    """Returns in words what was bridged, dropped and cut off, at most six lines."""
+    lines = [f"bridged a gap of {b['gap_mm']:.0f} mm at {b['place_mm']}" for b in cleaning["bridges"]]
+    for cut in cleaning["cut"]:
+        size = f", {cut['length_mm']} mm long, {cut['calibre_mm']:.0f} mm wide" if "length_mm" in cut else ""
+        at = f" at {cut['place_mm']}" if "place_mm" in cut else ""
+        lines.append(f"cut off: {cut['kind']}, {cut['volume_ml']:.0f} ml{size}{at}")
+    lines += [f"dropped a piece of {d['volume_ml']:.0f} ml at {d['place_mm']}" for d in cleaning["dropped"]]
+    return lines[:6] + ([f"and {len(lines) - 6} more, see {REPORT_NAME}"] if len(lines) > 6 else [])
 
 
 def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) -> None:
@@ -89,6 +102,10 @@ def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) 
     for k, name in enumerate(SEGMENTS):
         part = path[segment == k]
         axis.plot(part[:, axes[0]], part[:, axes[1]], color=_COLORS[k], lw=2, label=name)
+    for mark in (*imported.report["cleaning"]["bridges"], *imported.report["cleaning"]["cut"]):
+        if "place_mm" in mark:
+            place = 1e-3 * imported.rotation @ np.array(mark["place_mm"])
+            axis.plot(place[axes[0]], place[axes[1]], "x", color="black", ms=8)
     names = ("right", "anterior", "cranial")
     axis.set_xlabel(f"{names[axes[0]]} [m]")
     axis.set_ylabel(f"{names[axes[1]]} [m]")

@@ -13,8 +13,8 @@ class ImportSettings:
 
     name: str = "imported"
     """Name of the colon."""
-    label: int | None = None
-    """Value of the colon in a label volume; needed when there are several."""
+    label: int | tuple[int, ...] | None = None
+    """Value of the colon in a label volume, or several, such as air's and fluid's; needed when there are several."""
     spacing: tuple[float, float, float] | None = None
     """Voxel spacing [mm] in place of the file's, or factors for a surface given in voxels."""
     units: str = "auto"
@@ -25,10 +25,11 @@ class ImportSettings:
     """Position of the anus [mm] on the patient's right, anterior and cranial axes, when it is not found."""
     cecum: tuple[float, float, float] | None = None
     """Position of the caecal pole [mm], likewise."""
-    landmarks: dict[str, float] = field(default_factory=dict)
-    """Arc length [m] of borders between segments that are known better than found."""
+    landmarks: dict[str, float | tuple[float, float, float]] = field(default_factory=dict)
+    """Borders between segments that are known better than found: arc length [m], or a position [mm] as ``anus``."""
     posture: str = "supine"
-    """How the patient lay; kept in the metadata."""
+    """How the patient lay, ``supine`` or ``prone``. The stage's axes are the patient's either way; the metadata say
+    where gravity pulled in the scan."""
     licence: str = "unknown"
     """Licence of the data; kept in the metadata."""
     patient: str = "unknown"

@@ -106,7 +106,8 @@ class _Growth:
 
     def __init__(self, start: tuple[int, ...]) -> None:
         self.number = {start: 0}
-        self.nodes, self.parent, self.tips = [start], [0], []
+        self.nodes, self.parent = [start], [0]
+        self.tips: list[int] = []
 
     def beyond(self, path: list[tuple[int, ...]]) -> np.ndarray:
         """Returns the part of a path from the last voxel that the tree has, shape (n, 3)."""

@@ -22,14 +22,18 @@ VOLUME_SUFFIXES = (".mha", ".mha.gz", ".nii", ".nii.gz", ".nrrd")
 
 _PLAUSIBLE_SPACING = (0.2, 6.0)
 _MARGIN = 0.006
+_MOST_LABELS = 150
+_SAMPLE = 997
 
 
-def read_volume(path: Path, label: int | None, spacing: tuple[float, ...] | None, voxel: float) -> Grid:
+def read_volume(
+    path: Path, label: int | tuple[int, ...] | None, spacing: tuple[float, ...] | None, voxel: float
+) -> Grid:
     """Reads a label volume.
 
     Args:
         path: File with one of :data:`VOLUME_SUFFIXES`.
-        label: Value of the colon; None takes everything above 0, if there is one such value only.
+        label: Value or values of the colon; None takes everything above 0, if there is one such value only.
         spacing: Voxel spacing [mm] along the file's axes in place of the file's own.
         voxel: Edge of the voxels of the result [m].
 
@@ -39,6 +43,9 @@ def read_volume(path: Path, label: int | None, spacing: tuple[float, ...] | None
     image = _read_image(path)
     if image.GetDimension() != 3:
         raise ColonImportError(f"{path} has {image.GetDimension()} dimensions", "Pass a 3-D label volume.")
+    if image.GetNumberOfComponentsPerPixel() != 1:
+        found = f"{path} has {image.GetNumberOfComponentsPerPixel()} values a voxel"
+        raise ColonImportError(found, "Pass a label volume with one value a voxel.")
     if spacing is not None:
         image.SetSpacing([float(value) for value in spacing])
     low, high = _PLAUSIBLE_SPACING
@@ -92,21 +99,14 @@ def _check_packing(path: Path) -> None:
         raise ColonImportError(f"{path} cannot be unpacked: {error}", "Check that the file is complete.") from error
 
 
-def _binarise(image: Any, path: Path, label: int | None) -> Any:
+def _binarise(image: Any, path: Path, label: int | tuple[int, ...] | None) -> Any:
     """Returns the lumen as a float image of 0 and 1, cut to its bounding box, in the same physical place."""
     import SimpleITK as sitk
 
     values = sitk.GetArrayViewFromImage(image)
     if values.dtype.kind == "f" and not np.isfinite(values).all():
         raise ColonImportError(f"{path} holds NaN or infinite values", "Pass a label volume (integers, 0 outside).")
-    found = np.unique(values[values != 0])
-    if label is None and len(found) > 1:
-        some = ", ".join(f"{value:g}" for value in found[:12])
-        raise ColonImportError(f"{path} holds {len(found)} labels ({some})", "Pass --label with the colon's value.")
-    lumen = values != 0 if label is None else values == label
-    if not lumen.any():
-        what = "no voxel above 0" if label is None else f"no voxel of label {label}, only {found[:12].tolist()}"
-        raise ColonImportError(f"{path} is empty: {what}", "Pass a colon segmentation, and --label if it has several.")
+    lumen = _chosen(values, path, label)
     ranges = [np.flatnonzero(lumen.any(axis=tuple(k for k in range(3) if k != axis))) for axis in (2, 1, 0)]
     start = [max(0, int(r[0]) - 1) for r in ranges]
     stop = [min(size, int(r[-1]) + 2) for r, size in zip(ranges, image.GetSize(), strict=True)]
@@ -116,6 +116,29 @@ def _binarise(image: Any, path: Path, label: int | None) -> Any:
     cut.SetDirection(image.GetDirection())
     cut.SetOrigin(image.TransformIndexToPhysicalPoint(start))
     return cut
+
+
+def _chosen(values: np.ndarray, path: Path, label: int | tuple[int, ...] | None) -> np.ndarray:
+    """Returns which voxels are the colon's; refuses grey values, several labels and none."""
+    sample = np.unique(values.ravel()[::_SAMPLE])
+    if len(sample) > _MOST_LABELS:
+        raise ColonImportError(
+            f"{path} holds more than {_MOST_LABELS} different values from {sample[0]:g} to {sample[-1]:g}: grey values "
+            "of a CT, not labels",
+            "Pass a segmentation of the colon's lumen: a label volume with 0 outside.",
+        )
+    found = np.unique(values[values != 0])
+    if label is None and len(found) > 1:
+        some = ", ".join(f"{value:g}" for value in found[:12])
+        raise ColonImportError(
+            f"{path} holds {len(found)} labels ({some})",
+            "Pass --label with the colon's value, or several (air, fluid).",
+        )
+    lumen = values != 0 if label is None else np.isin(values, label)
+    if not lumen.any():
+        what = "no voxel above 0" if label is None else f"no voxel of label {label}, only {found[:12].tolist()}"
+        raise ColonImportError(f"{path} is empty: {what}", "Pass a colon segmentation, and --label if it has several.")
+    return lumen
 
 
 def _resample(image: Any, voxel: float) -> Grid:
