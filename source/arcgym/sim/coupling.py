@@ -23,6 +23,9 @@ class Coupling(Protocol):
     def step(self) -> None:
         """Advance by one physics step, in place; adds each link's mean wall force to the simulation's array."""
 
+    def forward(self) -> None:
+        """Recompute the links' poses after joints were written to."""
+
     def reset(self, world_mask: wp.array) -> None:
         """Forget what the solvers remember of the worlds in ``world_mask``, shape (W + 1,), bool."""
 
@@ -96,6 +99,10 @@ class TwoLevelCoupling:
         args = [loads, work.acc_lin, work.acc_ang, weight, self.wall_force]
         wp.launch(link_load_kernels.record_forces, loads.wrench.shape, args, device=self.model.device)
         self.actuation.record(work.drive_force, work.acc_lin, weight)
+
+    def forward(self) -> None:
+        """Recompute the links' poses after joints were written to."""
+        self.solver.forward(self.state)
 
     def reset(self, world_mask: wp.array) -> None:
         """Nothing to forget: neither solver keeps anything from step to step."""

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 ANCHOR_RADIUS = 0.0005
 """Radius of the static particles that anchors are tied to [m]; they touch nothing."""
+LEAST_SUBSTEPS = 2
+"""Scope substeps that explicit contact forces need."""
 
 
 def scope_solver(model: newton.Model, cfg: SimulationCfg) -> SolverMuJoCo:
@@ -105,7 +107,7 @@ class NewtonCoupling:
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
-        count = self.cfg.scope_substeps
+        count = max(self.cfg.scope_substeps, LEAST_SUBSTEPS)
         dt = self.cfg.dt / count
         self._copy_in()
         for _ in range(count):
@@ -143,6 +145,11 @@ class NewtonCoupling:
         wp.copy(sim.control.joint_target_q, self.control.joint_target_q)
         for theirs, ours in ((self.now.particle_q, sim.nodal_pos), (self.now.particle_qd, sim.nodal_vel)):
             wp.launch(newton_kernels.from_particles, ours.shape, [theirs, self.stride, ours], device=self.model.device)
+
+    def forward(self) -> None:
+        """Recompute the links' poses after joints were written to."""
+        state = self.sim.state
+        newton.eval_fk(self.sim.model, state.joint_q, state.joint_qd, state)
 
     def reset(self, world_mask: wp.array) -> None:
         """Clear what the coupled solvers keep between steps in the masked worlds; states are copied in anyway."""

@@ -207,3 +207,29 @@ def solve_chain(
         work.acc_ang[link, w] = ang
         body_q_out[row] = now.pose
         body_qd_out[row] = wp.spatial_vector(now.lin, now.ang)
+
+
+@wp.kernel
+def chain_kinematics(
+    chain: Chain,
+    joint_q: wp.array(dtype=float),
+    joint_qd: wp.array(dtype=float),
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+):
+    """Poses and velocities of all links from the joints', as :func:`solve_chain` computes them. Launch (W,)."""
+    w = wp.tid()
+    now = LinkMotion()
+    now.pose = wp.transform_identity()
+    for link in range(chain.links):
+        if link == 0 and chain.free == 1:
+            i = w * chain.coords
+            k = w * chain.dofs
+            rot = wp.quat(joint_q[i + 3], joint_q[i + 4], joint_q[i + 5], joint_q[i + 6])
+            now.pose = wp.transform(wp.vec3(joint_q[i], joint_q[i + 1], joint_q[i + 2]), rot)
+            now.lin = wp.vec3(joint_qd[k], joint_qd[k + 1], joint_qd[k + 2])
+            now.ang = wp.vec3(joint_qd[k + 3], joint_qd[k + 4], joint_qd[k + 5])
+        else:
+            now = next_motion(chain, link, w, now, joint_q, joint_qd)
+        body_q[w * chain.links + link] = now.pose
+        body_qd[w * chain.links + link] = wp.spatial_vector(now.lin, now.ang)

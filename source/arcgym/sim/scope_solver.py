@@ -13,7 +13,7 @@ from newton import JointType
 from newton.solvers import SolverBase
 
 from arcgym.sim import scope_kernels as kernels
-from arcgym.sim.scope_chain_kernels import solve_chain
+from arcgym.sim.scope_chain_kernels import chain_kinematics, solve_chain
 
 JOINTS = (JointType.REVOLUTE, JointType.PRISMATIC, JointType.D6, JointType.FIXED)
 """Joint types that may join two links, with at most two axes each."""
@@ -76,6 +76,11 @@ class SolverArticulatedChain(SolverBase):
             setattr(chain, name, wp.clone(array[:count]))
         chain.linear = wp.array(_linear(model, links, dofs), dtype=int, device=model.device)
         return chain
+
+    def forward(self, state: newton.State) -> None:
+        """Recompute the links' poses and velocities; to the bit what :meth:`step` leaves if nothing was changed."""
+        args = [self.chain, state.joint_q, state.joint_qd, state.body_q, state.body_qd]
+        wp.launch(chain_kinematics, self.num_envs, args, device=self.model.device)
 
     def step(
         self,

@@ -187,7 +187,7 @@ class Simulation:
 
     def forward(self) -> None:
         """Recompute link poses, ring centres, tip and camera after the state was written to."""
-        newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
+        self.coupling.forward()
         self._read_out()
 
     def _read_out(self) -> None:
