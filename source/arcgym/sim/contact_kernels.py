@@ -7,7 +7,7 @@ Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candi
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, segment_triangle_mean
+from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle, segment_triangle_mean
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
@@ -17,6 +17,8 @@ RIM = wp.constant(0.1)
 """Barycentric coordinate under which the face beyond the opposite edge shares a contact."""
 SHARE = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
+CLEAR = wp.constant(0.5)
+"""Share of its radius by which a link's axis must stay off the wall to count as inside."""
 
 
 @wp.struct
@@ -179,6 +181,42 @@ def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(d
 
 
 @wp.func
+def face_corners(surface: LumenSurface, face: int) -> wp.vec3i:
+    """Vertices of a face."""
+    return wp.vec3i(surface.faces[face, 0], surface.faces[face, 1], surface.faces[face, 2])
+
+
+@wp.struct
+class Place:
+    """Where a face comes closest to a link."""
+
+    bary: wp.vec3
+    normal: wp.vec3  # of the wall there
+    before: bool  # whether the link's axis lies on the lumen's side
+
+
+@wp.func
+def place_on(
+    surface: LumenSurface,
+    face: int,
+    x: wp.array2d(dtype=wp.vec3),
+    w: int,
+    centre: wp.vec3,
+    axis: wp.vec3,
+    distance: float,
+) -> Place:
+    """Place on ``face`` closest to the link from ``centre`` - ``axis`` to ``centre`` + ``axis``."""
+    f = face_corners(surface, face)
+    out = Place()
+    out.bary = segment_triangle_mean(centre - axis, centre + axis, x[f[0], w], x[f[1], w], x[f[2], w], distance, BLUR)
+    out.normal = surface_normal(surface, face, out.bary, x, w)
+    p = corner_point(x, f, out.bary, w)
+    t = segment_parameter(p, centre - axis, centre + axis)
+    out.before = wp.dot(p - centre - (2.0 * t - 1.0) * axis, out.normal) > 0.0
+    return out
+
+
+@wp.func
 def free_slot(records: ContactRecords, distance: wp.array3d(dtype=float), w: int, link: int, n: int, d: float) -> int:
     """Slot for a contact at distance ``d``: the next one, or the farthest contact's if all are taken, or -1."""
     row = w * distance.shape[1] + link
@@ -203,29 +241,41 @@ def select_contacts(
     distance: wp.array3d(dtype=float),
     records: ContactRecords,
 ):
-    """Make a record of every face near a link, nearest first where there are too many. Launch (W, L)."""
+    """Make a record of every face near a link, nearest first where there are too many. Launch (W, L).
+
+    A link that is clear of the wall on the lumen's side has not gone through it: what it sees from behind is the far
+    side of a fold and no contact.
+    """
     w, link = wp.tid()
     row = w * ring.shape[1] + link
     first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
     pose = body_q[row]
     centre = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+    nearest = int(0)
+    for m in range(distance.shape[2]):
+        if distance[w, link, m] < distance[w, link, nearest]:
+            nearest = m
+    d = distance[w, link, nearest]
+    clear = bool(False)
+    if d < FAR and d > CLEAR * links.radius[link]:
+        clear = place_on(surface, first + nearest, x, w, centre, axis, d).before
     n = int(0)
     for m in range(distance.shape[2]):
         d = distance[w, link, m]
-        slot = int(-1)
         if d < FAR:
-            slot = free_slot(records, distance, w, link, n, d)
-        if slot >= 0:
-            face = first + m
-            f = wp.vec3i(surface.faces[face, 0], surface.faces[face, 1], surface.faces[face, 2])
-            u = segment_triangle_mean(centre - axis, centre + axis, x[f[0], w], x[f[1], w], x[f[2], w], d, BLUR)
-            records.face[slot] = f
-            records.bary[slot] = u
-            records.distance[slot] = d
-            records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
-            records.normal[slot] = surface_normal(surface, face, u, x, w)
-            n = wp.min(n + 1, records.capacity)
+            place = place_on(surface, first + m, x, w, centre, axis, d)
+            slot = int(-1)
+            if place.before or not clear:
+                slot = free_slot(records, distance, w, link, n, d)
+            if slot >= 0:
+                u = place.bary
+                records.face[slot] = face_corners(surface, first + m)
+                records.bary[slot] = u
+                records.distance[slot] = d
+                records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
+                records.normal[slot] = place.normal
+                n = wp.min(n + 1, records.capacity)
     records.count[row] = n
 
 
@@ -255,9 +305,12 @@ def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRe
 
 @wp.func
 def contact_push(law: ContactLaw, depth: float) -> wp.vec2:
-    """Normal force k d (1 + (d / h)^2) of a full contact [N] at a depth d > 0, and its derivative [N/m]."""
-    hard = depth / law.hardening
-    return law.stiffness * wp.vec2(depth * (1.0 + hard * hard), 1.0 + 3.0 * hard * hard)
+    """Normal force k d (1 + min(d / h, 2)^2) of a full contact [N] at a depth d > 0, and its stiffness [N/m]."""
+    hard = wp.min(depth / law.hardening, 2.0)
+    secant = 1.0 + hard * hard
+    if hard >= 2.0:
+        return law.stiffness * wp.vec2(depth * secant, secant)
+    return law.stiffness * wp.vec2(depth * secant, 1.0 + 3.0 * hard * hard)
 
 
 @wp.struct
