@@ -29,6 +29,7 @@ RADIUS = 0.016
 DIRECTIONS = {
     "identity": np.diag([1.0, 1.0, 1.0]),
     "flipped_xy": np.diag([-1.0, -1.0, 1.0]),
+    "flipped_x": np.diag([-1.0, 1.0, 1.0]),
     "flipped_z": np.diag([1.0, 1.0, -1.0]),
     "permuted": np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]]),
     "oblique": np.array([[0.96, -0.28, 0], [0.28, 0.96, 0], [0, 0, 1.0]]),
@@ -51,6 +52,8 @@ def write_volume(
     gap: float = 0.0,
     extra: np.ndarray | None = None,
     voxel: float = 3.0,
+    extra_radius: float = 0.010,
+    value: int = 1,
 ) -> Path:
     """Writes the tube as labels 0 and 1, voxels of some millimetres.
 
@@ -58,8 +61,10 @@ def write_volume(
         path: File to write.
         direction: Direction matrix, patient axes left, posterior, cranial.
         gap: Length that is left out in the middle [m].
-        extra: Further points that are lumen [m], shape (n, 3), with 10 mm round them.
+        extra: Further points that are lumen [m], shape (n, 3).
         voxel: Edge of the voxels [mm].
+        extra_radius: How far round these points [m].
+        value: Label of these points.
     """
     import SimpleITK as sitk
 
@@ -67,17 +72,18 @@ def write_volume(
     line, _ = course()
     middle, half = len(line) // 2, round(0.5 * gap / 0.002)
     parts = [(line[: middle - half], RADIUS), (line[middle + half :], RADIUS)]
-    parts += [] if extra is None else [(extra, 0.010)]
+    parts += [] if extra is None else [(extra, extra_radius)]
     lps = 1e3 * np.concatenate([part for part, _ in parts]) * [-1, -1, 1]
     local = lps @ direction
     low = local.min(0) - 30
     size = np.ceil((local.max(0) + 30 - low) / voxel).astype(int)
     index = np.stack(np.meshgrid(*(np.arange(n) for n in size), indexing="ij"), -1).reshape(-1, 3)
     world = (low + voxel * index) @ direction.T * [-1, -1, 1] * 1e-3
-    inside = np.zeros(len(world), bool)
-    for part, radius in parts:
-        inside |= np.isfinite(cKDTree(part).query(world, distance_upper_bound=radius)[0])
-    image = sitk.GetImageFromArray(inside.reshape(size).astype(np.uint8).transpose(2, 1, 0))
+    labels = np.zeros(len(world), np.uint8)
+    for k, (part, radius) in enumerate(parts):
+        inside = np.isfinite(cKDTree(part).query(world, distance_upper_bound=radius)[0])
+        labels[inside & (labels == 0)] = value if k == 2 else 1
+    image = sitk.GetImageFromArray(labels.reshape(size).transpose(2, 1, 0))
     image.SetSpacing([voxel] * 3)
     image.SetDirection(direction.ravel().tolist())
     image.SetOrigin((low @ direction.T).tolist())

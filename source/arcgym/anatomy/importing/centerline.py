@@ -54,8 +54,7 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
     cut = cut_off(grid, course.attached, path, tree.clearance[course.nodes])
     hole = fill_tube(grid, path[0])
     if cut or hole > LEAST_HOLE:
-        anus = path[0] if ends[0] is None else ends[0]
-        tree, course, clearance = _search(grid, [anus, ends[1]], frame, prune=False)
+        tree, course, clearance = _search(grid, ends, frame, prune=False)
     points = resample(tree.points[course.nodes], 2 * grid.spacing)
     points = to_pole(clearance, points, _CECUM_LOOK) if ends[1] is None else points
     points = off_the_wall(clearance, points[::-1])[::-1] if ends[0] is None else points

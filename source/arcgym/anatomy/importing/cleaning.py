@@ -65,15 +65,20 @@ def keep_colon(grid: Grid, max_gap: float) -> tuple[Grid, Cleaning]:
     single = len(order) == 1
     pieces = [make_piece(grid, labels, boxes[k - 1], k, float(volume[k - 1]), single) for k in order[:_MOST_PIECES]]
     kept, bridges = join_pieces(pieces, max_gap)
-    _tell(done, pieces, kept, bridges)
+    _tell(grid, done, pieces, kept, bridges)
     keep = np.isin(labels, [piece.label for piece in kept])
     _check_extent(keep, grid.spacing)
     return _drawn(grid, keep, bridges), done
 
 
-def _tell(done: Cleaning, pieces: list[Piece], kept: list[Piece], bridges: list[Bridge]) -> None:
+def _tell(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[Piece], bridges: list[Bridge]) -> None:
     for bridge in bridges:
-        told = {"gap_mm": round(1e3 * bridge.gap, 1), "volume_ml": round(1e6 * bridge.volume, 1)}
+        way = bridge.end - bridge.start
+        outside = float((grid.sample(bridge.start + np.linspace(0, 1, 200)[:, None] * way) < 0.5).mean())
+        told = {
+            "gap_mm": round(1e3 * outside * float(np.linalg.norm(way)), 1),
+            "volume_ml": round(1e6 * bridge.volume, 1),
+        }
         done.bridges.append(told | {"place_mm": in_millimetres(0.5 * (bridge.start + bridge.end))})
     for piece in [piece for piece in pieces if piece not in kept][:20]:
         done.dropped.append({"volume_ml": round(1e6 * piece.volume, 1), "place_mm": in_millimetres(piece.middle)})

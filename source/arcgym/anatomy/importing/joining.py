@@ -63,8 +63,6 @@ class Bridge:
     """First point, inside the lumen [m], shape (3,)."""
     end: np.ndarray
     """Last point [m], shape (3,)."""
-    gap: float
-    """Length outside the lumen [m]."""
     volume: float
     """Volume of the smaller of both pieces [m^3]."""
 
@@ -120,11 +118,11 @@ def join_pieces(pieces: list[Piece], max_gap: float) -> tuple[list[Piece], list[
     chain = {piece: {piece} for piece in pieces}
     used: set[int] = set()
     joined: list[tuple[Piece, Piece, Bridge]] = []
-    for _, a, b, first, last, gap in matches:
+    for _, a, b, first, last in matches:
         if id(first) in used or id(last) in used or chain[a] is chain[b]:
             continue
         used |= {id(first), id(last)}
-        joined.append((a, b, Bridge(first.point, last.point, gap, min(a.volume, b.volume))))
+        joined.append((a, b, Bridge(first.point, last.point, min(a.volume, b.volume))))
         merged = chain[a] | chain[b]
         for piece in merged:
             chain[piece] = merged
@@ -136,7 +134,7 @@ def join_pieces(pieces: list[Piece], max_gap: float) -> tuple[list[Piece], list[
     return [piece for piece in pieces if piece in best], [bridge for _, _, bridge in links]
 
 
-def _matches(pieces: list[Piece], max_gap: float) -> list[tuple[float, Piece, Piece, Tip, Tip, float]]:
+def _matches(pieces: list[Piece], max_gap: float) -> list[tuple[float, Piece, Piece, Tip, Tip]]:
     """Returns every pair of tips within reach, with the gap made longer by how far they look past each other."""
     found = []
     for a, b in combinations(pieces, 2):
@@ -151,5 +149,5 @@ def _matches(pieces: list[Piece], max_gap: float) -> list[tuple[float, Piece, Pi
                 facing = (float(first.way @ ahead), float(-last.way @ ahead))
                 if min(facing) < _LEAST_FACING and gap > _CLOSE:
                     continue
-                found.append((gap * (1.0 + _ROUND_CORNERS * (2.0 - sum(facing))), a, b, first, last, gap))
+                found.append((gap * (1.0 + _ROUND_CORNERS * (2.0 - sum(facing))), a, b, first, last))
     return found

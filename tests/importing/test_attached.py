@@ -1,0 +1,76 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small bowel and a rectal tube that hang on the lumen are cut off and told; gaps are bridged end to end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from label_volumes import RADIUS, course, write_volume
+
+from arcgym.anatomy.importing.centerline import FoundPath, find_path
+from arcgym.anatomy.importing.cleaning import keep_colon
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.volumes import read_volume
+
+
+def found_in(path: Path, label: tuple[int, ...] | None = None) -> tuple[Grid, FoundPath]:
+    grid, _ = keep_colon(read_volume(path, label, None, 0.003), 0.05)
+    return grid, find_path(grid, [None, None], "ras")
+
+
+def length(path: np.ndarray) -> float:
+    return float(np.linalg.norm(np.diff(path[::5], axis=0), axis=1).sum())
+
+
+def tube(start: np.ndarray, *moves: tuple[float, float, float]) -> np.ndarray:
+    """Returns points every 2 mm along straight pieces."""
+    corners = np.cumsum([start, *np.array(moves)], axis=0)
+    pieces = zip(corners[:-1], corners[1:], strict=True)
+    return np.concatenate(
+        [a + np.linspace(0, 1, round(np.linalg.norm(b - a) / 0.002))[:, None] * (b - a) for a, b in pieces]
+    )
+
+
+@pytest.mark.parametrize("radius", [0.006, 0.010])
+def test_small_bowel_is_cut_off(radius: float, tmp_path: Path) -> None:
+    """A tube of 20 cm leaves the tube of 32 mm 6 cm before its end, sideways."""
+    line, _ = course()
+    leak = tube(line[-30], (0.0, 0.09, 0.0), (0.0, 0.0, -0.08), (-0.06, 0.0, 0.0))
+    grid, found = found_in(write_volume(tmp_path / "a.mha", extra=leak, extra_radius=radius))
+    (cut,) = found.cut
+    assert cut["length_mm"] == pytest.approx(1e3 * (0.23 - RADIUS), abs=30)
+    assert cut["calibre_mm"] == pytest.approx(2e3 * radius, abs=5)
+    assert grid.sample(leak[60:]).max() < 0.5
+    assert np.linalg.norm(found.points[[0, -1]] - line[[0, -1]], axis=1).max() < 0.025
+
+
+def test_tube_beyond_the_anus_is_cut_off(tmp_path: Path) -> None:
+    line, _ = course()
+    pipe = tube(line[0], (0.0, 0.0, -0.08))
+    grid, found = found_in(write_volume(tmp_path / "a.mha", extra=pipe, extra_radius=0.005, voxel=2.0))
+    assert [cut["kind"] for cut in found.cut] == ["rectal tube"]
+    assert grid.sample(pipe[20:]).max() < 0.5
+
+
+def test_nothing_is_cut_off_a_plain_tube(tmp_path: Path) -> None:
+    assert found_in(write_volume(tmp_path / "a.mha"))[1].cut == []
+
+
+@pytest.mark.parametrize("gap", [0.005, 0.020, 0.040])
+def test_gap_is_bridged_along_the_lumen(gap: float, tmp_path: Path) -> None:
+    _, whole = course()
+    path = write_volume(tmp_path / "a.mha", gap=gap + 2 * RADIUS)
+    grid, cleaning = keep_colon(read_volume(path, None, None, 0.003), 0.05)
+    (bridge,) = cleaning.bridges
+    assert bridge["gap_mm"] == pytest.approx(1e3 * gap, abs=6)
+    assert length(find_path(grid, [None, None], "ras").points) == pytest.approx(whole, rel=0.06)
+
+
+def test_air_and_fluid_may_have_labels_of_their_own(tmp_path: Path) -> None:
+    """Fluid of label 2 continues the tube."""
+    line, whole = course()
+    path = write_volume(tmp_path / "a.mha", extra=tube(line[-1], (0.0, 0.0, -0.08)), extra_radius=RADIUS, value=2)
+    assert length(found_in(path, (1, 2))[1].points) > length(found_in(path, (1,))[1].points) + 0.05
