@@ -15,10 +15,14 @@ BLUR = wp.constant(5.0e-5)
 """How much farther than the closest point another point of a face may be and still draw the contact to it [m]."""
 RIM = wp.constant(0.1)
 """Barycentric coordinate under which the face beyond the opposite edge shares a contact."""
+BEHIND = wp.constant(-0.5)
+"""Cosine between the way from axis to wall and the wall's normal, under which the axis is behind the wall."""
 SHARE = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
 CLEAR = wp.constant(0.5)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
+FOLD = wp.constant(0.004)
+"""How much nearer than the front of a fold its far side may be, as they pass through each other [m]."""
 
 
 @wp.struct
@@ -192,7 +196,7 @@ class Place:
 
     bary: wp.vec3
     normal: wp.vec3  # of the wall there
-    before: bool  # whether the link's axis lies on the lumen's side
+    way: wp.vec3  # unit vector there from the link's axis
 
 
 @wp.func
@@ -212,7 +216,7 @@ def place_on(
     out.normal = surface_normal(surface, face, out.bary, x, w)
     p = corner_point(x, f, out.bary, w)
     t = segment_parameter(p, centre - axis, centre + axis)
-    out.before = wp.dot(p - centre - (2.0 * t - 1.0) * axis, out.normal) > 0.0
+    out.way = wp.normalize(p - centre - (2.0 * t - 1.0) * axis)
     return out
 
 
@@ -243,8 +247,8 @@ def select_contacts(
 ):
     """Make a record of every face near a link, nearest first where there are too many. Launch (W, L).
 
-    A link that is clear of the wall on the lumen's side has not gone through it: what it sees from behind is the far
-    side of a fold and no contact.
+    A link whose axis is clear of the wall, and that sees the lumen's side of it, has not gone through and will not in
+    this step. The wall is then kept off it from all sides, the far side of a fold too, whose normal tells nothing.
     """
     w, link = wp.tid()
     row = w * ring.shape[1] + link
@@ -252,22 +256,22 @@ def select_contacts(
     pose = body_q[row]
     centre = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
-    nearest = int(0)
+    nearest = float(FAR)
+    front = float(FAR)
     for m in range(distance.shape[2]):
-        if distance[w, link, m] < distance[w, link, nearest]:
-            nearest = m
-    d = distance[w, link, nearest]
-    clear = bool(False)
-    if d < FAR and d > CLEAR * links.radius[link]:
-        clear = place_on(surface, first + nearest, x, w, centre, axis, d).before
+        d = distance[w, link, m]
+        nearest = wp.min(nearest, d)
+        if d < front:
+            place = place_on(surface, first + m, x, w, centre, axis, d)
+            if wp.dot(place.way, place.normal) > 0.0:
+                front = d
+    clear = nearest > CLEAR * links.radius[link] and front < nearest + FOLD
     n = int(0)
     for m in range(distance.shape[2]):
         d = distance[w, link, m]
         if d < FAR:
             place = place_on(surface, first + m, x, w, centre, axis, d)
-            slot = int(-1)
-            if place.before or not clear:
-                slot = free_slot(records, distance, w, link, n, d)
+            slot = free_slot(records, distance, w, link, n, d)
             if slot >= 0:
                 u = place.bary
                 records.face[slot] = face_corners(surface, first + m)
@@ -275,6 +279,8 @@ def select_contacts(
                 records.distance[slot] = d
                 records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
                 records.normal[slot] = place.normal
+                if clear:
+                    records.normal[slot] = place.way
                 n = wp.min(n + 1, records.capacity)
     records.count[row] = n
 
@@ -337,7 +343,7 @@ def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: flo
     out.normal = wall_normal
     if d > 1.0e-6:
         out.normal = r / d
-    if wp.dot(out.normal, wall_normal) < 0.0:
+    if wp.dot(out.normal, wall_normal) < BEHIND:
         out.normal = -out.normal
         d = -d
     out.gap = d - radius
