@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,8 @@ from arcgym.anatomy import read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.volumes import read_volume
-from arcgym.anatomy.validate import failed, validate_stage
+from arcgym.anatomy.stage_checks import inspect_file
+from arcgym.anatomy.validate import failed
 from arcgym.sim.wall_topology import lumen_topology
 
 COARSE = ImportSettings(voxel=0.0025, visual_spacing=0.006, visual_columns=32, proxy_spacing=0.01, proxy_columns=16)
@@ -53,7 +55,18 @@ def test_length_and_course_are_the_tubes(imported: Path) -> None:
 
 
 def test_stage_passes_its_checks(imported: Path) -> None:
-    assert failed(validate_stage(read_colon(imported / "colon.usda"))) == []
+    """Schema, usdchecker, meshes, lumen, landmarks, anchors: all that validate_colon.py checks without physics."""
+    assert failed(inspect_file(str(imported / "colon.usda"))[1]) == []
+
+
+def test_landmark_by_position_is_where_the_course_is_nearest(tmp_path: Path) -> None:
+    line, _ = course()
+    place = tuple(float(value) for value in 1e3 * line[100])
+    settings = replace(COARSE, landmarks={"rectosigmoid": place}, posture="prone")
+    import_to_folder(write_volume(tmp_path / "tube.mha"), tmp_path / "tube", settings)
+    stage = read_colon(tmp_path / "tube" / "colon.usda")
+    assert stage.landmarks["rectosigmoid"] == pytest.approx(0.200 + RADIUS, abs=0.008)
+    assert stage.metadata["gravityInScan"] == [0.0, 1.0, 0.0]
 
 
 def test_canal_rises_from_the_origin(imported: Path) -> None:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from .errors import ColonImportError
 
@@ -14,7 +15,7 @@ RECTUM = 0.150
 CECUM = 0.064
 """Length of the caecum below the ileocaecal valve [m], about 6 cm (Gray's Anatomy)."""
 
-ILIAC_CREST = 0.43
+ILIAC_CREST = 0.432
 """Height of the iliac crest, where the descending colon becomes the sigmoid, between anal verge and left flexure."""
 
 SPLENIC_FLEXURE = (0.036, 0.115)
@@ -36,6 +37,10 @@ BORDERS = (
 
 _SHORTEST_SEGMENT = 0.02
 _LONGEST_FLEXURE = 0.16
+_SLOPE_LENGTH = 0.008
+_LEVEL_SLOPE = 0.1
+_NEAR_CREST = 0.07
+_NEAR_TOP = 0.06
 _TYPICAL_SHARES = (0.088, 0.402, 0.532, 0.599, 0.818, 0.882, 0.963)
 
 
@@ -81,7 +86,7 @@ def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
     down = right - HEPATIC_FLEXURE[1] * max(right - pole, 0.0)
     return {
         "rectosigmoid": min(RECTUM, 0.2 * length),
-        "sigmoid_descending": _below(arc, height, splenic, height[0] + ILIAC_CREST * tall, 0.7 * splenic, -1),
+        "sigmoid_descending": _groove_end(arc, height, splenic, tall),
         "splenic_flexure_entry": _below(arc, height, splenic, level - SPLENIC_FLEXURE[0] * tall, _LONGEST_FLEXURE, -1),
         "splenic_flexure_exit": _below(arc, height, splenic, level - SPLENIC_FLEXURE[1] * tall, _LONGEST_FLEXURE, 1),
         "hepatic_flexure_entry": hepatic - HEPATIC_FLEXURE[0],
@@ -97,6 +102,19 @@ def _below(arc: np.ndarray, height: np.ndarray, top: float, level: float, most: 
         return top
     below = near[height[near] < level]
     return float(arc[below[0] if len(below) else near[height[near].argmin()]])
+
+
+def _groove_end(arc: np.ndarray, height: np.ndarray, top: float, tall: float) -> float:
+    """Follows the descending colon down to the iliac crest, or to where it turns up again just above it."""
+    level = height[0] + ILIAC_CREST * tall
+    step = float(arc[1] - arc[0])
+    slope = gaussian_filter1d(np.gradient(height, step), _SLOPE_LENGTH / step, mode="nearest")
+    turned = (slope < _LEVEL_SLOPE) & (height < level + _NEAR_CREST * tall)
+    near = np.flatnonzero((arc < top - _NEAR_TOP) & (arc > 0.3 * top))[::-1]
+    if not len(near):
+        return 0.5 * top
+    done = near[(height[near] < level) | turned[near]]
+    return float(arc[done[0] if len(done) else near[height[near].argmin()]])
 
 
 def _top(points: np.ndarray, arc: np.ndarray, where: np.ndarray, lateral: float) -> float:

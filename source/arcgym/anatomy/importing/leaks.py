@@ -16,6 +16,7 @@ from .grid import Grid
 from .tree import calibre
 
 _MARGIN = 0.006
+_FOLDS = 1.3
 _TUBE_REACH = 0.12
 _TUBE_SECTION = 3e-4
 
@@ -34,7 +35,7 @@ def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: n
     Returns:
         What was cut, for the report.
     """
-    colon, width = cKDTree(path), calibre(clearance, path)
+    colon, width = cKDTree(path), np.minimum(calibre(clearance, path), _FOLDS * clearance)
     told = []
     for piece in attached:
         reach = float(piece.clearance.max()) + _MARGIN
