@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the start states of the tasks: a scripted expert drives each endoscope up the colon.
 
-The first segment starts from the rest pose, settled for half a second. Whenever the tip enters another one, the
-complete state is kept; velocities are set to zero. The file lies beside the colon's stage:
-``snapshots/<endoscope>.npz``.
+The first segment starts from the rest pose. Whenever the tip enters another one, the complete state is kept once it has
+settled for a second without commands, with velocities of zero; the drive then goes on from before. The file lies beside
+the colon's stage: ``snapshots/<endoscope>.npz``.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from arcgym_tasks.navigation.scripted_expert import make_expert, tip_angle
 
 ENDOSCOPES = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
 STEPS_PER_CONTROL = 48
+SETTLING = 10
+"""Control steps without commands before a state is kept."""
 
 
 def main() -> None:
@@ -51,8 +53,7 @@ def drive(name: str, args: argparse.Namespace) -> tuple[dict[str, Snapshot], Int
     data, expert = scene["endoscope"].data, make_expert(scene, speed=args.speed)
     bounds = scene["colon"].stage.segment_bounds()
     segments = list(bounds)[: list(bounds).index(args.until) + 1]
-    scene.sim.step(5 * STEPS_PER_CONTROL)
-    kept: dict[str, Snapshot] = {segments[0]: scene.sim.read_snapshot(0).at_rest()}
+    kept: dict[str, Snapshot] = {segments[0]: settled(scene)}
     began, step = time.perf_counter(), 0
     while float(data.tip_arc_length[0]) < bounds[args.until][1] + 0.02:
         expert.act()
@@ -61,7 +62,7 @@ def drive(name: str, args: argparse.Namespace) -> tuple[dict[str, Snapshot], Int
         arc = float(data.tip_arc_length[0])
         for segment in segments:
             if arc > bounds[segment][0] and segment not in kept:
-                kept[segment] = scene.sim.read_snapshot(0).at_rest()
+                kept[segment] = settled(scene)
                 print(f"[{name}] enters {segment} after {step * 0.1:.1f} s", flush=True)
         if step % 20 == 0:
             report(name, step, scene, time.perf_counter() - began)
@@ -69,6 +70,19 @@ def drive(name: str, args: argparse.Namespace) -> tuple[dict[str, Snapshot], Int
             raise SystemExit(f"[{name}] gave up after {step * 0.1:.1f} s at s = {arc:.3f} m; kept {list(kept)}.")
     report(name, step, scene, time.perf_counter() - began)
     return kept, scene
+
+
+def settled(scene: InteractiveScene) -> Snapshot:
+    """State after a second without commands; the simulation itself stays where it is."""
+    sim = scene.sim
+    now = SnapshotSet(("now",), (sim.read_snapshot(0),), fingerprint(sim))
+    sim.load_snapshots(now)
+    sim.write_snapshot(0)
+    sim.step(SETTLING * STEPS_PER_CONTROL)
+    state = sim.read_snapshot(0).at_rest()
+    sim.write_snapshot(0)
+    sim.forward()
+    return state
 
 
 def report(name: str, step: int, scene: InteractiveScene, wall_s: float) -> None:

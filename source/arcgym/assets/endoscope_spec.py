@@ -232,7 +232,7 @@ def magnetic_spec() -> EndoscopeSpec:
     radius[-head:] = 0.0066
     mass = 0.078 * length
     mass[-head:] = 3000.0 * math.pi * radius[-head:] ** 2 * length[-head:]
-    rigidity = np.full(links - 1, 0.003)
+    rigidity = np.full(links - 1, 0.001)
     rigidity[-(head - 1) :] = 0.025
     camera, lights = _tip_optics(length[-1], radius[-1], links)
     return EndoscopeSpec(
@@ -252,7 +252,7 @@ def magnetic_spec() -> EndoscopeSpec:
         sources={
             "design": "magnetic flexible endoscope of Martin et al. 2020 (PMC7571595): tether about 6 mm, head about "
             "20 mm; here the head is slimmed to a colonoscope's 13.2 mm, the tether is 8 mm",
-            "rigidity": "0.003 N m^2, assumed: a shaft of 0.025 N m^2 sticks in the first bend at a pull of 4 N",
+            "rigidity": "0.001 N m^2, assumed: a soft polymer tube; at 0.003 a pull of 4 N sticks in the sigmoid's last bend",
             "torsion": "GJ / EI as of the colonoscope, assumed",
             "mass": "tether: a colonoscope's 0.2 kg/m scaled by area; head: 3000 kg/m^3 with its magnet; both assumed",
         },

@@ -60,25 +60,26 @@ class reset_to_segment_start(ManagerTermBase):
 
 
 class perturb_tip(ManagerTermBase):
-    """Turn the tip by normally distributed pitch and yaw; follows a reset in the same mode.
+    """Turn the tip by normally distributed pitch and yaw, two deviations at most; follows a reset in the same mode.
 
     A scope with a shaft bends in its last hinges, odd ones about X and even ones about Y; a free capsule turns whole.
+    Over more hinges the tip swings farther, and may start behind the wall.
     """
 
     def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
         """Share pitch and yaw among the last hinges: ``hinge_share``, shape (2, K)."""
         super().__init__(cfg, env)
         names = env.scene["endoscope"].joint_names
-        hinges = [i for i, name in enumerate(names) if name.startswith("hinge")][-cfg.params.get("hinges", 10) :]
+        hinges = [i for i, name in enumerate(names) if name.startswith("hinge")][-cfg.params.get("hinges", 4) :]
         number = torch.tensor([int(names[i].rpartition("_")[2]) for i in hinges], dtype=torch.long)
         axis = torch.stack((number % 2 == 1, number % 2 == 0)).float()
         self._share = (axis / axis.sum(1, keepdim=True).clamp(min=1.0)).to(env.device)
         self._columns = torch.tensor(hinges, dtype=torch.long, device=env.device)
 
-    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1, hinges: int = 10) -> None:
+    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1, hinges: int = 4) -> None:
         """Turn by ``std`` [rad] over the last ``hinges``, whose number is read once at construction."""
         endoscope = env.scene["endoscope"]
-        angle = std * torch.randn(len(env_ids), 2, device=env.device)
+        angle = std * torch.randn(len(env_ids), 2, device=env.device).clamp(-2.0, 2.0)
         joint_pos = endoscope.data.joint_pos
         if len(self._columns) == 0:
             joint_pos[env_ids, 3:7] = _turned(joint_pos[env_ids, 3:7], angle)
