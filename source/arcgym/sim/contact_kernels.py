@@ -19,7 +19,7 @@ BEHIND = wp.constant(-0.5)
 """Cosine between the way from axis to wall and the wall's normal, under which the axis is behind the wall."""
 SHARE = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
-CLEAR = wp.constant(0.5)
+CLEAR = wp.constant(0.25)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
 FOLD = wp.constant(0.004)
 """How much nearer than the front of a fold its far side may be, as they pass through each other [m]."""
