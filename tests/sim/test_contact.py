@@ -70,7 +70,7 @@ def test_no_records_in_the_middle_of_the_lumen(sim: Simulation) -> None:
 
 
 def test_records_without_force_just_before_touching(sim: Simulation) -> None:
-    place(sim, depth=-0.001)
+    place(sim, depth=-0.0005)
     assert count(sim) > 0
     np.testing.assert_array_equal(wall_force(sim), 0.0)
 
@@ -115,7 +115,7 @@ def test_record_normals_point_outwards(sim: Simulation) -> None:
 def test_each_touch_lies_on_the_lumen_surface(sim: Simulation) -> None:
     place(sim, depth=1.0e-4)
     records = sim.contact.records
-    faces, bary = records.face.numpy()[: count(sim)], records.bary.numpy()[: count(sim)]
+    faces, bary = records.corners.numpy()[: count(sim)], records.bary.numpy()[: count(sim)]
     points = np.einsum("nk,nki->ni", bary, sim.nodal_pos.numpy()[:, 0][faces])
     near = records.distance.numpy()[: count(sim)] < REACH
     np.testing.assert_allclose(points[near] @ SIDE, APOTHEM, atol=1e-6)

@@ -143,7 +143,7 @@ def assemble(
             slot = records.ring_head[lowest, w]
         while slot >= 0:
             if pressing.stiffness[slot][0] > 0.0:
-                f = records.face[slot]
+                f = records.corners[slot]
                 u = records.bary[slot]
                 push = contact_push(pressing, slot, rotation[r, w] * point_move(space, f, u, r, a))
                 own_row += ring_share(space, f, u, r, back * push)

@@ -81,7 +81,9 @@ class ContactSearch:
         records = kernels.ContactRecords()
         records.capacity = capacity
         records.count = wp.zeros(rows, dtype=int, device=self.device)
-        records.face = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
+        records.face = wp.zeros(rows * capacity, dtype=int, device=self.device)
+        records.corners = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
+        records.way = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
         records.bary = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(rows * capacity, dtype=float, device=self.device))
@@ -113,12 +115,12 @@ class ContactSearch:
             [x, body_q, self.links, self.surface, self.law, self.ring, self.away, self.distance],
             device=self.device,
         )
-        wp.launch(
-            kernels.select_contacts,
-            (self.num_envs, self.link_count),
-            [x, body_q, self.links, self.surface, self.ring, self.distance, self.records],
-            device=self.device,
-        )
+        links = (self.num_envs, self.link_count)
+        args = [self.surface, self.ring, self.distance, self.records]
+        wp.launch(kernels.select_contacts, links, args, device=self.device)
+        args = [x, body_q, self.links, self.surface, self.records]
+        wp.launch(kernels.place_contacts, (*links, self.records.capacity), args, device=self.device)
+        wp.launch(kernels.clear_contacts, links, [self.links, self.records], device=self.device)
         self.records.vertex_head.fill_(-1)
         self.records.ring_head.fill_(-1)
         wp.launch(

@@ -53,10 +53,12 @@ class ContactRecords:
 
     capacity: int
     count: wp.array(dtype=int)  # shape (W*L,)
-    face: wp.array(dtype=wp.vec3i)  # the three wall vertices, shape (W*L*capacity,)
+    face: wp.array(dtype=int)  # shape (W*L*capacity,)
+    corners: wp.array(dtype=wp.vec3i)  # the face's three wall vertices
     bary: wp.array(dtype=wp.vec3)
     distance: wp.array(dtype=float)  # of the link's axis from the face [m]
     weight: wp.array(dtype=float)  # share of the contact stiffness
+    way: wp.array(dtype=wp.vec3)  # unit vector there from the link's axis
     normal: wp.array(dtype=wp.vec3)  # outward normal of the wall there at detection
     vertex_head: wp.array2d(dtype=int)  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
@@ -237,52 +239,71 @@ def free_slot(records: ContactRecords, distance: wp.array3d(dtype=float), w: int
 
 @wp.kernel
 def select_contacts(
-    x: wp.array2d(dtype=wp.vec3),
-    body_q: wp.array(dtype=wp.transform),
-    links: LinkShapes,
-    surface: LumenSurface,
-    ring: wp.array2d(dtype=int),
-    distance: wp.array3d(dtype=float),
-    records: ContactRecords,
+    surface: LumenSurface, ring: wp.array2d(dtype=int), distance: wp.array3d(dtype=float), records: ContactRecords
 ):
-    """Make a record of every face near a link, nearest first where there are too many. Launch (W, L).
-
-    A link whose axis is clear of the wall, and that sees the lumen's side of it, has not gone through and will not in
-    this step. The wall is then kept off it from all sides, the far side of a fold too, whose normal tells nothing.
-    """
+    """Make a record of every face near a link, the nearest where there are too many. Launch (W, L)."""
     w, link = wp.tid()
     row = w * ring.shape[1] + link
     first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
-    pose = body_q[row]
-    centre = wp.transform_get_translation(pose)
-    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
-    nearest = float(FAR)
-    front = float(FAR)
-    for m in range(distance.shape[2]):
-        d = distance[w, link, m]
-        nearest = wp.min(nearest, d)
-        if d < front:
-            place = place_on(surface, first + m, x, w, centre, axis, d)
-            if wp.dot(place.way, place.normal) > 0.0:
-                front = d
-    clear = nearest > CLEAR * links.radius[link] and front < nearest + FOLD
     n = int(0)
     for m in range(distance.shape[2]):
         d = distance[w, link, m]
         if d < FAR:
-            place = place_on(surface, first + m, x, w, centre, axis, d)
             slot = free_slot(records, distance, w, link, n, d)
             if slot >= 0:
-                u = place.bary
-                records.face[slot] = face_corners(surface, first + m)
-                records.bary[slot] = u
+                records.face[slot] = first + m
                 records.distance[slot] = d
-                records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
-                records.normal[slot] = place.normal
-                if clear:
-                    records.normal[slot] = place.way
                 n = wp.min(n + 1, records.capacity)
     records.count[row] = n
+
+
+@wp.kernel
+def place_contacts(
+    x: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    links: LinkShapes,
+    surface: LumenSurface,
+    records: ContactRecords,
+):
+    """Find where every recorded face comes closest to its link. Launch (W, L, capacity)."""
+    w, link, k = wp.tid()
+    row = w * links.radius.shape[0] + link
+    if k >= records.count[row]:
+        return
+    slot = row * records.capacity + k
+    pose = body_q[row]
+    centre = wp.transform_get_translation(pose)
+    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+    face = records.face[slot]
+    place = place_on(surface, face, x, w, centre, axis, records.distance[slot])
+    u = place.bary
+    records.corners[slot] = face_corners(surface, face)
+    records.bary[slot] = u
+    records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
+    records.normal[slot] = place.normal
+    records.way[slot] = place.way
+
+
+@wp.kernel
+def clear_contacts(links: LinkShapes, records: ContactRecords):
+    """Keep the wall off from all sides of a link that is clear of it. Launch (W, L).
+
+    A link whose axis is clear of the wall, and that sees the lumen's side of it, has not gone through and will not in
+    this step. The far side of a fold pushes it on then, too, whose normal tells nothing.
+    """
+    w, link = wp.tid()
+    row = w * links.radius.shape[0] + link
+    nearest = float(FAR)
+    front = float(FAR)
+    for k in range(records.count[row]):
+        slot = row * records.capacity + k
+        nearest = wp.min(nearest, records.distance[slot])
+        if wp.dot(records.way[slot], records.normal[slot]) > 0.0:
+            front = wp.min(front, records.distance[slot])
+    if nearest > CLEAR * links.radius[link] and front < nearest + FOLD:
+        for k in range(records.count[row]):
+            slot = row * records.capacity + k
+            records.normal[slot] = records.way[slot]
 
 
 @wp.kernel
@@ -297,7 +318,7 @@ def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRe
         n = records.count[row]
         for back in range(n):
             slot = row * records.capacity + n - 1 - back
-            face = records.face[slot]
+            face = records.corners[slot]
             lowest = records.ring_head.shape[0]
             for k in range(3):
                 entry = 3 * slot + k

@@ -68,7 +68,7 @@ def load_contacts(
     total = Articulated()
     for k in range(records.count[row]):
         slot = row * records.capacity + k
-        f = records.face[slot]
+        f = records.corners[slot]
         u = records.bary[slot]
         wall_v = corner_point(v, f, u, w)
         p = corner_point(x, f, u, w)

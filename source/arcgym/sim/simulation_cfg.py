@@ -29,7 +29,7 @@ class ContactCfg:
     """Speed under which friction is viscous [m/s]. A link pulled by half of what friction holds creeps at 0.3 of it."""
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
-    search_gap: float = 0.002
+    search_gap: float = 0.001
     """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
     that link and wall close in one physics step."""
     search_reach: int = 3

@@ -86,7 +86,7 @@ def press_of(
     out = Press()
     row = slot // records.capacity
     link = row % link_count
-    f = records.face[slot]
+    f = records.corners[slot]
     u = records.bary[slot]
     p = corner_point(x, f, u, w)
     c = touch(p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius)
