@@ -25,6 +25,7 @@ from arcgym.sim.wall_kernels import (
     add_contact,
     contact_force,
     inertia_and_anchor,
+    quiet,
 )
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -257,13 +258,14 @@ def sweep_colour(
     body_q: wp.array(dtype=wp.transform),
     body_q_prev: wp.array(dtype=wp.transform),
     largest_move: float,
+    force: wp.array2d(dtype=wp.vec3),
     x: wp.array2d(dtype=wp.vec3),
 ):
     """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
     k, w = wp.tid()
-    if tissue.rigid[w] == 1:
-        return
     i = colour[k]
+    if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
+        return
     moduli = tissue.moduli[w]
     block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
     block = add_stretching(block, shell, x, i, w, moduli)

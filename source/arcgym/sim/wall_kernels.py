@@ -40,6 +40,18 @@ class VertexBlock:
     hessian: wp.mat33
 
 
+QUIET_FORCE = wp.constant(1.0e-3)
+"""Force under which a vertex that the ring correction has left alone is not swept [N]: the noise of single precision."""
+QUIET_MOVE = wp.constant(1.0e-7)
+"""Move by the ring correction under which it counts as left alone [m]."""
+
+
+@wp.func
+def quiet(force: wp.vec3, moved: wp.vec3) -> bool:
+    """Whether a vertex with this force and this move by the ring correction needs no sweep."""
+    return wp.length_sq(force) < QUIET_FORCE * QUIET_FORCE and wp.length_sq(moved) < QUIET_MOVE * QUIET_MOVE
+
+
 @wp.func
 def inertia_and_anchor(
     nodes: WallNodes, tissue: Tissue, inertial: wp.vec3, x: wp.vec3, i: int, w: int, inv_dt2: float

@@ -115,6 +115,7 @@ class WallSolver:
         )
         for _ in range(self.cfg.repeats):
             self._measure(x, self.x_prev, contact, body_q, body_q_prev)
+            self._residual(x, self.inertial, contact, self.force)
             if self.cfg.coarse_correction:
                 self._correct_rings(x, contact)
             for _ in range(self.cfg.iterations):
@@ -137,7 +138,7 @@ class WallSolver:
                     contact.records,
                 ]
                 + [contact.links, contact.law, contact.friction, contact.link_count, body_q, body_q_prev]
-                + [self.cfg.largest_move, x],
+                + [self.cfg.largest_move, self.force, x],
                 device=self.device,
             )
 
@@ -169,7 +170,6 @@ class WallSolver:
 
     def _correct_rings(self, x: wp.array, contact: ContactSearch) -> None:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
-        self._residual(x, self.inertial, contact, self.force)
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
         args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
         args += [contact.records, self.pressing, self.chain.diagonal, self.chain.upper, self.chain.rhs]
