@@ -39,7 +39,7 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
     if reference is not None:
         share = np.interp(arc, np.r_[0.0, np.cumsum(list(lengths.values()))], np.r_[0.0, reference.ends])
         hold = np.where(tied, _HOLD_REPOSED, _HOLD_MOBILE)
-        route = np.where(tied[:, None], reference.position(share), route)
+        route = np.where(tied[:, None], reference.position(np.asarray(share)), route)
         places = [int(np.abs(share - s).argmin()) for s in acute_bends(reference.points, reference.s)]
     points = relax(route, edge, base_radius(spec, arc), hold, spec, places)
     points = _smoothed(points)

@@ -252,7 +252,7 @@ def magnetic_spec() -> EndoscopeSpec:
         sources={
             "design": "magnetic flexible endoscope of Martin et al. 2020 (PMC7571595): tether about 6 mm, head about "
             "20 mm; here the head is slimmed to a colonoscope's 13.2 mm, the tether is 8 mm",
-            "rigidity": "0.001 N m^2, assumed: a soft polymer tube; at 0.003 a pull of 4 N sticks in the sigmoid's last bend",
+            "rigidity": "0.001 N m^2, assumed: a soft polymer tube; at 0.003 a pull of 4 N sticks in the sigmoid colon",
             "torsion": "GJ / EI as of the colonoscope, assumed",
             "mass": "tether: a colonoscope's 0.2 kg/m scaled by area; head: 3000 kg/m^3 with its magnet; both assumed",
         },

@@ -39,7 +39,7 @@ def wall_elements(wall: WallParameters, num_envs: int, device: str) -> WallEleme
 class Solid:
     """Tetrahedra, which need nothing measured."""
 
-    kernels = solid_kernels
+    kernels: ModuleType = solid_kernels
 
     def __init__(self, points: np.ndarray, tets: np.ndarray, device: str):
         """Copy the T tets of one world's V vertices to the device.
@@ -65,7 +65,7 @@ class Solid:
 class Shell:
     """Triangles and hinges, measured once a step."""
 
-    kernels = shell_kernels
+    kernels: ModuleType = shell_kernels
 
     def __init__(self, geometry: ShellGeometry, vertices: int, num_envs: int, device: str):
         """Copy the elements of one world's wall to the device and allocate what is measured in all W worlds.

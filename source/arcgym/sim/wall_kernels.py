@@ -41,7 +41,7 @@ class VertexBlock:
 
 
 QUIET_FORCE = wp.constant(1.0e-3)
-"""Force under which a vertex that the ring correction has left alone is not swept [N]: the noise of single precision."""
+"""Force under which a vertex that the ring correction has left alone is not swept [N]: noise of single precision."""
 QUIET_MOVE = wp.constant(1.0e-7)
 """Move by the ring correction under which it counts as left alone [m]."""
 
