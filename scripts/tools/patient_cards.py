@@ -31,7 +31,9 @@ def main() -> None:
         stage = read_colon(ROOT / "assets" / "usd" / name / "colon.usda")
         cards.append(card(name, stage))
         if not args.no_pictures:
-            draw_page(stage).save(ROOT / "docs" / "images" / "patients" / f"{name}.jpg", quality=66, optimize=True, progressive=True)
+            draw_page(stage).save(
+                ROOT / "docs" / "images" / "patients" / f"{name}.jpg", quality=66, optimize=True, progressive=True
+            )
         print(name, flush=True)
     page = ROOT / "docs" / "patients.md"
     before, rest = page.read_text().split(BEGIN)
