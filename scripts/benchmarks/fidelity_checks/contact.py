@@ -47,13 +47,13 @@ def contact_force_on_wall(sim: Any) -> np.ndarray:
     """Sum of the contact forces on the wall of a single world as its last step saw them [N], shape (3,)."""
     import warp as wp
 
+    from arcgym.sim.wall_solver import wall_contacts
     from fidelity_checks.load_kernels import contact_on_wall
 
-    contact, wall, coupling = sim.contact, sim.wall, sim.coupling
+    poses = (sim.state.body_q, sim.coupling.body_q_prev)
+    contacts = wall_contacts(sim.contact, sim.cfg.dt, sim.wall.x_prev, *poses)
     out = wp.zeros_like(sim.nodal_pos)
-    args = [contact.records, contact.links, contact.law, contact.friction, contact.link_count, sim.cfg.dt]
-    args += [sim.nodal_pos, wall.x_prev, sim.state.body_q, coupling.body_q_prev, out]
-    wp.launch(contact_on_wall, out.shape, args, device=sim.device)
+    wp.launch(contact_on_wall, out.shape, [contacts, sim.nodal_pos, out], device=sim.device)
     return out.numpy().astype(float).sum(axis=(0, 1))
 
 

@@ -4,8 +4,7 @@
 
 import warp as wp
 
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
-from arcgym.sim.wall_kernels import VertexBlock, add_contact
+from arcgym.sim.wall_kernels import VertexBlock, WallContacts, add_contact
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -36,22 +35,8 @@ def add_loads(
 
 
 @wp.kernel
-def contact_on_wall(
-    records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    friction: wp.array(dtype=float),
-    link_count: int,
-    dt: float,
-    x: wp.array2d(dtype=wp.vec3),
-    x_prev: wp.array2d(dtype=wp.vec3),
-    body_q: wp.array(dtype=wp.transform),
-    body_q_prev: wp.array(dtype=wp.transform),
-    force: wp.array2d(dtype=wp.vec3),
-):
+def contact_on_wall(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), force: wp.array2d(dtype=wp.vec3)):
     """Contact force on every wall vertex at the end of a step. Launch (V, W)."""
     i, w = wp.tid()
-    block = add_contact(
-        VertexBlock(), records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w
-    )
+    block = add_contact(VertexBlock(), contacts, x, i, w)
     force[i, w] = block.force

@@ -15,12 +15,12 @@ spares the sweep its normals and inverse tangents.
 
 import warp as wp
 
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.geometry_kernels import shortened
 from arcgym.sim.wall_kernels import (
     Pressing,
     Tissue,
     VertexBlock,
+    WallContacts,
     WallNodes,
     add_contact,
     contact_force,
@@ -247,16 +247,8 @@ def sweep_colour(
     nodes: WallNodes,
     shell: ShellElements,
     tissue: Tissue,
-    dt: float,
     inertial: wp.array2d(dtype=wp.vec3),
-    x_prev: wp.array2d(dtype=wp.vec3),
-    records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    friction: wp.array(dtype=float),
-    link_count: int,
-    body_q: wp.array(dtype=wp.transform),
-    body_q_prev: wp.array(dtype=wp.transform),
+    contacts: WallContacts,
     largest_move: float,
     force: wp.array2d(dtype=wp.vec3),
     x: wp.array2d(dtype=wp.vec3),
@@ -267,10 +259,10 @@ def sweep_colour(
     if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
         return
     moduli = tissue.moduli[w]
-    block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
+    block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
     block = add_stretching(block, shell, x, i, w, moduli)
     block = add_bending(block, shell, x, i, w, moduli[2])
-    block = add_contact(block, records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w)
+    block = add_contact(block, contacts, x, i, w)
     x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
 
 
@@ -279,9 +271,8 @@ def residual(
     nodes: WallNodes,
     shell: ShellElements,
     tissue: Tissue,
-    dt: float,
     inertial: wp.array2d(dtype=wp.vec3),
-    records: ContactRecords,
+    contacts: WallContacts,
     pressing: Pressing,
     x: wp.array2d(dtype=wp.vec3),
     force: wp.array2d(dtype=wp.vec3),
@@ -290,7 +281,7 @@ def residual(
     i, w = wp.tid()
     block = VertexBlock()
     if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
-        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
+        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
         for k in range(shell.triangle_start[i], shell.triangle_start[i + 1]):
             block.force += shell.corner_force[shell.triangle_entry[k], w]
         for k in range(shell.hinge_start[i], shell.hinge_start[i + 1]):
@@ -298,5 +289,5 @@ def residual(
             h = entry // 4
             turn = corner_turn(fold_of(shell, h, w), shell.foot[h], entry - 4 * h)
             block.force -= (tissue.moduli[w][2] * shell.weight[h] * shell.bend[h, w]) * turn
-        block.force += contact_force(records, pressing, i, w)
+        block.force += contact_force(contacts.records, pressing, i, w)
     force[i, w] = block.force

@@ -8,12 +8,12 @@ parameters; force and Hessian of a vertex are written in closed form.
 
 import warp as wp
 
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.geometry_kernels import shortened
 from arcgym.sim.wall_kernels import (
     Pressing,
     Tissue,
     VertexBlock,
+    WallContacts,
     WallNodes,
     add_contact,
     contact_force,
@@ -82,16 +82,8 @@ def sweep_colour(
     nodes: WallNodes,
     solid: SolidElements,
     tissue: Tissue,
-    dt: float,
     inertial: wp.array2d(dtype=wp.vec3),
-    x_prev: wp.array2d(dtype=wp.vec3),
-    records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    friction: wp.array(dtype=float),
-    link_count: int,
-    body_q: wp.array(dtype=wp.transform),
-    body_q_prev: wp.array(dtype=wp.transform),
+    contacts: WallContacts,
     largest_move: float,
     force: wp.array2d(dtype=wp.vec3),
     x: wp.array2d(dtype=wp.vec3),
@@ -101,9 +93,9 @@ def sweep_colour(
     i = colour[k]
     if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
         return
-    block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
+    block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
     block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
-    block = add_contact(block, records, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, i, w)
+    block = add_contact(block, contacts, x, i, w)
     x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
 
 
@@ -112,9 +104,8 @@ def residual(
     nodes: WallNodes,
     solid: SolidElements,
     tissue: Tissue,
-    dt: float,
     inertial: wp.array2d(dtype=wp.vec3),
-    records: ContactRecords,
+    contacts: WallContacts,
     pressing: Pressing,
     x: wp.array2d(dtype=wp.vec3),
     force: wp.array2d(dtype=wp.vec3),
@@ -123,7 +114,7 @@ def residual(
     i, w = wp.tid()
     block = VertexBlock()
     if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
-        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (dt * dt))
+        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
         block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
-        block.force += contact_force(records, pressing, i, w)
+        block.force += contact_force(contacts.records, pressing, i, w)
     force[i, w] = block.force

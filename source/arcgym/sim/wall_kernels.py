@@ -66,6 +66,20 @@ def inertia_and_anchor(
 
 
 @wp.struct
+class WallContacts:
+    """Contacts of one wall step, and how the links and the wall have moved in it."""
+
+    records: ContactRecords
+    links: LinkShapes
+    law: ContactLaw
+    friction: wp.array(dtype=float)  # Coulomb coefficient, shape (W,)
+    dt: float  # physics step [s]
+    x_prev: wp.array2d(dtype=wp.vec3)  # wall positions at the start of the step [m], shape (V, W)
+    body_q: wp.array(dtype=wp.transform)  # link poses at its end, shape (W*L,)
+    body_q_prev: wp.array(dtype=wp.transform)  # and at its start, shape (W*L,)
+
+
+@wp.struct
 class Press:
     """One contact as the wall feels it.
 
@@ -80,74 +94,52 @@ class Press:
 
 
 @wp.func
-def press_of(
-    records: ContactRecords,
-    slot: int,
-    links: LinkShapes,
-    law: ContactLaw,
-    friction: float,
-    link_count: int,
-    dt: float,
-    x: wp.array2d(dtype=wp.vec3),
-    x_prev: wp.array2d(dtype=wp.vec3),
-    body_q: wp.array(dtype=wp.transform),
-    body_q_prev: wp.array(dtype=wp.transform),
-    w: int,
-) -> Press:
-    """Contact in ``slot`` of world ``w``; both forces are zero where nothing touches."""
+def press_of(contacts: WallContacts, slot: int, x: wp.array2d(dtype=wp.vec3), w: int) -> Press:
+    """Contact in ``slot`` of world ``w`` at wall positions ``x``; both forces are zero where nothing touches."""
     out = Press()
-    row = slot // records.capacity
-    link = row % link_count
-    f = records.corners[slot]
-    u = records.bary[slot]
+    row = slot // contacts.records.capacity
+    link = row % contacts.links.radius.shape[0]
+    f = contacts.records.corners[slot]
+    u = contacts.records.bary[slot]
     p = corner_point(x, f, u, w)
-    c = touch(p, records.normal[slot], body_q[row], links.half_length[link], links.radius[link] + law.wall_radius)
+    radius = contacts.links.radius[link] + contacts.law.wall_radius
+    c = touch(p, contacts.records.normal[slot], contacts.body_q[row], contacts.links.half_length[link], radius)
     if c.gap < 0.0:
-        share = records.weight[slot]
-        push = share * contact_push(law, -c.gap)
+        share = contacts.records.weight[slot]
+        push = share * contact_push(contacts.law, -c.gap)
         out.push = push[0]
         out.stiffness = push[1]
         out.normal = c.normal
-        local = wp.transform_point(wp.transform_inverse(body_q[row]), p)
-        slip = wp.transform_point(body_q_prev[row], local) - corner_point(x_prev, f, u, w)
+        local = wp.transform_point(wp.transform_inverse(contacts.body_q[row]), p)
+        slip = wp.transform_point(contacts.body_q_prev[row], local) - corner_point(contacts.x_prev, f, u, w)
         opening = wp.dot(c.normal, slip)
         if opening < 0.0:
-            out.push -= share * law.damping / dt * opening
-            out.stiffness += share * law.damping / dt
+            damping = share * contacts.law.damping / contacts.dt
+            out.push -= damping * opening
+            out.stiffness += damping
         out.slip = slip - c.normal * opening
-        out.drag = friction * out.push * slip_scale(wp.length(out.slip), law.slip_velocity * dt)
+        limit = contacts.law.slip_velocity * contacts.dt
+        out.drag = contacts.friction[w] * out.push * slip_scale(wp.length(out.slip), limit)
     return out
 
 
 @wp.func
 def add_contact(
-    block: VertexBlock,
-    records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    friction: float,
-    link_count: int,
-    dt: float,
-    x: wp.array2d(dtype=wp.vec3),
-    x_prev: wp.array2d(dtype=wp.vec3),
-    body_q: wp.array(dtype=wp.transform),
-    body_q_prev: wp.array(dtype=wp.transform),
-    vertex: int,
-    w: int,
+    block: VertexBlock, contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), i: int, w: int
 ) -> VertexBlock:
-    """Add the contacts listed for ``vertex`` of world ``w``; friction works on the slip of this step."""
+    """Add the contacts listed for vertex ``i`` of world ``w``; friction works on the slip of this step."""
     out = block
     eye = wp.identity(n=3, dtype=float)
-    entry = records.vertex_head[vertex, w]
+    entry = contacts.records.vertex_head[i, w]
     while entry >= 0:
         slot = entry // 3
-        weight = records.bary[slot][entry - 3 * slot]
-        c = press_of(records, slot, links, law, friction, link_count, dt, x, x_prev, body_q, body_q_prev, w)
+        weight = contacts.records.bary[slot][entry - 3 * slot]
+        c = press_of(contacts, slot, x, w)
         if c.push > 0.0:
             along = wp.outer(c.normal, c.normal)
             out.force += weight * (c.push * c.normal - c.drag * c.slip)
             out.hessian += (weight * weight) * (c.stiffness * along + c.drag * (eye - along))
-        entry = records.vertex_next[entry]
+        entry = contacts.records.vertex_next[entry]
     return out
 
 
@@ -161,25 +153,13 @@ class Pressing:
 
 
 @wp.kernel
-def measure_contacts(
-    records: ContactRecords,
-    links: LinkShapes,
-    law: ContactLaw,
-    friction: wp.array(dtype=float),
-    dt: float,
-    x: wp.array2d(dtype=wp.vec3),
-    x_prev: wp.array2d(dtype=wp.vec3),
-    body_q: wp.array(dtype=wp.transform),
-    body_q_prev: wp.array(dtype=wp.transform),
-    pressing: Pressing,
-):
+def measure_contacts(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), pressing: Pressing):
     """Measure every contact at wall positions ``x``. Launch (L, W)."""
     link, w = wp.tid()
-    link_count = links.radius.shape[0]
-    row = w * link_count + link
-    for k in range(records.count[row]):
-        slot = row * records.capacity + k
-        c = press_of(records, slot, links, law, friction[w], link_count, dt, x, x_prev, body_q, body_q_prev, w)
+    row = w * contacts.links.radius.shape[0] + link
+    for k in range(contacts.records.count[row]):
+        slot = row * contacts.records.capacity + k
+        c = press_of(contacts, slot, x, w)
         pressing.force[slot] = c.push * c.normal - c.drag * c.slip
         pressing.normal[slot] = c.normal
         pressing.stiffness[slot] = wp.vec2(c.stiffness, c.drag)

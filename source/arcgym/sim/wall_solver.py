@@ -22,6 +22,25 @@ REGULARISATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
 
 
+def wall_contacts(
+    contact: ContactSearch, dt: float, x_prev: wp.array, body_q: wp.array, body_q_prev: wp.array
+) -> wall_kernels.WallContacts:
+    """What kernels need of the contacts in one wall step.
+
+    Args:
+        contact: Contacts found at the start of the step.
+        dt: Its length [s].
+        x_prev: Wall positions at its start [m], shape (V, W), vec3.
+        body_q: Link poses at its end, shape (W*L,).
+        body_q_prev: Link poses at its start, shape (W*L,).
+    """
+    contacts = wall_kernels.WallContacts()
+    contacts.records, contacts.links, contacts.law = contact.records, contact.links, contact.law
+    contacts.friction, contacts.dt, contacts.x_prev = contact.friction, dt, x_prev
+    contacts.body_q, contacts.body_q_prev = body_q, body_q_prev
+    return contacts
+
+
 class WallSolver:
     """Steps the walls of all worlds in place.
 
@@ -106,6 +125,7 @@ class WallSolver:
         if not self.moves:
             return
         shape = (self.vertex_count, self.num_envs)
+        contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
         decay = math.exp(-self.cfg.drag * self.dt)
         wp.launch(
             wall_kernels.predict,
@@ -114,31 +134,20 @@ class WallSolver:
             device=self.device,
         )
         for _ in range(self.cfg.repeats):
-            self._measure(x, self.x_prev, contact, body_q, body_q_prev)
-            self._residual(x, self.inertial, contact, self.force)
+            self._residual(x, self.inertial, contacts, self.force)
             if self.cfg.coarse_correction:
-                self._correct_rings(x, contact)
+                self._correct_rings(x, contacts)
             for _ in range(self.cfg.iterations):
-                self._sweep(x, contact, body_q, body_q_prev)
+                self._sweep(x, contacts)
         wp.launch(wall_kernels.finish, x.shape, [self.x_prev, self.dt, x, v], device=self.device)
 
-    def _sweep(self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
+    def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         for colour in self.colours:
+            args = [colour, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
             wp.launch(
                 self.elements.kernels.sweep_colour,
                 (len(colour), self.num_envs),
-                [
-                    colour,
-                    self.nodes,
-                    self.elements.data,
-                    self.tissue,
-                    self.dt,
-                    self.inertial,
-                    self.x_prev,
-                    contact.records,
-                ]
-                + [contact.links, contact.law, contact.friction, contact.link_count, body_q, body_q_prev]
-                + [self.cfg.largest_move, self.force, x],
+                [*args, self.cfg.largest_move, self.force, x],
                 device=self.device,
             )
 
@@ -151,28 +160,22 @@ class WallSolver:
             body_q: Link poses, shape (W*L,).
         """
         force = wp.zeros_like(x)
-        self._measure(x, x, contact, body_q, body_q)
-        self._residual(x, x, contact, force)
+        self._residual(x, x, wall_contacts(contact, self.dt, x, body_q, body_q), force)
         return force
 
-    def _measure(
-        self, x: wp.array, x_prev: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array
-    ) -> None:
+    def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
+        """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
         self.elements.measure(x, self.tissue)
-        args = [contact.records, contact.links, contact.law, contact.friction, self.dt, x, x_prev, body_q, body_q_prev]
-        shape = (contact.link_count, self.num_envs)
-        wp.launch(wall_kernels.measure_contacts, shape, [*args, self.pressing], device=self.device)
-
-    def _residual(self, x: wp.array, inertial: wp.array, contact: ContactSearch, force: wp.array) -> None:
-        args = [self.nodes, self.elements.data, self.tissue, self.dt, inertial, contact.records, self.pressing]
-        args += [x, force]
+        links = (contacts.links.radius.shape[0], self.num_envs)
+        wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.pressing], device=self.device)
+        args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.pressing, x, force]
         wp.launch(self.elements.kernels.residual, x.shape, args, device=self.device)
 
-    def _correct_rings(self, x: wp.array, contact: ContactSearch) -> None:
+    def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
         args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
-        args += [contact.records, self.pressing, self.chain.diagonal, self.chain.upper, self.chain.rhs]
+        args += [contacts.records, self.pressing, self.chain.diagonal, self.chain.upper, self.chain.rhs]
         wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
         self.chain.solve()
         wp.launch(
