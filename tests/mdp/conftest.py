@@ -50,6 +50,9 @@ class FakeEndoscope:
     def set_bending_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
         self.commands["bending"] = (pitch.clone(), yaw.clone())
 
+    def turn_tip_target(self, angle: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["turn"] = (angle.clone(), env_ids)
+
     def write_friction_to_sim(self, mu: torch.Tensor, env_ids: torch.Tensor) -> None:
         self.commands["friction"] = (mu.clone(), env_ids)
 

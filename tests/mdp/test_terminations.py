@@ -22,6 +22,11 @@ def test_time_out_at_the_last_step(env) -> None:
     assert mdp.time_out(env).tolist() == [False, True]
 
 
+def test_withdrawn_at_the_anal_verge(env) -> None:
+    env.scope.tip_arc_length = torch.tensor([-0.001, 0.001])
+    assert mdp.withdrawn(env).tolist() == [True, False]
+
+
 def test_segment_passed_at_its_end(env) -> None:
     env.scope.tip_arc_length[:] = torch.tensor([0.4999, 0.5])
     assert mdp.segment_passed(env).tolist() == [False, True]
@@ -66,7 +71,7 @@ def test_lumen_lost_after_steps_in_a_row(env) -> None:
     assert not term(env, threshold=-0.4, steps=2).any()
 
 
-@pytest.mark.parametrize("name", ["time_out", "segment_passed", "excess_force"])
+@pytest.mark.parametrize("name", ["time_out", "segment_passed", "withdrawn", "excess_force"])
 def test_terms_are_boolean(env, name: str) -> None:
     value = getattr(mdp, name)(env)
     assert value.dtype == torch.bool and value.shape == (2,)

@@ -126,6 +126,7 @@ class Endoscope:
         self._insertion = wp.to_torch(actuation.insertion_velocity)
         self._roll = wp.to_torch(actuation.roll_rate)
         self._bending = wp.to_torch(actuation.bending_command)
+        self._turn = wp.to_torch(actuation.turn)
         self._friction = sim.friction
 
     def set_tip_velocity_command(self, lin_vel: torch.Tensor, ang_vel: torch.Tensor) -> None:
@@ -173,6 +174,21 @@ class Endoscope:
         self._require_base("set_bending_command")
         self._bending[:, 0] = pitch
         self._bending[:, 1] = yaw
+
+    def turn_tip_target(self, angle: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+        """Turn what the tip is driven to, beyond where it is driven now.
+
+        Args:
+            angle: Rotation vector [rad], shape (n, 3): world axes for a tip that is pulled; for a bending section its
+                pitch and yaw, and the third is left out.
+            env_ids: Worlds, shape (n,); all by default.
+        """
+        ids = slice(None) if env_ids is None else env_ids
+        if self.kind == "proximal":
+            self.data.bending[ids] += angle[:, :2]
+            self._bending[ids] = self.data.bending[ids]
+        else:
+            self._turn[ids] += angle
 
     def _require_base(self, method: str) -> None:
         if self.kind != "proximal":

@@ -101,7 +101,15 @@ from arcgym.envs.mdp.rewards import (
     tip_force_l2,
 )
 from arcgym.envs.mdp.segments import segment_progress, segment_span
-from arcgym.envs.mdp.terminations import excess_force, lumen_lost, perforation, segment_passed, stuck, time_out
+from arcgym.envs.mdp.terminations import (
+    excess_force,
+    lumen_lost,
+    perforation,
+    segment_passed,
+    stuck,
+    time_out,
+    withdrawn,
+)
 
 __all__ = [
     "FORCE_TIERS",
@@ -202,4 +210,5 @@ __all__ = [
     "wall_strain",
     "wall_strain_above",
     "widen_reset",
+    "withdrawn",
 ]

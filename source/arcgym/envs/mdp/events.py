@@ -16,7 +16,6 @@ from arcgym.envs.mdp.segments import segment_span
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
 from arcgym.sim.snapshot import SnapshotSet, snapshot_path
-from arcgym.utils.math import quat_mul
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -59,34 +58,14 @@ class reset_to_segment_start(ManagerTermBase):
         return snapshots.index(segment)
 
 
-class perturb_tip(ManagerTermBase):
-    """Turn the tip by normally distributed pitch and yaw, two deviations at most; follows a reset in the same mode.
+def perturb_tip(env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1) -> None:
+    """Turn what the tip is driven to by normally distributed angles about each axis [rad], two deviations at most.
 
-    A scope with a shaft bends in its last hinges, odd ones about X and even ones about Y; a free capsule turns whole.
-    Over more hinges the tip swings farther, and may start behind the wall.
+    Follows a reset in the same mode. The tip turns within the first tenths of a second, as far as the wall lets it;
+    turned at once, it might start behind the wall.
     """
-
-    def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
-        """Share pitch and yaw among the last hinges: ``hinge_share``, shape (2, K)."""
-        super().__init__(cfg, env)
-        names = env.scene["endoscope"].joint_names
-        hinges = [i for i, name in enumerate(names) if name.startswith("hinge")][-cfg.params.get("hinges", 4) :]
-        number = torch.tensor([int(names[i].rpartition("_")[2]) for i in hinges], dtype=torch.long)
-        axis = torch.stack((number % 2 == 1, number % 2 == 0)).float()
-        self._share = (axis / axis.sum(1, keepdim=True).clamp(min=1.0)).to(env.device)
-        self._columns = torch.tensor(hinges, dtype=torch.long, device=env.device)
-
-    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1, hinges: int = 4) -> None:
-        """Turn by ``std`` [rad] over the last ``hinges``, whose number is read once at construction."""
-        endoscope = env.scene["endoscope"]
-        angle = std * torch.randn(len(env_ids), 2, device=env.device).clamp(-2.0, 2.0)
-        joint_pos = endoscope.data.joint_pos
-        if len(self._columns) == 0:
-            joint_pos[env_ids, 3:7] = _turned(joint_pos[env_ids, 3:7], angle)
-            return
-        joint_pos[env_ids[:, None], self._columns] += angle @ self._share
-        if endoscope.stage.bending_links > 0:
-            endoscope.data.bending[env_ids] += angle
+    angle = std * torch.randn(len(env_ids), 3, device=env.device).clamp(-2.0, 2.0)
+    env.scene["endoscope"].turn_tip_target(angle, env_ids)
 
 
 def randomize_light(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[float, float] = (0.7, 1.4)) -> None:
@@ -156,9 +135,3 @@ def _log_uniform(env: ManagerBasedEnv, bounds: tuple[float, float], *shape: int)
     """Random numbers whose logarithm is uniform between the logarithms of ``bounds``, which must be positive."""
     low, high = (math.log(bound) for bound in bounds)
     return torch.exp(low + (high - low) * torch.rand(shape, device=env.device))
-
-
-def _turned(quat: torch.Tensor, angle: torch.Tensor) -> torch.Tensor:
-    """Orientations (n, 4) turned by small angles (n, 2) [rad] about their own X and Y."""
-    turn = torch.cat((0.5 * angle, torch.zeros_like(angle[:, :1]), torch.ones_like(angle[:, :1])), dim=1)
-    return quat_mul(quat, turn / turn.norm(dim=1, keepdim=True))

@@ -30,6 +30,11 @@ def segment_passed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.
     return segment_progress(env, segment) >= 1.0
 
 
+def withdrawn(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
+    """The tip has come back to ``arc_length`` [m] from the anal verge: the scope is out."""
+    return env.scene["endoscope"].data.tip_arc_length < arc_length
+
+
 def perforation(env: ManagerBasedRLEnv, limit: float | str = "perforation") -> torch.Tensor:
     """The tip presses on the wall with a force that may perforate it (``limit``: [N] or a tier).
 
