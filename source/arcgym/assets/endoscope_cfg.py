@@ -36,9 +36,7 @@ class IntroducerCfg:
     damping: float = 0.3
     """[N s/m]."""
     height: float = 0.005
-    """Height above the anal verge up to which links are guided [m]."""
-    radius: float = 0.03
-    """Distance from the axis within which links are guided [m]."""
+    """Height above the anal verge up to which links are guided [m], by how far the base has been pushed."""
 
 
 @configclass

@@ -53,7 +53,8 @@ class Actuation:
         self._pull_force = wp.zeros(num_envs, dtype=wp.vec4, device=device)
         self._slide_force = wp.zeros((1, num_envs), dtype=float, device=device)
         self._still = wp.zeros((1, num_envs), dtype=wp.vec3, device=device)
-        self._guide, self._gravity = self._introducer(), wp.vec3(*cfg.gravity) / cfg.mass_scaling
+        self._guide = self._introducer(endoscope.rest_height)
+        self._gravity = wp.vec3(*cfg.gravity) / cfg.mass_scaling
         self._share, self._bend_limit = self._bending_section()
         bends = self.stage.bend_coords[self.link_count - 1 - self.stage.bending_links :]
         self._bend_coords = wp.array(bends, dtype=int, device=device)
@@ -75,9 +76,10 @@ class Actuation:
             drive.torque_limit = _override(self.scope.roll_torque_limit, roll.max_force)
         return drive
 
-    def _introducer(self) -> kernels.Introducer:
+    def _introducer(self, rest_height: np.ndarray) -> kernels.Introducer:
         guide = kernels.Introducer()
-        for name in ("stiffness", "damping", "height", "radius"):
+        guide.rest = wp.array(rest_height, dtype=float, device=self.device)
+        for name in ("stiffness", "damping", "height"):
             setattr(guide, name, getattr(self.scope.introducer, name))
         if self.stage.root == "free":
             guide.height = -math.inf
@@ -102,7 +104,7 @@ class Actuation:
             control: Newton control, changed in place.
             dt: Substep [s].
         """
-        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide, dt]
+        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide, state.joint_q, self.coords, dt]
         shape = (self.link_count, self.num_envs)
         wp.launch(kernels.load_links, shape, [*args, state.body_f, self.resistance], device=self.device)
         if self.pushed:
