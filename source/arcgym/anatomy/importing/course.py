@@ -13,6 +13,7 @@ from arcgym.anatomy.segments import SEGMENTS
 
 from .grid import Grid
 from .polar import cast_rings
+from .pouch import to_fitted_pole
 
 SPACING = 0.003
 """Distance of the points that are smoothed and moved [m]."""
@@ -53,12 +54,13 @@ def plain_curve(points: np.ndarray) -> Curve:
     return Curve(points, np.linspace(0.0, 1.0, len(SEGMENTS) + 1)[1:])
 
 
-def centred(grid: Grid, path: np.ndarray, rounds: int = 6) -> np.ndarray:
+def centred(grid: Grid, path: np.ndarray, find_pole: bool = True, rounds: int = 6) -> np.ndarray:
     """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
 
     Args:
         grid: The lumen.
         path: Way from the anus to the caecum [m], its ends a radius away from the wall, shape (n, 3).
+        find_pole: Whether the caecal pole is not known and has to be found.
         rounds: How often it is moved.
 
     Returns:
@@ -68,6 +70,7 @@ def centred(grid: Grid, path: np.ndarray, rounds: int = 6) -> np.ndarray:
     for _ in range(rounds):
         points = _centred_once(grid, points)
     points = _to_the_wall(grid, _to_the_wall(grid, points, rounds=0)[::-1], rounds=16)[::-1]
+    points = to_fitted_pole(grid, points) if find_pole else points
     return resample(smooth(resample(points, SPACING), 1.5), SPACING)
 
 

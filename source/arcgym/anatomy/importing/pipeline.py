@@ -169,7 +169,7 @@ def _turned(grid: Grid, course: np.ndarray, rotation: np.ndarray) -> tuple[Grid,
 
 
 def _measure(grid: Grid, course: np.ndarray, settings: ImportSettings) -> Measured:
-    points = centred(grid, course)
+    points = centred(grid, course, find_pole=settings.cecum is None)
     half_width = settings.min_lumen_radius + settings.wall_thickness + 0.5 * settings.clearance
     curve = plain_curve(relaxed(points, np.full(len(points), half_width)))
     s = np.linspace(0.0, curve.length, round(curve.length / _MEASURE_SPACING) + 1)
