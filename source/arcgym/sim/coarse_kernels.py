@@ -3,8 +3,8 @@
 """Coarse correction of the wall: every ring moves in a few modes, x_i += R_r sum_k b_ik c_k, with R_r its rotation.
 
 The modes turn with their ring, so the elastic matrix is the rest matrix for every pose; inertia and isotropic anchors
-do not turn at all. Anchors with slack are taken at the shift of the ring's centre. Only the contacts at hand are added
-in each step. Launch dimensions: R rings, V wall vertices, W worlds last.
+do not turn at all. Anchors with slack are taken at the shift of the ring's centre. Only the contacts at hand, with
+the scope and with other loops, are added in each step. Launch dimensions: R rings, V wall vertices, W worlds last.
 """
 
 import warp as wp
@@ -13,6 +13,7 @@ from arcgym.sim.anchor_kernels import secant_share
 from arcgym.sim.chain_kernels import MODES, Unknowns
 from arcgym.sim.contact_kernels import ContactRecords
 from arcgym.sim.geometry_kernels import shortened
+from arcgym.sim.loop_contact_kernels import LoopPress
 from arcgym.sim.wall_kernels import Pressing, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -102,6 +103,23 @@ def anchor_entry(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: in
     return entry
 
 
+@wp.func
+def loop_row(space: RingSpace, loops: LoopPress, back: wp.mat33, r: int, a: int, w: int) -> Unknowns:
+    """Stiffness of the contact of ring ``r`` with other loops between its mode ``a`` and all of its modes [N/m]."""
+    out = Unknowns()
+    for k in range(space.members.shape[1]):
+        v = space.members[r, k]
+        if v >= 0:
+            stiffness = loops.stiffness[v, w]
+            if stiffness > 0.0:
+                plane = loops.plane[v, w]
+                n = back * wp.vec3(plane[0], plane[1], plane[2])
+                pull = stiffness * wp.dot(space.basis[v, a], n)
+                for c in range(MODES):
+                    out[c] = out[c] + pull * wp.dot(space.basis[v, c], n)
+    return out
+
+
 @wp.kernel
 def assemble(
     force: wp.array2d(dtype=wp.vec3),
@@ -113,6 +131,7 @@ def assemble(
     regularisation: float,
     records: ContactRecords,
     pressing: Pressing,
+    loops: LoopPress,
     diagonal: wp.array4d(dtype=float),
     upper: wp.array4d(dtype=float),
     rhs: wp.array3d(dtype=float),
@@ -130,6 +149,8 @@ def assemble(
             own_row[c] = own_row[c] + moduli[part] * space.stiffness[part, r, a, c]
             next_row[c] = next_row[c] + moduli[part] * space.coupling[part, r, a, c]
     own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
+    if loops.touched[r, w] == 1:
+        own_row += loop_row(space, loops, back, r, a, w)
     total = float(0.0)
     for k in range(space.members.shape[1]):
         v = space.members[r, k]

@@ -23,6 +23,7 @@ from arcgym.sim.wall_kernels import (
     WallContacts,
     WallNodes,
     add_contact,
+    add_loops,
     contact_force,
     inertia_and_anchor,
     quiet,
@@ -263,6 +264,7 @@ def sweep_colour(
     block = add_stretching(block, shell, x, i, w, moduli)
     block = add_bending(block, shell, x, i, w, moduli[2])
     block = add_contact(block, contacts, x, i, w)
+    block = add_loops(block, contacts.loops, x[i, w], i, w)
     x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
 
 
@@ -290,4 +292,5 @@ def residual(
             turn = corner_turn(fold_of(shell, h, w), shell.foot[h], entry - 4 * h)
             block.force -= (tissue.moduli[w][2] * shell.weight[h] * shell.bend[h, w]) * turn
         block.force += contact_force(contacts.records, pressing, i, w)
+        block = add_loops(block, contacts.loops, x[i, w], i, w)
     force[i, w] = block.force

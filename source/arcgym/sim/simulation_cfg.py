@@ -55,6 +55,11 @@ class WallSolverCfg:
     """Largest displacement that one coarse correction, and one step of a vertex in a sweep, may make [m]. Both
     overshoot where a soft wall is crumpled: with 10 mm the ``in_situ`` wall blew up. 0.5 mm a step of 1/480 s is still
     240 mm/s, on top of the wall's velocity."""
+    self_contact: bool = True
+    """Whether loops of the colon push each other away where they touch. Nothing changes where they do not. Switch it
+    off to compare; ``solver="newton"`` does without."""
+    self_contact_stiffness: float = 2000.0
+    """Penalty stiffness between two rings that touch [N/m]: at 1 N they overlap by 0.5 mm."""
 
 
 @configclass

@@ -16,6 +16,7 @@ from arcgym.sim.wall_kernels import (
     WallContacts,
     WallNodes,
     add_contact,
+    add_loops,
     contact_force,
     inertia_and_anchor,
     quiet,
@@ -96,6 +97,7 @@ def sweep_colour(
     block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
     block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
     block = add_contact(block, contacts, x, i, w)
+    block = add_loops(block, contacts.loops, x[i, w], i, w)
     x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
 
 
@@ -117,4 +119,5 @@ def residual(
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
         block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
         block.force += contact_force(contacts.records, pressing, i, w)
+        block = add_loops(block, contacts.loops, x[i, w], i, w)
     force[i, w] = block.force

@@ -11,6 +11,7 @@ import warp as wp
 from arcgym.sim.anchor_kernels import Anchors, anchor_hessian, anchor_pull
 from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, contact_push, slip_scale, touch
 from arcgym.sim.geometry_kernels import corner_point
+from arcgym.sim.loop_contact_kernels import LoopPress
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -72,6 +73,7 @@ class WallContacts:
     records: ContactRecords
     links: LinkShapes
     law: ContactLaw
+    loops: LoopPress
     friction: wp.array(dtype=float)  # Coulomb coefficient, shape (W,)
     dt: float  # physics step [s]
     x_prev: wp.array2d(dtype=wp.vec3)  # wall positions at the start of the step [m], shape (V, W)
@@ -174,6 +176,19 @@ def contact_force(records: ContactRecords, pressing: Pressing, i: int, w: int) -
         slot = entry // 3
         out += records.bary[slot][entry - 3 * slot] * pressing.force[slot]
         entry = records.vertex_next[entry]
+    return out
+
+
+@wp.func
+def add_loops(block: VertexBlock, loops: LoopPress, x: wp.vec3, i: int, w: int) -> VertexBlock:
+    """Add the push of other loops of the colon on vertex ``i`` of world ``w`` at ``x``."""
+    out = block
+    k = loops.stiffness[i, w]
+    if k > 0.0:
+        plane = loops.plane[i, w]
+        n = wp.vec3(plane[0], plane[1], plane[2])
+        out.force += (plane[3] - k * wp.dot(n, x)) * n
+        out.hessian += k * wp.outer(n, n)
     return out
 
 

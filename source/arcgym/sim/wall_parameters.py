@@ -54,6 +54,8 @@ class WallParameters:
     """Spring of each vertex to its rest position."""
     ring: np.ndarray
     """Ring of each vertex, shape (V,)."""
+    thickness: float
+    """Distance between the outermost vertices of two stretches that touch [m]: a shell's thickness, 0 for a solid."""
     colours: list[np.ndarray]
     """Vertices that share no element, colour by colour."""
 

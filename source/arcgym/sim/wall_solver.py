@@ -12,6 +12,7 @@ import warp as wp
 from arcgym.sim import coarse_kernels, wall_kernels
 from arcgym.sim.chain_solver import ChainSolver
 from arcgym.sim.contact import ContactSearch
+from arcgym.sim.loop_contact import LoopContact
 from arcgym.sim.ring_modes import MODES, RingModes
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall_elements import wall_elements
@@ -90,6 +91,7 @@ class WallSolver:
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
         self.pressing = self._pressing(contact_slots)
         self.chain = ChainSolver(num_envs, self.ring_count, device)
+        self.loops = LoopContact(cfg, wall.points, wall.ring, modes.members, wall.thickness, num_envs, device)
 
     def _pressing(self, slots: int) -> wall_kernels.Pressing:
         pressing = wall_kernels.Pressing()
@@ -166,6 +168,7 @@ class WallSolver:
     def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
         """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
         self.elements.measure(x, self.tissue)
+        contacts.loops = self.loops.measure(contacts.x_prev)
         links = (contacts.links.radius.shape[0], self.num_envs)
         wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.pressing], device=self.device)
         args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.pressing, x, force]
@@ -175,7 +178,7 @@ class WallSolver:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
         args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
-        args += [contacts.records, self.pressing, self.chain.diagonal, self.chain.upper, self.chain.rhs]
+        args += [contacts.records, self.pressing, contacts.loops, self.chain.diagonal, self.chain.upper, self.chain.rhs]
         wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
         self.chain.solve()
         wp.launch(

@@ -1,0 +1,146 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact of the wall with itself: a hairpin of 12 mm radius, its limbs 40 mm from axis to axis, drawn together."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+import warp as wp
+from tiny import tiny_colon_stage
+from tiny_sim import TinySim
+
+from arcgym.anatomy import write_colon
+from arcgym.sim import Simulation, WallSolverCfg
+from arcgym.sim.loop_contact import LoopContact
+
+LIMB, WIDTH, RADIUS = 0.09, 0.04, 0.012
+"""Length of each limb, their distance and the radius of the lumen [m]."""
+COLON = {
+    "youngs_modulus": 1.0e5,
+    "anchor_stiffness": dict.fromkeys(("rectum", "sigmoid", "descending", "splenic", "transverse"), 4.0e3),
+}
+"""Soft, and held with 4000 N/m^2: by 50 N/m for each ring of 12 mm."""
+LOWER, UPPER = (4, 5, 6), (14, 15, 16)
+"""Rings of the two limbs, of 21; rings 7 to 13 make the turn."""
+
+
+class HairpinSim(TinySim):
+    """Simulations in a tube that runs up along Z, turns towards +Y and comes down again."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        stage = tiny_colon_stage(
+            length=2.0 * LIMB + 0.5 * math.pi * WIDTH, radius=RADIUS, rings=21, texture_folder=folder
+        )
+        wall = replace(stage.wall, points=hairpin(stage.wall.points))
+        self.colon_path = write_colon(replace(stage, wall=wall), folder / "colon.usda")
+
+
+def hairpin(points: np.ndarray) -> np.ndarray:
+    """Bend points beside the Z axis, shape (V, 3)."""
+    x, y, s = points.T
+    turn = np.clip((s - LIMB) / (0.5 * WIDTH), 0.0, math.pi)
+    ahead = np.minimum(s - LIMB, 0.0) + np.maximum(s - LIMB - 0.5 * math.pi * WIDTH, 0.0)
+    across = 0.5 * WIDTH * (1.0 - np.cos(turn)) + y * np.cos(turn)
+    along = LIMB + 0.5 * WIDTH * np.sin(turn) - y * np.sin(turn) + ahead * np.cos(turn)
+    return np.stack([x, across, along], axis=1).astype(np.float32)
+
+
+@pytest.fixture(scope="module")
+def sim_in(tmp_path_factory: pytest.TempPathFactory) -> HairpinSim:
+    return HairpinSim(tmp_path_factory.mktemp("hairpin"))
+
+
+def of_rings(sim: Simulation, rings: tuple[int, ...]) -> torch.Tensor:
+    return torch.from_numpy(np.isin(sim.colon.wall.ring, rings))
+
+
+def step_wall(sim: Simulation, steps: int) -> None:
+    """Advance the wall without a scope in it."""
+    for _ in range(steps):
+        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, sim.state.body_q, sim.state.body_q)
+
+
+def draw_together(sim: Simulation, way: float) -> None:
+    """Move the places that the limbs' anchors pull to by ``way`` [m] towards each other."""
+    rest = wp.to_torch(sim.wall.nodes.anchors.rest)
+    rest[of_rings(sim, LOWER), 1] += way
+    rest[of_rings(sim, UPPER), 1] -= way
+
+
+def distance_of_limbs(sim: Simulation) -> float:
+    y = sim.colon.data.nodal_pos_w[0, :, 1]
+    return float(y[of_rings(sim, UPPER)].min() - y[of_rings(sim, LOWER)].max())
+
+
+def push(sim: Simulation) -> np.ndarray:
+    """Self-contact on each vertex where it is now [N], shape (V, 3)."""
+    press = sim.wall.loops.measure(sim.nodal_pos)
+    plane, stiffness = press.plane.numpy()[:, 0], press.stiffness.numpy()[:, 0]
+    along = plane[:, 3] - stiffness * (plane[:, :3] * sim.nodal_pos.numpy()[:, 0]).sum(axis=1)
+    return np.where(stiffness > 0.0, along, 0.0)[:, None] * plane[:, :3]
+
+
+@pytest.mark.parametrize("self_contact", [True, False])
+def test_limbs_drawn_together_stop_where_they_touch(sim_in: HairpinSim, self_contact: bool) -> None:
+    sim = sim_in("capsule", colon=COLON, wall=WallSolverCfg(self_contact=self_contact))
+    assert distance_of_limbs(sim) == pytest.approx(0.014, abs=1.0e-5)  # 40 mm less twice 12 mm of lumen and 1 of wall
+    draw_together(sim, 0.025)
+    step_wall(sim, 480)
+    overlap = 0.002 - distance_of_limbs(sim)  # walls of 2 mm touch where their mid-surfaces are 2 mm apart
+    assert overlap < 0.002 if self_contact else overlap > 0.006
+    assert torch.isfinite(sim.colon.data.nodal_pos_w).all()
+    assert sim.colon.data.nodal_vel_w.abs().max() < 0.01
+
+
+def test_action_is_reaction(sim_in: HairpinSim) -> None:
+    sim = sim_in("capsule", colon=COLON)
+    draw_together(sim, 0.025)
+    step_wall(sim, 480)
+    force = push(sim)
+    lower, upper = (force[of_rings(sim, rings).numpy(), 1].sum() for rings in (range(10), range(11, 21)))
+    assert lower < -0.2 < 0.2 < upper
+    assert np.abs(force.sum(axis=0)).max() < 1.0e-4 * upper
+
+
+def two_tubes(distance: float) -> tuple[np.ndarray, np.ndarray]:
+    """A tube of 20 mm radius up and another down beside it, 8 rings of 12 vertices each: points and their rings."""
+    angle = np.arange(12) * np.pi / 6.0
+    ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
+    centres = [[side * distance, 0.0, z] for side, way in ((0, 1), (1, -1)) for z in 0.0125 * np.arange(8)[::way]]
+    return (np.array(centres)[:, None] + ring).reshape(-1, 3), np.repeat(np.arange(16), 12)
+
+
+def test_rings_that_overlap_at_rest_push_only_when_closer() -> None:
+    points, ring = two_tubes(0.036)
+    loops = LoopContact(WallSolverCfg(), points, ring, np.arange(192).reshape(16, 12), 0.002, 1, "cpu")
+    # 20 mm to each side, 36 mm apart, walls of 2 mm; the mean over the facing vertices of a ring is 5 % less than 20.
+    assert loops.shape.allowed.numpy()[0, 15] == pytest.approx(-0.004, abs=0.0001)
+    for distance, pushes in ((0.036, False), (0.035, True)):
+        press = loops.measure(wp.array(two_tubes(distance)[0][:, None], dtype=wp.vec3, device="cpu"))
+        assert press.stiffness.numpy().any() == pushes
+
+
+def test_nothing_changes_where_nothing_touches(sim_in: HairpinSim) -> None:
+    ends = []
+    for self_contact in (True, False):
+        sim = sim_in("capsule", colon=COLON, wall=WallSolverCfg(self_contact=self_contact))
+        draw_together(sim, 0.005)
+        step_wall(sim, 50)
+        ends.append(sim.nodal_pos.numpy())
+    assert np.array_equal(*ends)
+
+
+def test_worlds_do_not_touch_each_other(sim_in: HairpinSim) -> None:
+    sim = sim_in("capsule", colon=COLON, num_envs=2)
+    mobile = of_rings(sim, UPPER)
+    sim.colon.data.nodal_pos_w[1, mobile, 1] -= 0.05
+    press = sim.wall.loops.measure(sim.nodal_pos)
+    touched = press.touched.numpy()
+    assert touched[:, 1].any() and not touched[:, 0].any()
