@@ -12,17 +12,24 @@ from .errors import ColonImportError
 RECTUM = 0.150
 """Length of the rectum [m]: clinically the last 15 cm above the anal verge (D'Souza et al., Ann Surg 2019)."""
 
-CECUM = 0.064
+CECUM = 0.062
 """Length of the caecum below the ileocaecal valve [m], about 6 cm (Gray's Anatomy)."""
 
-ILIAC_CREST = 0.432
-"""Height of the iliac crest, where the descending colon becomes the sigmoid, between anal verge and left flexure."""
+ILIAC_CREST = (0.177, 0.2, 0.415)
+"""Height of the iliac crest above the anal verge, where the descending colon becomes the sigmoid [m]; by how much it is
+higher where the left flexure is; and at which height of that [m]."""
 
 SPLENIC_FLEXURE = (0.036, 0.115)
 """How far below its top the left flexure begins and ends, as a share of the top's height above the anal verge."""
 
 HEPATIC_FLEXURE = (0.018, 0.295)
 """The right flexure begins this far before its top [m] and ends at this share of the way down to the caecal pole."""
+
+SPLENIC_LENGTH, HEPATIC_LENGTH = 0.115, 0.108
+"""Typical lengths of the flexures [m]."""
+
+DESCENDING_LENGTH, ASCENDING_LENGTH = 0.215, 0.145
+"""Typical lengths of descending and ascending colon between the flexures and the iliac fossae [m]."""
 
 BORDERS = (
     "rectosigmoid",
@@ -41,6 +48,7 @@ _SLOPE_LENGTH = 0.008
 _LEVEL_SLOPE = 0.35
 _NEAR_CREST = 0.07
 _NEAR_TOP = 0.06
+_NO_TYPICAL_LENGTH = 0.06
 _TYPICAL_SHARES = (0.088, 0.402, 0.532, 0.599, 0.818, 0.882, 0.963)
 
 
@@ -59,7 +67,7 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
     unknown = set(given) - set(BORDERS)
     if unknown:
         raise ColonImportError(f"Unknown landmarks {sorted(unknown)}", f"Pass --landmark with {', '.join(BORDERS)}.")
-    found = {**_from_course(points, arc), **given}
+    found = {**_with_lengths(_from_course(points, arc)), **given}
     borders = np.array([found[name] for name in BORDERS])
     guessed: list[str] = []
     if (np.diff(np.r_[0.0, borders, arc[-1]]) < _SHORTEST_SEGMENT).any():
@@ -73,7 +81,7 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
 def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
     """Finds the borders by the tops of both flexures and by heights.
 
-    The shares are means of generated colons (:mod:`arcgym.anatomy.routes`), which spread by 15 mm along the course.
+    The heights are means of generated colons (:mod:`arcgym.anatomy.routes`), which spread by 15 mm along the course.
     """
     length, share, height = arc[-1], arc / arc[-1], points[:, 2]
     splenic = _top(points * [-1, 1, 1], arc, (share > 0.30) & (share < 0.75), lateral=0.0)
@@ -95,6 +103,23 @@ def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
     }
 
 
+def _with_lengths(found: dict[str, float]) -> dict[str, float]:
+    """Moves borders towards where the next one, found better, and the typical length between them would put them."""
+    typical = (
+        ("splenic_flexure_exit", "splenic_flexure_entry", SPLENIC_LENGTH, 0.5),
+        ("splenic_flexure_entry", "splenic_flexure_exit", -SPLENIC_LENGTH, 0.4),
+        ("hepatic_flexure_exit", "cecum_entry", -ASCENDING_LENGTH, 0.3),
+        ("hepatic_flexure_entry", "hepatic_flexure_exit", -HEPATIC_LENGTH, 0.7),
+        ("sigmoid_descending", "splenic_flexure_entry", -DESCENDING_LENGTH, 0.2),
+    )
+    moved = dict(found)
+    for name, other, length, share in typical:
+        way = found[other] + length - found[name]
+        if abs(way) < _NO_TYPICAL_LENGTH:
+            moved[name] = found[name] + share * way
+    return moved
+
+
 def _below(arc: np.ndarray, height: np.ndarray, top: float, level: float, most: float, way: int) -> float:
     """Returns where the course, followed from a top backwards or forwards, is first below a level, or lowest."""
     near = np.flatnonzero((way * (arc - top) > 0) & (way * (arc - top) < most))[::way]
@@ -106,7 +131,8 @@ def _below(arc: np.ndarray, height: np.ndarray, top: float, level: float, most: 
 
 def _groove_end(arc: np.ndarray, height: np.ndarray, top: float, tall: float) -> float:
     """Follows the descending colon down to the iliac crest, or to where it turns up again just above it."""
-    level = height[0] + ILIAC_CREST * tall
+    base, slope_of_height, typical_height = ILIAC_CREST
+    level = height[0] + min(base + slope_of_height * (tall - typical_height), 0.6 * tall)
     step = float(arc[1] - arc[0])
     slope = gaussian_filter1d(np.gradient(height, step), _SLOPE_LENGTH / step, mode="nearest")
     turned = (slope < _LEVEL_SLOPE) & (height < level + _NEAR_CREST * tall)
