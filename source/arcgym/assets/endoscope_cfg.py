@@ -29,14 +29,14 @@ class TipPullCfg:
 
 @configclass
 class IntroducerCfg:
-    """Guide outside the anus that keeps the shaft from buckling."""
+    """Guide outside the anus that keeps the shaft from buckling there, as the examiner's hand does."""
 
     stiffness: float = 300.0
     """Sideways spring on every link outside [N/m]. Without it 0.5 m of shaft buckle at about 1 N."""
     damping: float = 0.3
     """[N s/m]."""
     height: float = 0.005
-    """Height above the anal verge up to which links are guided [m], by how far the base has been pushed."""
+    """Height above the anal verge up to which links are guided [m]."""
 
 
 @configclass

@@ -53,7 +53,7 @@ class Actuation:
         self._pull_force = wp.zeros(num_envs, dtype=wp.vec4, device=device)
         self._slide_force = wp.zeros((1, num_envs), dtype=float, device=device)
         self._still = wp.zeros((1, num_envs), dtype=wp.vec3, device=device)
-        self._guide = self._introducer(endoscope.rest_height)
+        self._guide = self._introducer()
         self._gravity = wp.vec3(*cfg.gravity) / cfg.mass_scaling
         self._share, self._bend_limit = self._bending_section()
         bends = self.stage.bend_coords[self.link_count - 1 - self.stage.bending_links :]
@@ -76,9 +76,8 @@ class Actuation:
             drive.torque_limit = _override(self.scope.roll_torque_limit, roll.max_force)
         return drive
 
-    def _introducer(self, rest_height: np.ndarray) -> kernels.Introducer:
+    def _introducer(self) -> kernels.Introducer:
         guide = kernels.Introducer()
-        guide.rest = wp.array(rest_height, dtype=float, device=self.device)
         for name in ("stiffness", "damping", "height"):
             setattr(guide, name, getattr(self.scope.introducer, name))
         if self.stage.root == "free":
@@ -96,15 +95,16 @@ class Actuation:
         share = wp.vec2(1.0 / max(odd.sum(), 1), 1.0 / max((~odd).sum(), 1))
         return share, wp.vec2(float(limit[odd].sum()), float(limit[~odd].sum()))
 
-    def apply(self, state: newton.State, control: newton.Control, dt: float) -> None:
+    def apply(self, state: newton.State, control: newton.Control, link_ring: wp.array, dt: float) -> None:
         """Write this substep's ``state.body_f``, :attr:`resistance` and ``control.joint_target_q``.
 
         Args:
             state: State at the start of the substep.
             control: Newton control, changed in place.
+            link_ring: Ring of the colon that each link is in, shape (W, L).
             dt: Substep [s].
         """
-        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide, state.joint_q, self.coords, dt]
+        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide, link_ring, dt]
         shape = (self.link_count, self.num_envs)
         wp.launch(kernels.load_links, shape, [*args, state.body_f, self.resistance], device=self.device)
         if self.pushed:

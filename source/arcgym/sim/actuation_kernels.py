@@ -37,6 +37,10 @@ class TipPull:
     torque_limit: float  # [N m]
 
 
+FIRST_RINGS = wp.constant(1)
+"""Last of the colon's rings that a link near the anus may be in."""
+
+
 @wp.struct
 class Introducer:
     """Springs that keep the shaft straight outside the anus."""
@@ -44,7 +48,6 @@ class Introducer:
     stiffness: float  # [N/m]
     damping: float  # [N s/m]
     height: float  # up to which links are held [m]
-    rest: wp.array(dtype=float)  # height of each link where the slide is at zero and the shaft straight [m], shape (L,)
 
 
 @wp.func
@@ -123,22 +126,21 @@ def load_links(
     body_mass: wp.array(dtype=float),
     gravity: wp.vec3,
     guide: Introducer,
-    joint_q: wp.array(dtype=float),
-    coords: int,
+    ring: wp.array2d(dtype=int),
     dt: float,
     body_f: wp.array(dtype=wp.spatial_vector),
     resistance: wp.array2d(dtype=wp.spatial_vector),
 ):
-    """Weight of every link, and a spring sideways onto the Z axis for those still outside the anus. Launch (L, W).
+    """Weight of every link, and a spring sideways onto the Z axis for those outside the anus. Launch (L, W).
 
-    How far the base has slid tells which links those are: what is guided neither bends nor gets shorter.
+    Those are the low ones near the colon's first rings; ``ring`` has the shape (W, L).
     """
     link, w = wp.tid()
     i = w * resistance.shape[0] + link
     force = body_mass[i] * gravity
     held = wp.vec3(0.0)
-    if guide.rest[link] + joint_q[w * coords] < guide.height:
-        p = wp.transform_get_translation(body_q[i])
+    p = wp.transform_get_translation(body_q[i])
+    if p[2] < guide.height and ring[w, link] <= FIRST_RINGS:
         v = wp.spatial_top(body_qd[i])
         damping = guide.damping + dt * guide.stiffness
         force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)

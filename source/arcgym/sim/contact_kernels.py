@@ -100,7 +100,7 @@ def track_rings(
 ):
     """Ring nearest to each link among ``span`` on either side of the last one, all of them where it is -1; and how far.
 
-    Launch (W, L).
+    A link whose centre is out of the anus, before the first ring, is FAR, for the wall has no outside. Launch (W, L).
     """
     w, link = wp.tid()
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
@@ -119,6 +119,8 @@ def track_rings(
             found = r
     ring[w, link] = found
     away[w, link] = wp.sqrt(best)
+    if found == 0 and wp.dot(p - centres[w, 0], centres[w, 1] - centres[w, 0]) < 0.0:
+        away[w, link] = FAR
 
 
 @wp.kernel

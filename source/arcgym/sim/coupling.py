@@ -83,7 +83,7 @@ class TwoLevelCoupling:
         self.contact.detect(self.x, self.state.body_q)
         for _ in range(count):
             self._load_contacts(dt)
-            self.actuation.apply(self.state, self.control, dt)
+            self.actuation.apply(self.state, self.control, self.contact.ring, dt)
             self.solver.step(self.state, self.state, self.control, None, dt)
             self._record(1.0 / count)
         self.wall.step(self.x, self.v, self.contact, self.state.body_q, self.body_q_prev)

@@ -113,7 +113,7 @@ class NewtonCoupling:
         for _ in range(count):
             self._damp(dt)
             self.now.clear_forces()
-            self.sim.actuation.apply(self.now, self.control, dt)
+            self.sim.actuation.apply(self.now, self.control, self.sim.contact.ring, dt)
             self.sim.actuation.record_explicit(self.now, self.control, 1.0 / count)
             self.solver.step(self.now, self.then, self.control, None, dt)
             self._record(1.0 / count)
