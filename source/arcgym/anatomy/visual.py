@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from .lesions import Lesion, distance_to, shape_lesion
@@ -146,18 +148,38 @@ def _shaped_points(
 
 
 def _texture_coordinates(surface: Surface, s: np.ndarray, theta: np.ndarray, dome: np.ndarray) -> np.ndarray:
-    """Returns u round the lumen and v along it; on the dome, equal distances from the pole in every direction.
-
-    u turns slowly with the arc length, so that no two passes over a band of the texture look the same. A polar chart
-    would squeeze the texture into streaks at the pole.
-    """
+    """Returns u round the lumen and v along it, shape (M, 2)."""
     bounds = {name: surface.curve.bounds(name) for name in SEGMENTS}
-    uv = np.stack([theta / (2 * np.pi) + s / _TWIST, texture_rows(s, bounds, TEXTURE_LENGTH)], 1)
+    uv = tube_texture(s, theta, bounds)
     edge = surface.curve.length - DOME_LENGTH
     rim = float(surface.lumen_radius(np.array(edge)))
     close = np.clip((surface.curve.length - s[dome]) / DOME_LENGTH, 0.0, 1.0)
-    meridian = np.arccos(1.0 - close) * 0.5 * (rim + DOME_LENGTH)
-    u = 0.5 + meridian * np.cos(theta[dome]) / (2 * np.pi * rim)
-    v = _DOME_ROW + meridian * np.sin(theta[dome]) / TEXTURE_LENGTH
-    uv[dome] = np.stack([u, v], 1)
+    uv[dome] = dome_texture(np.arccos(1.0 - close) * 0.5 * (rim + DOME_LENGTH), theta[dome], rim)
     return uv
+
+
+def tube_texture(s: np.ndarray, theta: np.ndarray, bounds: Mapping[str, tuple[float, float]]) -> np.ndarray:
+    """Returns u round the lumen and v along it, in the band that shows the segment's vessels, shape (n, 2).
+
+    u turns slowly with the arc length, so that no two passes over a band of the texture look the same.
+
+    Args:
+        s: Arc lengths [m], shape (n,).
+        theta: Angles round the lumen [rad], shape (n,).
+        bounds: Arc length where each segment starts and ends [m].
+    """
+    return np.stack([theta / (2 * np.pi) + s / _TWIST, texture_rows(s, bounds, TEXTURE_LENGTH)], 1)
+
+
+def dome_texture(meridian: np.ndarray, theta: np.ndarray, rim: float) -> np.ndarray:
+    """Returns u and v on the dome of the caecum, equal distances from the pole in every direction, shape (n, 2).
+
+    A polar chart would squeeze the texture into streaks at the pole.
+
+    Args:
+        meridian: Distance from the pole along the wall [m], shape (n,).
+        theta: Angles round the lumen [rad], shape (n,).
+        rim: Radius of the lumen where the dome begins [m].
+    """
+    u = 0.5 + meridian * np.cos(theta) / (2 * np.pi * rim)
+    return np.stack([u, _DOME_ROW + meridian * np.sin(theta) / TEXTURE_LENGTH], 1)

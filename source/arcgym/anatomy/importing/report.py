@@ -126,18 +126,13 @@ def _draw_radius(axis: Any, stage: ColonStage) -> None:
 
 def _draw_unrolled(axis: Any, stage: ColonStage) -> None:
     """Draws the visual surface cut open along its seam: distance from the centreline, dark on folds."""
-    visual, line = stage.visual, stage.centerline
-    columns = int(np.argmax(visual.uv[:, 0] >= 1.0 - 1e-6)) + 1
-    center = np.stack([np.interp(_row_arcs(visual.uv, columns), line.arc, line.points[:, k]) for k in range(3)], 1)
+    visual, line, wall = stage.visual, stage.centerline, stage.wall
+    arc = (visual.skin_weights * wall.ring_arc[wall.ring[visual.skin_indices]]).sum(1)
+    columns = int(np.argmax(arc > arc[0]))
+    center = np.stack([np.interp(arc[::columns], line.arc, line.points[:, k]) for k in range(3)], 1)
     rows = visual.points.reshape(-1, columns, 3)
     distance = np.linalg.norm(rows - center[:, None], axis=2)
     shown = distance - distance.mean(1, keepdims=True)
     axis.imshow(1e3 * shown.T, aspect="auto", cmap="copper", vmin=-8, vmax=8, extent=(0, _mm(stage.length), 0, 360))
     axis.set_xlabel("arc length [mm]")
     axis.set_ylabel("angle [deg]")
-
-
-def _row_arcs(uv: np.ndarray, columns: int) -> np.ndarray:
-    from arcgym.anatomy.visual import TEXTURE_LENGTH
-
-    return uv[::columns, 1] * TEXTURE_LENGTH

@@ -9,8 +9,9 @@ from scipy.ndimage import map_coordinates
 
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.measures import face_normals
+from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage_types import VisualMesh
-from arcgym.anatomy.visual import TEXTURE_LENGTH, grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.visual import dome_texture, grid_triangles, skin_to_rings, smooth_normals, tube_texture
 
 from .polar import bounded
 from .wall_fitting import FittedWall
@@ -35,33 +36,44 @@ def fit_visual(
     """
     rows = np.linspace(0.0, s[-1], round(s[-1] / spacing) + 1)
     theta = np.linspace(0.0, 2 * np.pi, columns + 1)
+    polar = np.linspace(0.0, 0.5 * np.pi, _DOME_STEPS + 1)
+    along = np.concatenate([rows, s[-1] + (curve.length - s[-1]) * np.sin(polar)])
     tube = _resampled(s, radius, rows, theta[:-1])
-    polar = np.linspace(0.0, 0.5 * np.pi, _DOME_STEPS + 1)[1:]
     cap = _resampled(np.linspace(0.0, 0.5 * np.pi, len(dome)), dome, polar, theta[:-1])
     cap[-1] = cap[-1].mean()
-    reach = curve.length - s[-1]
-    along = np.concatenate([rows, s[-1] + reach * np.sin(polar)])
-    change = _change(fitted, along, theta[:-1])
     fade = np.r_[np.ones(len(rows)), np.cos(polar)][:, None]
-    rho = np.maximum(np.concatenate([tube, cap]) + fade * change, _LEAST_RADIUS)
+    rho = np.maximum(np.concatenate([tube, cap]) + fade * _change(fitted, along, theta[:-1]), _LEAST_RADIUS)
     rho[: len(rows)] = bounded(curve, rows, rho[: len(rows)])
+    rho[len(rows)] = rho[len(rows) - 1]
     rho = np.concatenate([rho, rho[:, :1]], 1)
     points = _positions(curve, rows, polar, theta, rho)
-    faces = grid_triangles(len(along), columns + 1)
+    faces = np.concatenate(
+        [grid_triangles(len(rows), columns + 1), grid_triangles(len(polar), columns + 1) + len(rows) * (columns + 1)]
+    )
     faces = faces[np.linalg.norm(face_normals(points, faces), axis=1) > 1e-12]
-    arcs = np.r_[rows, s[-1] + polar * rho[len(rows) :].mean(1)]
     arc, angle = np.broadcast_arrays(along[:, None], theta)
     indices, weights = skin_to_rings(arc.ravel(), angle.ravel(), fitted.wall.ring_arc, fitted.wall.num_sectors)
-    texture = np.stack([angle.ravel() / (2 * np.pi), np.repeat(arcs / TEXTURE_LENGTH, columns + 1)], 1)
     return VisualMesh(
         points=points,
         faces=faces,
         normals=smooth_normals(points, faces),
-        uv=texture.astype(np.float32),
+        uv=_texture_coordinates(curve, rows, polar, theta, rho).astype(np.float32),
         tint=np.zeros(len(points), np.float32),
         skin_indices=indices,
         skin_weights=weights,
     )
+
+
+def _texture_coordinates(
+    curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndarray, rho: np.ndarray
+) -> np.ndarray:
+    """Returns u and v of tube and dome, each stretch in the band of its vessels, shape (M, 2)."""
+    bounds = {name: curve.bounds(name) for name in SEGMENTS}
+    s, angle = (grid.ravel() for grid in np.meshgrid(rows, theta, indexing="ij"))
+    rim = float(rho[len(rows)].mean())
+    lift, turn = (grid.ravel() for grid in np.meshgrid(polar, theta, indexing="ij"))
+    meridian = (0.5 * np.pi - lift) * 0.5 * (rim + float(rho[-1].mean()))
+    return np.concatenate([tube_texture(s, angle, bounds), dome_texture(meridian, turn, rim)])
 
 
 def _resampled(s: np.ndarray, values: np.ndarray, rows: np.ndarray, theta: np.ndarray) -> np.ndarray:
@@ -78,7 +90,7 @@ def _change(fitted: FittedWall, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
 
 
 def _positions(curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndarray, rho: np.ndarray) -> np.ndarray:
-    """Returns the vertices of tube and dome [m], the seam's the same twice, shape (M, 3), float32."""
+    """Returns the vertices of tube and dome [m], those of seam and rim the same twice, shape (M, 3), float32."""
     theta = np.where(theta > 2 * np.pi - 1e-9, 0.0, theta)
     center = np.r_[rows, np.full(len(polar), rows[-1])]
     lift = np.r_[np.zeros(len(rows)), polar]
