@@ -38,207 +38,208 @@ tears (0.87 MPa at 63 %, Christensen et al. 2015); without it, a quarter."""
 
 
 @wp.struct
+class Blade:
+    """A triangle as one of its vertices sees it: one blade of the fan around that vertex.
+
+    Its *rim* is the hinge at the edge opposite to the vertex, its *spoke* the hinge at the edge to ``first``. A hinge
+    that is not there, at a border, has no stiffness.
+    """
+
+    first: int  # the other two vertices, in the triangle's order
+    second: int
+    triangle: int
+    rest: wp.vec4  # ``ShellElements.rest`` of the triangle, beginning with this vertex
+    rim: int  # hinge
+    rim_vertex: int  # vertex beyond it
+    rim_triangle: int  # triangle beyond it
+    rim_shape: wp.vec4  # length [m], foot of this vertex and of that beyond from first to second, stiffness
+    spoke: int
+    spoke_vertex: int
+    spoke_triangle: int
+    spoke_shape: wp.vec4  # length [m], feet of ``second`` and of the vertex beyond from here to ``first``, stiffness
+
+
+@wp.struct
 class ShellElements:
     """Triangles and hinges of one world's wall, shared by all worlds, and what is measured of them in each."""
 
     triangles: wp.array(dtype=wp.vec3i)  # shape (F,)
-    inv_rest: wp.array(dtype=wp.mat22)  # inverse rest edge matrix in the triangle's plane [1/m], shape (F,)
-    area: wp.array(dtype=float)  # rest area [m^2], shape (F,)
+    rest: wp.array(dtype=wp.vec4)  # cotangent of each corner over 2 A [1/m^2], area A [m^2], at rest, shape (F,)
+    edges: wp.array(dtype=wp.vec3i)  # hinge opposite to each corner or -1, shape (F,)
     hinges: wp.array(dtype=wp.vec4i)  # two opposite vertices, then the edge from start to end, shape (H,)
-    sides: wp.array(dtype=wp.vec2i)  # the triangles of the two opposite vertices, shape (H,)
-    foot: wp.array(dtype=wp.vec2)  # where along the edge the opposite vertices stand at rest, 0 to 1, shape (H,)
-    length: wp.array(dtype=float)  # rest length of the edge [m], shape (H,)
     rest_angle: wp.array(dtype=float)  # dihedral angle at rest [rad], shape (H,)
-    weight: wp.array(dtype=float)  # stiffness over flexural rigidity, shape (H,)
-    triangle_start: wp.array(dtype=int)  # first triangle entry of each vertex, shape (V + 1,)
-    triangle_entry: wp.array(dtype=int)  # 3 * triangle + corner, shape (3*F,)
-    hinge_start: wp.array(dtype=int)  # first hinge entry of each vertex, shape (V + 1,)
-    hinge_entry: wp.array(dtype=int)  # 4 * hinge + corner, shape (4*H,)
+    lever: wp.array(dtype=float)  # stiffness over flexural rigidity and length [1/m], shape (H,)
+    fan_start: wp.array(dtype=int)  # first blade of each vertex, shape (V + 1,)
+    fan: wp.array(dtype=Blade)  # shape (3*F,)
+    fan_corner: wp.array(dtype=int)  # 3 * triangle + corner of each blade, shape (3*F,)
     tilt: wp.array2d(dtype=wp.vec3)  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
-    corner_force: wp.array2d(dtype=wp.vec3)  # membrane force on each corner [N], shape (3*F, W)
+    corner_force: wp.array2d(dtype=wp.vec3)  # force on each corner [N], shape (3*F, W)
     bend: wp.array2d(dtype=float)  # angle of each hinge from rest [rad], shape (H, W)
-    offset: wp.array2d(dtype=float)  # the same less its linear part, shape (H, W)
 
 
 @wp.struct
 class Stretch:
     """Deformation of a triangle and its stress."""
 
-    f1: wp.vec3  # columns of the deformation gradient F
-    f2: wp.vec3
-    inverse: wp.vec3  # of C = F^T F: 11, 22, 12
+    dots: wp.vec3  # product of the two edges at each corner [m^2]
+    inverse: float  # one over the squared length of the edges' cross product [1/m^4]
     excess: float  # I - 2, zero where negative
+    shear: float  # mu (1 + b (I - 2)^2) [N/m]
     spread: float  # lambda ln J - mu [N/m]
 
 
 @wp.func
-def stretch_of(x0: wp.vec3, x1: wp.vec3, x2: wp.vec3, inv_rest: wp.mat22, moduli: wp.vec3) -> Stretch:
-    """Deformation gradient of a triangle, and what its stress needs.
+def stretch_of(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> Stretch:
+    """Stress S = shear Id + spread C^-1 of a triangle with the edges ``d1`` and ``d2`` from its first corner.
 
-    S = mu (1 + b (I - 2)^2) Id + (lambda ln J - mu) C^-1
+    I is the sum of the squared edges, each times the cotangent of the corner opposite over 2 A.
     """
-    d1 = x1 - x0
-    d2 = x2 - x0
+    d11 = wp.dot(d1, d1)
+    d22 = wp.dot(d2, d2)
+    d12 = wp.dot(d1, d2)
+    unit = 4.0 * rest[3] * rest[3]
+    square = wp.max(d11 * d22 - d12 * d12, SMALLEST * unit)
     out = Stretch()
-    out.f1 = d1 * inv_rest[0, 0] + d2 * inv_rest[1, 0]
-    out.f2 = d1 * inv_rest[0, 1] + d2 * inv_rest[1, 1]
-    c11 = wp.dot(out.f1, out.f1)
-    c22 = wp.dot(out.f2, out.f2)
-    c12 = wp.dot(out.f1, out.f2)
-    square = wp.max(c11 * c22 - c12 * c12, SMALLEST)
-    out.inverse = wp.vec3(c22, c11, -c12) / square
-    out.excess = wp.max(c11 + c22 - 2.0, 0.0)
-    out.spread = moduli[1] * 0.5 * wp.log(square) - moduli[0]
+    out.dots = wp.vec3(d12, d11 - d12, d22 - d12)
+    out.inverse = 1.0 / square
+    trace = rest[2] * d11 + rest[1] * d22 + rest[0] * (out.dots[1] + out.dots[2])
+    out.excess = wp.max(trace - 2.0, 0.0)
+    out.shear = moduli[0] * (1.0 + STIFFENING * out.excess * out.excess)
+    out.spread = moduli[1] * 0.5 * wp.log(square / unit) - moduli[0]
     return out
 
 
 @wp.func
-def times_inverse(now: Stretch, m: wp.vec2) -> wp.vec2:
-    """C^-1 m."""
-    return wp.vec2(
-        now.inverse[0] * m[0] + now.inverse[2] * m[1],
-        now.inverse[2] * m[0] + now.inverse[1] * m[1],
-    )
+def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
+    """The membrane pulls its corners together like springs along its edges: force over length of each [N/m]."""
+    s = rest[3] * now.shear
+    k = rest[3] * now.spread * now.inverse
+    return wp.vec3(s * rest[0] + k * now.dots[0], s * rest[1] + k * now.dots[1], s * rest[2] + k * now.dots[2])
 
 
 @wp.func
-def corner_gradient(inv_rest: wp.mat22, corner: int) -> wp.vec2:
-    """Gradient of the corner's linear shape function at rest [1/m]."""
-    if corner == 0:
-        return -(inv_rest[0] + inv_rest[1])
-    return inv_rest[corner - 1]
-
-
-@wp.func
-def corner_pull(shell: ShellElements, now: Stretch, t: int, m: wp.vec2, mu: float) -> wp.vec3:
-    """Force -A F S m on the corner of triangle ``t`` whose shape gradient is ``m`` [N]."""
-    s = (mu * (1.0 + STIFFENING * now.excess * now.excess)) * m + now.spread * times_inverse(now, m)
-    return -shell.area[t] * (now.f1 * s[0] + now.f2 * s[1])
-
-
-@wp.kernel
-def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d(dtype=wp.vec3)):
-    """Normal and corner forces of every triangle. Launch (F, W)."""
-    t, w = wp.tid()
-    corners = shell.triangles[t]
-    x0 = x[corners[0], w]
-    x1 = x[corners[1], w]
-    x2 = x[corners[2], w]
-    normal = wp.cross(x1 - x0, x2 - x0)
-    shell.tilt[t, w] = normal / wp.max(wp.length_sq(normal), 1.0e-20)
-    inv_rest = shell.inv_rest[t]
-    now = stretch_of(x0, x1, x2, inv_rest, tissue.moduli[w])
-    one = corner_pull(shell, now, t, inv_rest[0], tissue.moduli[w][0])
-    two = corner_pull(shell, now, t, inv_rest[1], tissue.moduli[w][0])
-    shell.corner_force[3 * t, w] = -one - two
-    shell.corner_force[3 * t + 1, w] = one
-    shell.corner_force[3 * t + 2, w] = two
-
-
-@wp.struct
-class Fold:
-    """Gradient of a hinge's angle at its two opposite vertices [rad/m]."""
-
-    g0: wp.vec3
-    g1: wp.vec3
-
-
-@wp.func
-def fold_of(shell: ShellElements, h: int, w: int) -> Fold:
-    """The hinge with the normals last measured; the length of its edge is taken from rest."""
-    sides = shell.sides[h]
-    out = Fold()
-    out.g0 = -shell.length[h] * shell.tilt[sides[0], w]
-    out.g1 = -shell.length[h] * shell.tilt[sides[1], w]
-    return out
-
-
-@wp.func
-def linear_bend(shell: ShellElements, now: Fold, h: int, x: wp.array2d(dtype=wp.vec3), w: int) -> float:
-    """Part of a hinge's angle that is linear in its vertices [rad]."""
+def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: int) -> float:
+    """Dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
     corners = shell.hinges[h]
-    foot = shell.foot[h]
     start = x[corners[2], w]
     edge = x[corners[3], w] - start
-    out = wp.dot(now.g0, x[corners[0], w] - start - foot[0] * edge)
-    return out + wp.dot(now.g1, x[corners[1], w] - start - foot[1] * edge)
+    a = x[corners[0], w] - start
+    b = x[corners[1], w] - start
+    squared = wp.length_sq(edge)
+    sine = -wp.sqrt(squared) * wp.dot(edge, wp.cross(a, b))
+    return wp.atan2(sine, wp.dot(a, edge) * wp.dot(b, edge) - squared * wp.dot(a, b))
 
 
 @wp.kernel
 def measure_hinges(shell: ShellElements, x: wp.array2d(dtype=wp.vec3)):
     """Angle of every hinge from rest. Launch (H, W)."""
     h, w = wp.tid()
-    corners = shell.hinges[h]
-    sides = shell.sides[h]
-    edge = x[corners[3], w] - x[corners[2], w]
-    n0 = shell.tilt[sides[0], w]
-    n1 = shell.tilt[sides[1], w]
-    angle = wp.atan2(wp.dot(wp.cross(n0, n1), wp.normalize(edge)), wp.dot(n0, n1))
-    shell.bend[h, w] = angle - shell.rest_angle[h]
-    shell.offset[h, w] = angle - shell.rest_angle[h] - linear_bend(shell, fold_of(shell, h, w), h, x, w)
+    shell.bend[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
 
 
 @wp.func
-def corner_turn(now: Fold, foot: wp.vec2, corner: int) -> wp.vec3:
-    """Gradient of a hinge's angle with respect to one of its four vertices [rad/m]."""
-    if corner == 0:
-        return now.g0
-    if corner == 1:
-        return now.g1
-    if corner == 2:
-        return (foot[0] - 1.0) * now.g0 + (foot[1] - 1.0) * now.g1
-    return -foot[0] * now.g0 - foot[1] * now.g1
+def hinge_pull(shell: ShellElements, h: int, w: int) -> float:
+    """Moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
+    if h < 0:
+        return 0.0
+    return shell.lever[h] * shell.bend[h, w]
+
+
+@wp.kernel
+def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d(dtype=wp.vec3)):
+    """Normal and corner forces of every triangle, with the bending of its hinges. Launch (F, W).
+
+    A hinge turns its triangle by pulling at the corners along the normal: at the corner opposite with its moment over
+    the height, and back at the others by where the foot of the height is.
+    """
+    t, w = wp.tid()
+    corners = shell.triangles[t]
+    x0 = x[corners[0], w]
+    d1 = x[corners[1], w] - x0
+    d2 = x[corners[2], w] - x0
+    normal = wp.cross(d1, d2)
+    tilt = normal / wp.max(wp.length_sq(normal), 1.0e-20)
+    shell.tilt[t, w] = tilt
+    rest = shell.rest[t]
+    edges = shell.edges[t]
+    pull = edge_tensions(stretch_of(d1, d2, rest, tissue.moduli[w]), rest)
+    bend = (4.0 * rest[3] * rest[3] * tissue.moduli[w][2]) * tilt
+    u0 = hinge_pull(shell, edges[0], w)
+    u1 = hinge_pull(shell, edges[1], w)
+    u2 = hinge_pull(shell, edges[2], w)
+    one = (rest[2] * (u1 - u0) + rest[0] * (u1 - u2)) * bend - (pull[2] + pull[0]) * d1 + pull[0] * d2
+    two = (rest[0] * (u2 - u1) + rest[1] * (u2 - u0)) * bend - (pull[1] + pull[0]) * d2 + pull[0] * d1
+    shell.corner_force[3 * t, w] = -one - two
+    shell.corner_force[3 * t + 1, w] = one
+    shell.corner_force[3 * t + 2, w] = two
 
 
 @wp.func
-def add_stretching(
-    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
-) -> VertexBlock:
-    """Add the membrane terms of the triangles around vertex ``i`` of world ``w``.
+def add_stretching(block: VertexBlock, rest: wp.vec4, d1: wp.vec3, d2: wp.vec3, moduli: wp.vec3) -> VertexBlock:
+    """Add the membrane terms of a triangle to its first corner, from where the edges ``d1`` and ``d2`` lead.
 
     With the corner's shape gradient m, g = F m, h = F C^-1 m, the normal n and s = mu (1 + b (I - 2)^2) |m|^2, the
     Hessian is A times s (Id - n n^T) + (lambda + mu - lambda ln J) h h^T + (s + (lambda ln J - mu) m.C^-1 m) n n^T
     + 4 b mu (I - 2) g g^T; negative factors, of a compressed triangle that would buckle, count as zero.
     """
+    now = stretch_of(d1, d2, rest, moduli)
+    pull = edge_tensions(now, rest)
+    h = now.dots[2] * d1 + now.dots[1] * d2
+    g = rest[2] * d1 + rest[1] * d2
+    n = wp.cross(d1, d2)
+    s = now.shear * (rest[1] + rest[2])
+    along = wp.max(moduli[1] - now.spread, 0.0) * now.inverse * now.inverse
+    across = wp.max(s + now.spread * now.inverse * (now.dots[1] + now.dots[2]), 0.0)
+    stretched = 4.0 * STIFFENING * moduli[0] * now.excess
     out = block
-    mu = moduli[0]
-    eye = wp.identity(n=3, dtype=float)
-    for k in range(shell.triangle_start[i], shell.triangle_start[i + 1]):
-        entry = shell.triangle_entry[k]
-        t = entry // 3
-        corners = shell.triangles[t]
-        inv_rest = shell.inv_rest[t]
-        now = stretch_of(x[corners[0], w], x[corners[1], w], x[corners[2], w], inv_rest, moduli)
-        m = corner_gradient(inv_rest, entry - 3 * t)
-        back = times_inverse(now, m)
-        h = now.f1 * back[0] + now.f2 * back[1]
-        n = wp.normalize(wp.cross(now.f1, now.f2))
-        g = now.f1 * m[0] + now.f2 * m[1]
-        stretched = STIFFENING * mu * now.excess
-        shear = (mu + stretched * now.excess) * wp.dot(m, m)
-        along = wp.max(moduli[1] - now.spread, 0.0)
-        across = wp.max(shear + now.spread * wp.dot(m, back), 0.0)
-        area = shell.area[t]
-        out.force += corner_pull(shell, now, t, m, mu)
-        out.hessian += area * (shear * eye + along * wp.outer(h, h) + (across - shear) * wp.outer(n, n))
-        out.hessian += (4.0 * area * stretched) * wp.outer(g, g)
+    out.force += pull[2] * d1 + pull[1] * d2
+    out.hessian += (rest[3] * s) * wp.identity(n=3, dtype=float)
+    out.hessian += (rest[3] * along) * wp.outer(h, h) + (rest[3] * stretched) * wp.outer(g, g)
+    out.hessian += (rest[3] * (across - s) * now.inverse) * wp.outer(n, n)
     return out
 
 
 @wp.func
-def add_bending(
-    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, rigidity: float
-) -> VertexBlock:
-    """Add the terms k (angle - rest)^2 / 2 of the hinges around vertex ``i`` of world ``w``."""
+def add_hinge(block: VertexBlock, turn: wp.vec3, angle: float, stiffness: float) -> VertexBlock:
+    """Add the term k angle^2 / 2 of a hinge whose angle has the gradient ``turn`` at the vertex."""
     out = block
-    for k in range(shell.hinge_start[i], shell.hinge_start[i + 1]):
-        entry = shell.hinge_entry[k]
-        h = entry // 4
-        now = fold_of(shell, h, w)
-        turn = corner_turn(now, shell.foot[h], entry - 4 * h)
-        stiffness = rigidity * shell.weight[h]
-        out.force -= (stiffness * (shell.offset[h, w] + linear_bend(shell, now, h, x, w))) * turn
-        out.hessian += stiffness * wp.outer(turn, turn)
+    out.force -= (stiffness * angle) * turn
+    out.hessian += stiffness * wp.outer(turn, turn)
+    return out
+
+
+@wp.func
+def add_elements(
+    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+) -> VertexBlock:
+    """Add the terms of the triangles and hinges around vertex ``i`` of world ``w``.
+
+    A hinge's angle is the measured one less, for both of its triangles, length times tilt times the way that the vertex
+    opposite has come from the foot of its height. That way had no part along the tilt when it was measured.
+    """
+    out = block
+    here = x[i, w]
+    for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
+        blade = shell.fan[k]
+        d1 = x[blade.first, w] - here
+        d2 = x[blade.second, w] - here
+        out = add_stretching(out, blade.rest, d1, d2, moduli)
+        tilt = shell.tilt[blade.triangle, w]
+        rise1 = wp.dot(tilt, d1)
+        rise2 = wp.dot(tilt, d2)
+
+        shape = blade.rim_shape
+        away = x[blade.rim_vertex, w] - here - (1.0 - shape[2]) * d1 - shape[2] * d2
+        lift = wp.dot(shell.tilt[blade.rim_triangle, w], away) - (1.0 - shape[1]) * rise1 - shape[1] * rise2
+        angle = shell.bend[blade.rim, w] - shape[0] * lift
+        out = add_hinge(out, -shape[0] * tilt, angle, moduli[2] * shape[3])
+
+        shape = blade.spoke_shape
+        other = shell.tilt[blade.spoke_triangle, w]
+        lift = rise2 - shape[1] * rise1 + wp.dot(other, x[blade.spoke_vertex, w] - here - shape[2] * d1)
+        angle = shell.bend[blade.spoke, w] - shape[0] * lift
+        turn = shape[0] * ((1.0 - shape[1]) * tilt + (1.0 - shape[2]) * other)
+        out = add_hinge(out, turn, angle, moduli[2] * shape[3])
     return out
 
 
@@ -259,10 +260,8 @@ def sweep_colour(
     i = colour[k]
     if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
         return
-    moduli = tissue.moduli[w]
     block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-    block = add_stretching(block, shell, x, i, w, moduli)
-    block = add_bending(block, shell, x, i, w, moduli[2])
+    block = add_elements(block, shell, x, i, w, tissue.moduli[w])
     block = add_contact(block, contacts, x, i, w)
     block = add_loops(block, contacts.loops, x[i, w], i, w)
     x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
@@ -284,13 +283,8 @@ def residual(
     block = VertexBlock()
     if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-        for k in range(shell.triangle_start[i], shell.triangle_start[i + 1]):
-            block.force += shell.corner_force[shell.triangle_entry[k], w]
-        for k in range(shell.hinge_start[i], shell.hinge_start[i + 1]):
-            entry = shell.hinge_entry[k]
-            h = entry // 4
-            turn = corner_turn(fold_of(shell, h, w), shell.foot[h], entry - 4 * h)
-            block.force -= (tissue.moduli[w][2] * shell.weight[h] * shell.bend[h, w]) * turn
+        for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
+            block.force += shell.corner_force[shell.fan_corner[k], w]
         block.force += contact_force(contacts.records, pressing, i, w)
         block = add_loops(block, contacts.loops, x[i, w], i, w)
     force[i, w] = block.force

@@ -12,6 +12,7 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim import shell_kernels, solid_kernels
+from arcgym.sim.shell_fans import fan_blades, hinge_of_edges, triangle_rest
 from arcgym.sim.wall_kernels import Tissue
 from arcgym.sim.wall_parameters import ShellParameters, WallParameters
 from arcgym.sim.wall_topology import vertex_entries
@@ -78,22 +79,27 @@ class Shell:
         """
         self.device, self.num_envs = device, num_envs
         self.data = data = shell_kernels.ShellElements()
-        types = {"triangles": wp.vec3i, "inv_rest": wp.mat22, "area": float, "hinges": wp.vec4i, "sides": wp.vec2i}
-        types |= {"foot": wp.vec2, "length": float, "rest_angle": float, "weight": float}
-        for name, dtype in types.items():
-            setattr(data, name, wp.array(getattr(geometry, name), dtype=dtype, device=device))
-        for name, elements in (("triangle", geometry.triangles), ("hinge", geometry.hinges)):
-            start, entry = vertex_entries(elements, vertices)
-            setattr(data, f"{name}_start", wp.array(start, dtype=int, device=device))
-            setattr(data, f"{name}_entry", wp.array(entry, dtype=int, device=device))
-        triangles, hinges = len(geometry.triangles), len(geometry.hinges)
-        data.tilt = wp.zeros((triangles, num_envs), dtype=wp.vec3, device=device)
-        data.corner_force = wp.zeros((3 * triangles, num_envs), dtype=wp.vec3, device=device)
-        data.bend = wp.zeros((hinges, num_envs), dtype=float, device=device)
-        data.offset = wp.zeros((hinges, num_envs), dtype=float, device=device)
+        triangles, hinges = geometry.triangles, geometry.hinges
+        start, corner = vertex_entries(triangles, vertices)
+        copies = {
+            "triangles": (triangles, wp.vec3i),
+            "rest": (triangle_rest(geometry), wp.vec4),
+            "edges": (hinge_of_edges(geometry), wp.vec3i),
+            "hinges": (hinges, wp.vec4i),
+            "rest_angle": (geometry.rest_angle, float),
+            "lever": (geometry.weight / geometry.length, float),
+            "fan_start": (start, int),
+            "fan": (fan_blades(geometry, corner, shell_kernels.Blade.numpy_dtype()), shell_kernels.Blade),
+            "fan_corner": (corner, int),
+        }
+        for name, (values, dtype) in copies.items():
+            setattr(data, name, wp.array(values, dtype=dtype, device=device))
+        data.tilt = wp.zeros((len(triangles), num_envs), dtype=wp.vec3, device=device)
+        data.corner_force = wp.zeros((3 * len(triangles), num_envs), dtype=wp.vec3, device=device)
+        data.bend = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data = self.data
+        wp.launch(shell_kernels.measure_hinges, data.bend.shape, [data, x], device=self.device)
         wp.launch(shell_kernels.measure_triangles, data.tilt.shape, [data, tissue, x], device=self.device)
-        wp.launch(shell_kernels.measure_hinges, data.offset.shape, [data, x], device=self.device)

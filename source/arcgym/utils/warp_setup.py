@@ -4,9 +4,12 @@
 
 ARCGym never differentiates through the simulation. Without the backward pass Newton's contact kernels compile in
 seconds instead of minutes. The setting is read when a kernel module is defined, hence before Newton is imported.
+
+Kernels on the CPU may fuse products with sums, as they do on the GPU: physics is a tenth faster, and rounds once less.
 """
 
 import warp as wp
 
 wp.config.enable_backward = False
+wp.config.cpu_compiler_flags = f"{wp.config.cpu_compiler_flags or '-march=native'} -ffp-contract=fast"
 wp.config.log_level = wp.LOG_WARNING
