@@ -78,6 +78,7 @@ class Shell:
             device: Warp device.
         """
         self.device, self.num_envs = device, num_envs
+        blade: Any = shell_kernels.Blade
         self.data = data = shell_kernels.ShellElements()
         triangles, hinges = geometry.triangles, geometry.hinges
         start, corner = vertex_entries(triangles, vertices)
@@ -89,7 +90,7 @@ class Shell:
             "rest_angle": (geometry.rest_angle, float),
             "lever": (geometry.weight / geometry.length, float),
             "fan_start": (start, int),
-            "fan": (fan_blades(geometry, corner, shell_kernels.Blade.numpy_dtype()), shell_kernels.Blade),
+            "fan": (fan_blades(geometry, corner, blade.numpy_dtype()), blade),
             "fan_corner": (corner, int),
         }
         for name, (values, dtype) in copies.items():
