@@ -13,6 +13,8 @@ import torch
 import warp as wp
 from _common import Action, median_ms
 
+from arcgym.utils.threads import one_thread
+
 RESET_SHARE = 0.05
 """Fraction of the worlds that the timed reset starts again; at least one."""
 
@@ -40,6 +42,7 @@ STAGES = {
 ``solver="two_level"`` alone."""
 
 
+@one_thread()
 @torch.no_grad()
 def time_stages(env: Any, actions: torch.Tensor, repeats: int) -> dict[str, float]:
     """Median duration of every stage, in milliseconds a control step.

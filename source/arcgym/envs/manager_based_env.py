@@ -18,6 +18,7 @@ from arcgym.managers.observation_manager import Observation
 from arcgym.utils.configclass import validate
 from arcgym.utils.seed import set_seed
 from arcgym.utils.string import resolve_callable
+from arcgym.utils.threads import one_thread
 
 if TYPE_CHECKING:
     from arcgym.scene import InteractiveScene
@@ -109,6 +110,7 @@ class ManagerBasedEnv(gym.Env):
         """Seeds every random number generator and returns the seed; a negative one draws one."""
         return set_seed(seed)
 
+    @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
     def reset(
@@ -133,6 +135,7 @@ class ManagerBasedEnv(gym.Env):
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
 
+    @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
     def step(self, action: torch.Tensor) -> tuple[Any, ...]:

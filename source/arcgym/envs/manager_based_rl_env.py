@@ -14,6 +14,7 @@ from arcgym.envs.manager_based_rl_env_cfg import ManagerBasedRLEnvCfg
 from arcgym.managers import CostManager, CurriculumManager, MetricsManager, RewardManager, TerminationManager
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.registry import load_cfg
+from arcgym.utils.threads import one_thread
 
 StepReturn = tuple[dict[str, Observation], torch.Tensor, torch.Tensor, torch.Tensor, dict[str, Any]]
 """Observations, reward (N,), terminated (N,), truncated (N,), extras."""
@@ -78,6 +79,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.metrics_manager = MetricsManager(self.cfg.metrics, self)
         self.curriculum_manager = CurriculumManager(self.cfg.curriculum, self)
 
+    @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
     def step(self, action: torch.Tensor) -> StepReturn:  # type: ignore[override]
