@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import torch
 from tiny_sim import TinySim
@@ -207,3 +208,21 @@ def test_gravity_weighs_the_real_masses(tiny_sim: TinySim) -> None:
     # The weight is real, the inertia three times as large: a third of g.
     speed = sim.endoscope.data.body_lin_vel_w[0, 0, 2].item()
     assert speed == pytest.approx(-9.81 / 3.0 / 480.0, rel=0.01)
+
+
+@pytest.mark.parametrize(("lower", "lift"), [(0.005, 0.0), (0.03, 20.0)])
+def test_a_loop_that_comes_out_of_the_anus_is_lifted(tiny_sim: TinySim, lower: float, lift: float) -> None:
+    sim = tiny_sim("proximal", 12)
+    low = int(np.argmin(np.abs(sim.endoscope.rest_height + 0.05)))
+    sim.endoscope.data.body_pos_w[0, low, 2] -= lower
+    sim.actuation.apply(sim.state, sim.control, sim.contact.ring, sim.physics_dt)
+    # 1000 N/m on what is lower by more than 10 mm than in a straight shaft.
+    assert sim.state.body_f.numpy()[low, 2] == pytest.approx(lift, abs=0.1)
+
+
+def test_a_capsule_does_not_fall_out(tiny_sim: TinySim) -> None:
+    sim = tiny_sim("capsule")
+    sim.endoscope.set_tip_velocity_command(torch.tensor([[0.0, 0.0, -0.05]]), torch.zeros(1, 3))
+    sim.step(480)
+    # A pull of 1 N against 1000 N/m below half its cylinder's length, 5 mm.
+    assert sim.endoscope.data.root_pos_w[0, 2].item() == pytest.approx(0.005 - 0.001, abs=2e-4)

@@ -79,7 +79,12 @@ class Endoscope:
     @property
     def rest_insertion(self) -> float:
         """Inserted length in the rest pose [m]: the front of the tip above the anal verge."""
-        return self._rest_insertion
+        return float(self._rest_height[-1]) + self.tip_offset
+
+    @property
+    def rest_height(self) -> np.ndarray:
+        """Height of each link's centre above the anal verge in the rest pose [m], shape (L,)."""
+        return self._rest_height
 
     def add_to(self, builder: newton.ModelBuilder, mass_scaling: float) -> None:
         """Load the articulation into ``builder``, scale its masses and apply the overrides.
@@ -100,8 +105,7 @@ class Endoscope:
             for dof, limit in zip(loaded.dofs, limits, strict=False):
                 if limit is not None:
                     builder.joint_effort_limit[dof] = limit
-        last = builder.body_q[loaded.bodies[-1]]
-        self._rest_insertion = float(last[2]) + self.tip_offset
+        self._rest_height = np.array([builder.body_q[body][2] for body in loaded.bodies])
 
     def _override_rigidity(self, builder: newton.ModelBuilder, dofs: Sequence[int]) -> None:
         stage, cfg = self.stage, self.cfg

@@ -29,14 +29,18 @@ class TipPullCfg:
 
 @configclass
 class IntroducerCfg:
-    """Guide outside the anus that keeps the shaft from buckling there, as the examiner's hand does."""
+    """Guide outside the anus, as the examiner's hand: the shaft does not buckle there. The sphincter closes around it:
+    neither a loop of the shaft nor a capsule comes out."""
 
-    stiffness: float = 300.0
-    """Sideways spring on every link outside [N/m]. Without it 0.5 m of shaft buckle at about 1 N."""
+    stiffness: float = 1000.0
+    """Spring on every link outside [N/m], sideways and upwards. With links of 25 mm the shaft buckles at
+    2 sqrt(EI k / 25 mm) = 63 N, as a beam on an elastic foundation; without, 0.5 m of it at about 1 N."""
     damping: float = 0.3
     """[N s/m]."""
     height: float = 0.005
     """Height above the anal verge up to which links are guided [m]."""
+    slack: float = 0.01
+    """How much lower than in a straight shaft, and than the anal verge, a link may be before it is lifted [m]."""
 
 
 @configclass
@@ -62,7 +66,7 @@ class EndoscopeCfg:
     tip_pull: TipPullCfg = TipPullCfg()
     """Pull on the tip, for scopes without a driven base."""
     introducer: IntroducerCfg = IntroducerCfg()
-    """Guide outside the anus, for scopes with a shaft."""
+    """Guide outside the anus."""
 
 
 PROXIMAL_CFG = EndoscopeCfg(usd_path="endoscopes/proximal.usda")

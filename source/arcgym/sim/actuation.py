@@ -53,7 +53,7 @@ class Actuation:
         self._pull_force = wp.zeros(num_envs, dtype=wp.vec4, device=device)
         self._slide_force = wp.zeros((1, num_envs), dtype=float, device=device)
         self._still = wp.zeros((1, num_envs), dtype=wp.vec3, device=device)
-        self._guide = self._introducer()
+        self._guide = self._introducer(endoscope)
         self._gravity = wp.vec3(*cfg.gravity) / cfg.mass_scaling
         self._share, self._bend_limit = self._bending_section()
         bends = self.stage.bend_coords[self.link_count - 1 - self.stage.bending_links :]
@@ -76,12 +76,13 @@ class Actuation:
             drive.torque_limit = _override(self.scope.roll_torque_limit, roll.max_force)
         return drive
 
-    def _introducer(self) -> kernels.Introducer:
-        guide = kernels.Introducer()
-        for name in ("stiffness", "damping", "height"):
-            setattr(guide, name, getattr(self.scope.introducer, name))
+    def _introducer(self, endoscope: Endoscope) -> kernels.Introducer:
+        guide, cfg = kernels.Introducer(), self.scope.introducer
+        rest, guide.height, guide.lid = endoscope.rest_height, cfg.height, -cfg.slack
         if self.stage.root == "free":
-            guide.height = -math.inf
+            rest, guide.height, guide.lid = np.full(self.link_count, 1.0), -math.inf, float(endoscope.half_length[0])
+        guide.rest = wp.array(rest, dtype=float, device=self.device)
+        guide.stiffness, guide.damping = cfg.stiffness, cfg.damping
         return guide
 
     def _bending_section(self) -> tuple[wp.vec2, wp.vec2]:
@@ -104,7 +105,8 @@ class Actuation:
             link_ring: Ring of the colon that each link is in, shape (W, L).
             dt: Substep [s].
         """
-        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide, link_ring, dt]
+        args = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide]
+        args += [state.joint_q, self.coords, link_ring, dt]
         shape = (self.link_count, self.num_envs)
         wp.launch(kernels.load_links, shape, [*args, state.body_f, self.resistance], device=self.device)
         if self.pushed:

@@ -43,11 +43,13 @@ FIRST_RINGS = wp.constant(1)
 
 @wp.struct
 class Introducer:
-    """Springs that keep the shaft straight outside the anus."""
+    """Springs that keep the shaft straight outside the anus, and what is inside from coming out of it."""
 
     stiffness: float  # [N/m]
     damping: float  # [N s/m]
-    height: float  # up to which links are held [m]
+    height: float  # up to which links are pulled onto the Z axis [m]
+    lid: float  # down to which links that belong inside may sink [m]
+    rest: wp.array(dtype=float)  # height of each link where the slide is at zero and the shaft straight [m], shape (L,)
 
 
 @wp.func
@@ -126,25 +128,33 @@ def load_links(
     body_mass: wp.array(dtype=float),
     gravity: wp.vec3,
     guide: Introducer,
+    joint_q: wp.array(dtype=float),
+    coords: int,
     ring: wp.array2d(dtype=int),
     dt: float,
     body_f: wp.array(dtype=wp.spatial_vector),
     resistance: wp.array2d(dtype=wp.spatial_vector),
 ):
-    """Weight of every link, and a spring sideways onto the Z axis for those outside the anus. Launch (L, W).
+    """Weight of every link, and the springs of the introducer near the colon's first rings. Launch (L, W).
 
-    Those are the low ones near the colon's first rings; ``ring`` has the shape (W, L).
+    Low links are pulled sideways onto the Z axis. The base's slide tells how high each would be in a straight shaft; a
+    link lower than that, and lower than the lid, is lifted. ``ring`` has the shape (W, L).
     """
     link, w = wp.tid()
     i = w * resistance.shape[0] + link
     force = body_mass[i] * gravity
     held = wp.vec3(0.0)
     p = wp.transform_get_translation(body_q[i])
-    if p[2] < guide.height and ring[w, link] <= FIRST_RINGS:
+    if ring[w, link] <= FIRST_RINGS:
         v = wp.spatial_top(body_qd[i])
         damping = guide.damping + dt * guide.stiffness
-        force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)
-        held = wp.vec3(dt * damping, dt * damping, 0.0)
+        if p[2] < guide.height:
+            force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)
+            held = wp.vec3(dt * damping, dt * damping, 0.0)
+        low = guide.lid + wp.min(guide.rest[link] + joint_q[w * coords], 0.0) - p[2]
+        if low > 0.0:
+            force[2] = force[2] + guide.stiffness * low - damping * v[2]
+            held[2] = dt * damping
     body_f[i] = wp.spatial_vector(force, wp.vec3(0.0))
     resistance[link, w] = wp.spatial_vector(held, wp.vec3(0.0))
 
