@@ -19,6 +19,8 @@ BEHIND = wp.constant(-0.5)
 """Cosine between the way from axis to wall and the wall's normal, under which the axis is behind the wall."""
 SHARE = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
+HARDEST = wp.constant(3.0)
+"""Depth beyond which a contact does not harden any more, in multiples of its hardening depth."""
 CLEAR = wp.constant(0.25)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
 FOLD = wp.constant(0.004)
@@ -123,6 +125,13 @@ def track_rings(
         away[w, link] = FAR
 
 
+@wp.func
+def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> bool:
+    """Whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
+    gap = wp.abs(wp.dot(normal, a)) - wp.abs(wp.dot(normal, axis))
+    return gap <= 0.0 or gap * gap <= limit * limit * wp.length_sq(normal)
+
+
 @wp.kernel
 def face_distances(
     x: wp.array2d(dtype=wp.vec3),
@@ -153,7 +162,8 @@ def face_distances(
         g = (a + b + c) / 3.0
         size = wp.sqrt(wp.max(wp.length_sq(a - g), wp.max(wp.length_sq(b - g), wp.length_sq(c - g))))
         t = segment_parameter(g, centre - axis, centre + axis)
-        if wp.length(g - centre - (2.0 * t - 1.0) * axis) < limit + size:
+        near = wp.length_sq(g - centre - (2.0 * t - 1.0) * axis) < (limit + size) * (limit + size)
+        if near and plane_reached(a - centre, wp.cross(b - a, c - a), axis, limit):
             u = segment_triangle(centre - axis, centre + axis, a, b, c)
             if u[3] < limit:
                 d = u[3]
@@ -334,10 +344,10 @@ def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRe
 
 @wp.func
 def contact_push(law: ContactLaw, depth: float) -> wp.vec2:
-    """Normal force k d (1 + min(d / h, 2)^2) of a full contact [N] at a depth d > 0, and its stiffness [N/m]."""
-    hard = wp.min(depth / law.hardening, 2.0)
+    """Normal force k d (1 + min(d / h, 3)^2) of a full contact [N] at a depth d > 0, and its stiffness [N/m]."""
+    hard = wp.min(depth / law.hardening, HARDEST)
     secant = 1.0 + hard * hard
-    if hard >= 2.0:
+    if hard >= HARDEST:
         return law.stiffness * wp.vec2(depth * secant, secant)
     return law.stiffness * wp.vec2(depth * secant, 1.0 + 3.0 * hard * hard)
 
