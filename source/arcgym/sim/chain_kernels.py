@@ -19,7 +19,7 @@ Block = wp.types.matrix(shape=(RING_MODES, RING_MODES), dtype=float)
 
 @wp.kernel
 def factor_odd(first: int, step: int, diagonal: wp.array4d(dtype=float)):
-    """Cholesky factor of each odd row's block, in place (lower triangle). Launch (odd rows, W)."""
+    """Cholesky factor of each odd row's block, in place, its diagonal inverted. Launch (odd rows, W)."""
     m, w = wp.tid()
     r = first + m * step
     out = Block()
@@ -27,40 +27,39 @@ def factor_odd(first: int, step: int, diagonal: wp.array4d(dtype=float)):
         d = diagonal[r, j, j, w]
         for k in range(j):
             d -= out[j, k] * out[j, k]
-        d = wp.sqrt(wp.max(d, 1.0e-6))
-        out[j, j] = d
+        d = 1.0 / wp.sqrt(wp.max(d, 1.0e-6))
         diagonal[r, j, j, w] = d
         for i in range(j + 1, MODES):
             e = diagonal[r, i, j, w]
             for k in range(j):
                 e -= out[i, k] * out[j, k]
-            e = e / d
+            e = e * d
             out[i, j] = e
             diagonal[r, i, j, w] = e
 
 
 @wp.func
 def forward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -> Unknowns:
-    """Solve ``lower[r] x = b`` in world ``w``."""
+    """Solve ``lower[r] x = b`` in world ``w``; the diagonal holds its inverse."""
     out = Unknowns()
     for j in range(MODES):
         s = b[j]
         for k in range(j):
             s -= lower[r, j, k, w] * out[k]
-        out[j] = s / lower[r, j, j, w]
+        out[j] = s * lower[r, j, j, w]
     return out
 
 
 @wp.func
 def backward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -> Unknowns:
-    """Solve ``lower[r]^T x = b`` in world ``w``."""
+    """Solve ``lower[r]^T x = b`` in world ``w``; the diagonal holds its inverse."""
     out = Unknowns()
     for back in range(MODES):
         j = MODES - 1 - back
         s = b[j]
         for k in range(j + 1, MODES):
             s -= lower[r, k, j, w] * out[k]
-        out[j] = s / lower[r, j, j, w]
+        out[j] = s * lower[r, j, j, w]
     return out
 
 

@@ -27,10 +27,10 @@ class RingSpace:
     members: wp.array2d(dtype=int)  # vertices of each ring, -1 padded, shape (R, S)
     frame_weights: wp.array(dtype=wp.vec2)  # in-plane coordinates (p, q) over the rms radius, shape (V,)
     rest_frame: wp.array(dtype=wp.mat33)  # rest ring frame, columns p, q, p x q, shape (R,)
-    stiffness: wp.array4d(dtype=float)  # diagonal blocks of the three elastic parts [N/m], shape (3, R, M, M)
-    coupling: wp.array4d(dtype=float)  # blocks to the next ring [N/m], shape (3, R, M, M)
-    mass: wp.array3d(dtype=float)  # [kg], shape (R, M, M)
-    anchor: wp.array3d(dtype=float)  # tight springs [N/m], shape (R, M, M)
+    stiffness: wp.array3d(dtype=Unknowns)  # rows of the three elastic parts' diagonal blocks [N/m], shape (3, R, M)
+    coupling: wp.array3d(dtype=Unknowns)  # rows of their blocks to the next ring [N/m], shape (3, R, M)
+    mass: wp.array2d(dtype=Unknowns)  # rows [kg], shape (R, M)
+    anchor: wp.array2d(dtype=Unknowns)  # rows of the tight springs [N/m], shape (R, M)
     loose: wp.array(dtype=float)  # share of them within the slack, shape (R,)
     slack: wp.array(dtype=float)  # [m], shape (R,)
     rest_centre: wp.array(dtype=wp.vec3)  # mean rest position of the ring's vertices [m], shape (R,)
@@ -92,15 +92,17 @@ def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.
 
 
 @wp.func
-def anchor_entry(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int, c: int) -> float:
-    """Stiffness of the anchors of ring ``r`` between its modes ``a`` and ``c`` [N/m], see ``anchor_hessian``."""
+def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int) -> Unknowns:
+    """Stiffness of the anchors of ring ``r`` between mode ``a`` and all modes [N/m], see ``anchor_hessian``."""
     d = wp.length(shift)
     secant = secant_share(d, space.loose[r], space.slack[r])
-    entry = secant * space.anchor[r, a, c]
-    if a < 3 and c < 3 and secant < 1.0 and d > space.slack[r]:
+    row = secant * space.anchor[r, a]
+    if a < 3 and secant < 1.0 and d > space.slack[r]:
         along = back * shift
-        entry += (1.0 - secant) * space.anchor[r, 0, 0] * along[a] * along[c] / (d * d)
-    return entry
+        tight = (1.0 - secant) * space.anchor[r, 0][0] * along[a] / (d * d)
+        for c in range(3):
+            row[c] = row[c] + tight * along[c]
+    return row
 
 
 @wp.func
@@ -141,13 +143,11 @@ def assemble(
     rings = space.mass.shape[0]
     moduli = tissue.moduli[w]
     back = wp.transpose(rotation[r, w])
-    own_row = Unknowns()
+    own_row = inv_dt2 * space.mass[r, a] + tissue.anchor[w] * anchor_row(space, shift[r, w], back, r, a)
     next_row = Unknowns()
-    for c in range(MODES):
-        own_row[c] = inv_dt2 * space.mass[r, a, c] + tissue.anchor[w] * anchor_entry(space, shift[r, w], back, r, a, c)
-        for part in range(3):
-            own_row[c] = own_row[c] + moduli[part] * space.stiffness[part, r, a, c]
-            next_row[c] = next_row[c] + moduli[part] * space.coupling[part, r, a, c]
+    for part in range(3):
+        own_row += moduli[part] * space.stiffness[part, r, a]
+        next_row += moduli[part] * space.coupling[part, r, a]
     own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
     if loops.touched[r, w] == 1:
         own_row += loop_row(space, loops, back, r, a, w)

@@ -10,6 +10,7 @@ import numpy as np
 import warp as wp
 
 from arcgym.sim import coarse_kernels, wall_kernels
+from arcgym.sim.chain_kernels import Unknowns
 from arcgym.sim.chain_solver import ChainSolver
 from arcgym.sim.contact import ContactSearch
 from arcgym.sim.loop_contact import LoopContact
@@ -111,7 +112,7 @@ class WallSolver:
         space.slack = wp.array(ring_mean(wall.anchor.slack, wall.ring), dtype=float, device=self.device)
         space.rest_centre = wp.array(ring_mean(wall.points, wall.ring), dtype=wp.vec3, device=self.device)
         for name in ("stiffness", "coupling", "mass", "anchor"):
-            setattr(space, name, wp.array(getattr(modes, name), dtype=float, device=self.device))
+            setattr(space, name, wp.array(getattr(modes, name), dtype=Unknowns, device=self.device))
         return space
 
     def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
