@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 import torch
 
@@ -25,6 +27,11 @@ def test_time_out_at_the_last_step(env) -> None:
 def test_withdrawn_at_the_anal_verge(env) -> None:
     env.scope.tip_arc_length = torch.tensor([-0.001, 0.001])
     assert mdp.withdrawn(env).tolist() == [True, False]
+
+
+def test_pierced_is_what_the_simulation_says(env) -> None:
+    env.sim = SimpleNamespace(pierced=torch.tensor([False, True]))
+    assert mdp.pierced(env).tolist() == [False, True]
 
 
 def test_segment_passed_at_its_end(env) -> None:

@@ -43,7 +43,7 @@ def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.nd
     twist = wp.array([[*link_velocity, 0.0, 0.0, 0.0]], dtype=wp.spatial_vector, device="cpu")
     contact, loads, now = sim.contact, sim.coupling.solver.loads, 1.0e-9
     args = [sim.state.body_q, twist, sim.model.body_com, sim.nodal_pos, sim.nodal_vel, contact.links]
-    args += [contact.records, contact.law, contact.friction, now, loads]
+    args += [contact.records, contact.law, contact.friction, now, loads, sim.coupling.pierced]
     wp.launch(load_contacts, loads.wrench.shape, args, device="cpu")
     return loads.wrench.numpy()[0, 0, :3]
 
@@ -201,3 +201,11 @@ def test_a_pull_below_the_friction_does_not_move_it(tiny_sim: TinySim) -> None:
 def test_a_pull_above_the_friction_accelerates_it_by_the_rest(tiny_sim: TinySim) -> None:
     sim = resting(tiny_sim, along=0.3)  # (0.3 - 0.1) g for 0.25 s
     assert sim.endoscope.data.body_lin_vel_w[0, 0, 2].item() == pytest.approx(0.2 * 9.81 * 0.25, rel=0.1)
+
+
+@pytest.mark.parametrize(("depth", "pierced"), [(0.9, False), (1.1, True)])
+def test_a_link_has_pierced_the_wall_where_its_axis_is_behind_it(sim: Simulation, depth: float, pierced: bool) -> None:
+    place(sim, depth * REACH)
+    sim.coupling.pierced.zero_()
+    wall_force(sim)
+    assert sim.pierced.tolist() == [pierced]

@@ -51,6 +51,7 @@ class TwoLevelCoupling:
         x: wp.array,
         v: wp.array,
         wall_force: wp.array,
+        pierced: wp.array,
     ):
         """Connect the parts; all arrays are changed in place by :meth:`step`.
 
@@ -65,10 +66,11 @@ class TwoLevelCoupling:
             x: Wall positions [m], shape (W*V,).
             v: Wall velocities [m/s], shape (W*V,).
             wall_force: Sum of mean link forces [N], shape (W*L,).
+            pierced: Set to 1 where the axis of a link is behind the wall, shape (W,).
         """
         self.cfg, self.model, self.control = cfg, model, control
         self.actuation, self.contact, self.wall = actuation, contact, wall
-        self.x, self.v, self.wall_force = x, v, wall_force
+        self.x, self.v, self.wall_force, self.pierced = x, v, wall_force, pierced
         self.solver = SolverArticulatedChain(model)
         self.solver.resistance = actuation.resistance
         self.state = state
@@ -91,7 +93,7 @@ class TwoLevelCoupling:
     def _load_contacts(self, dt: float) -> None:
         contact, state, loads = self.contact, self.state, self.solver.loads
         args = [state.body_q, state.body_qd, self.model.body_com, self.x, self.v, contact.links, contact.records]
-        args += [contact.law, contact.friction, dt, loads]
+        args += [contact.law, contact.friction, dt, loads, self.pierced]
         wp.launch(link_load_kernels.load_contacts, loads.wrench.shape, args, device=self.model.device)
 
     def _record(self, weight: float) -> None:

@@ -59,8 +59,12 @@ def load_contacts(
     friction: wp.array(dtype=float),
     dt: float,
     loads: LinkLoads,
+    pierced: wp.array(dtype=int),
 ):
-    """Sum the contacts of each link with the wall where it is. Launch (L, W)."""
+    """Sum the contacts of each link with the wall where it is. Launch (L, W).
+
+    Sets ``pierced``, shape (W,), where a link's axis is behind the wall.
+    """
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
     pose = body_q[row]
@@ -72,7 +76,10 @@ def load_contacts(
         u = records.bary[slot]
         wall_v = corner_point(v, f, u, w)
         p = corner_point(x, f, u, w)
-        c = touch(p, records.normal[slot], pose, links.half_length[link], links.radius[link] + law.wall_radius)
+        radius = links.radius[link] + law.wall_radius
+        c = touch(p, records.normal[slot], pose, links.half_length[link], radius)
+        if c.gap < -radius:
+            pierced[w] = 1
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - centre)
         one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)
         total.ll += one.ll

@@ -115,6 +115,7 @@ class Simulation:
             self.nodal_pos,
             self.nodal_vel,
             self.step_force,
+            self._pierced,
         )
 
     def _allocate_readout(self) -> None:
@@ -129,6 +130,7 @@ class Simulation:
         self.tip_distance = wp.zeros(n, dtype=float, device=device)
         self.tip_direction = wp.zeros(n, dtype=wp.vec3, device=device)
         self._broken = wp.zeros(n, dtype=int, device=device)
+        self._pierced = wp.zeros(n, dtype=int, device=device)
         self.ring_arc = wp.array(self.colon.wall.ring_arc, dtype=float, device=device)
         self._tip_offset = wp.vec3(0.0, 0.0, self.endoscope.tip_offset)
         camera = self.endoscope.stage.camera
@@ -144,6 +146,14 @@ class Simulation:
         """Worlds whose state is not finite or has left the room, shape (N,), bool; as of the last step."""
         return wp.to_torch(self._broken) > 0
 
+    @property
+    def pierced(self) -> torch.Tensor:
+        """Worlds in which the axis of a link has been behind the wall since the last :meth:`step` began, (N,), bool.
+
+        Not told with ``solver="newton"``.
+        """
+        return wp.to_torch(self._pierced) > 0
+
     def step(self, n: int = 1) -> None:
         """Advance all worlds by ``n`` physics steps; forces are averaged over them.
 
@@ -151,7 +161,7 @@ class Simulation:
         replayed from then on.
         """
         averages = [self.wall_force, self.wall_force_peak, self.actuation.base_force, self.actuation.tip_force]
-        for array in averages:
+        for array in (*averages, self._pierced):
             array.zero_()
         self.wall_readout.clear()
         for _ in range(n):
@@ -276,6 +286,7 @@ class Simulation:
         actuation = self.actuation
         per_world = [actuation.insertion_velocity, actuation.roll_rate, actuation.bending_command]
         per_world += [actuation.tip_lin_command, actuation.tip_ang_command, actuation.base_force, actuation.tip_force]
+        per_world.append(self._pierced)
         for array in (*per_world, self.step_force, self.wall_force, self.wall_force_peak):
             wp.to_torch(array).view(self.num_envs, -1)[ids] = 0.0
         self.wall_readout.reset(ids)

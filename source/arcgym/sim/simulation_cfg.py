@@ -18,8 +18,8 @@ class ContactCfg:
     several faces, each has its own. A softer contact lets links tunnel at lower forces; a stiffer one needs a shorter
     ``SimulationCfg.dt``."""
     hardening: float = 0.002
-    """Depth at which a contact pushes twice as hard as its stiffness says [m]; at twice that depth it pushes five times
-    as hard. So 20 N do not push a link through the wall, while light contacts stay soft."""
+    """Depth at which a contact pushes twice as hard as its stiffness says [m]; at three times that depth it pushes ten
+    times as hard. So 100 N do not push a link through the wall, while light contacts stay soft."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
     friction: float = 0.1

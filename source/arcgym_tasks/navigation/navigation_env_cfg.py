@@ -101,6 +101,7 @@ class TerminationsCfg:
     success = DoneTerm(func=mdp.segment_passed)
     stuck = DoneTerm(func=mdp.stuck, time_out=True, params={"window_s": 6.0, "min_progress": 0.003})
     withdrawn = DoneTerm(func=mdp.withdrawn)
+    pierced = DoneTerm(func=mdp.pierced)
     lumen_lost: DoneTerm | None = None
     """Off. Ends hopeless episodes early, but keeps the policy from learning to find the lumen again:
     ``DoneTerm(func=mdp.lumen_lost, params={"threshold": -0.4, "steps": 5})``."""

@@ -35,6 +35,14 @@ def withdrawn(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
     return env.scene["endoscope"].data.tip_arc_length < arc_length
 
 
+def pierced(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """A link has gone through the wall; what follows means nothing, for the wall does not tear.
+
+    It takes about 100 N on one link: a full push with the shaft twisted to its limit in the rectum.
+    """
+    return env.sim.pierced
+
+
 def perforation(env: ManagerBasedRLEnv, limit: float | str = "perforation") -> torch.Tensor:
     """The tip presses on the wall with a force that may perforate it (``limit``: [N] or a tier).
 
