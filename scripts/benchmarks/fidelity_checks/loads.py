@@ -30,8 +30,8 @@ class LinkLoads:
         arrays = [wp.from_torch(v.view(-1, 3), dtype=wp.vec3) for v in vectors] + [wp.from_torch(self.guide.view(-1))]
         drive = sim.actuation.apply
 
-        def apply(state: Any, control: Any, dt: float) -> None:
-            drive(state, control, dt)
+        def apply(state: Any, control: Any, ring: Any, dt: float) -> None:
+            drive(state, control, ring, dt)
             args = [state.body_q, *arrays, dt, state.body_f, sim.actuation.resistance]
             wp.launch(add_loads, (links, n), args, device=device)
 
