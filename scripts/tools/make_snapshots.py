@@ -5,7 +5,7 @@
 
 The first segment starts from the rest pose. Whenever the tip enters another one, the complete state is kept once it has
 settled for a second without commands, with velocities of zero; the drive then goes on from before. The file lies beside
-the colon's stage: ``snapshots/<endoscope>.npz``.
+the colon's stage: ``snapshots/<endoscope>.npz``, with the tissue's name added if it is not the default one.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ import time
 import torch
 
 from arcgym.assets import CAPSULE_CFG, MAGNETIC_CFG, PROXIMAL_CFG, ColonCfg
+from arcgym.assets.materials import TISSUE_PRESETS
 from arcgym.scene import InteractiveScene, InteractiveSceneCfg
 from arcgym.sim import SimulationCfg, SnapshotSet
-from arcgym.sim.snapshot import Snapshot, fingerprint, snapshot_path
+from arcgym.sim.snapshot import DEFAULT_MATERIAL, Snapshot, fingerprint, snapshot_path
 from arcgym_tasks.navigation.scripted_expert import make_expert, tip_angle
 
 ENDOSCOPES = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
@@ -31,6 +32,7 @@ def main() -> None:
     """Parse the arguments and make the files."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--colon", default="colon_1/colon.usda", help="stage of the colon")
+    parser.add_argument("--material", choices=TISSUE_PRESETS, default=DEFAULT_MATERIAL, help="tissue of the colon")
     parser.add_argument("--endoscope", choices=ENDOSCOPES, nargs="+", default=list(ENDOSCOPES))
     parser.add_argument("--until", default="splenic", help="last segment to pass")
     parser.add_argument("--speed", type=float, default=0.04, help="speed of the expert [m/s]")
@@ -40,7 +42,7 @@ def main() -> None:
     args = parser.parse_args()
     for name in args.endoscope:
         snapshots, scene = drive(name, args)
-        path = snapshot_path(scene.colon.path, scene.endoscope.path)
+        path = snapshot_path(scene.colon.path, scene.endoscope.path, args.material)
         if not args.dry_run:
             SnapshotSet(tuple(snapshots), tuple(snapshots.values()), fingerprint(scene.sim)).save(path)
             print(f"[{name}] {list(snapshots)} -> {path}")
@@ -48,7 +50,8 @@ def main() -> None:
 
 def drive(name: str, args: argparse.Namespace) -> tuple[dict[str, Snapshot], InteractiveScene]:
     """Drive one endoscope up the colon and keep its state at the start of each segment."""
-    cfg = InteractiveSceneCfg(num_envs=1, colon=ColonCfg(usd_path=args.colon), endoscope=ENDOSCOPES[name])
+    colon = ColonCfg(usd_path=args.colon, material=args.material)
+    cfg = InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=ENDOSCOPES[name])
     scene = InteractiveScene(cfg, SimulationCfg(device=args.device))
     data, expert = scene["endoscope"].data, make_expert(scene, speed=args.speed)
     bounds = scene["colon"].stage.segment_bounds()

@@ -33,6 +33,7 @@ class FakeSim:
 def make_reset(env, segment: str, names: list[str] | None, folder: Path = Path()):
     env.sim, env.cfg.segment = FakeSim(names), segment
     env.scene["colon"].path, env.scene["endoscope"].path = folder / "colon.usda", folder / "proximal.usda"
+    env.scene["colon"].cfg = SimpleNamespace(material="paper")
     return mdp.reset_to_segment_start(EventTermCfg(func=mdp.reset_to_segment_start, mode="reset"), env)
 
 

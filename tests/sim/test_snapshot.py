@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ import torch
 from tiny_sim import TinySim
 
 from arcgym.sim import Simulation, Snapshot, SnapshotSet
-from arcgym.sim.snapshot import fingerprint, snapshot_path
+from arcgym.sim.snapshot import find_snapshots, fingerprint, snapshot_path
 
 
 def moved(sim: Simulation, steps: int) -> Simulation:
@@ -113,3 +114,13 @@ def test_at_rest_stops_everything_where_it_is() -> None:
 def test_snapshots_lie_beside_the_colon() -> None:
     path = snapshot_path(Path("usd/colon_1/colon.usda"), Path("usd/endoscopes/magnetic.usda"))
     assert path == Path("usd/colon_1/snapshots/magnetic.npz")
+
+
+def test_snapshots_of_the_own_tissue_come_first(tmp_path: Path) -> None:
+    colon = SimpleNamespace(path=tmp_path / "colon.usda", cfg=SimpleNamespace(material="in_situ"))
+    scope = SimpleNamespace(path=Path("magnetic.usda"))
+    assert find_snapshots(colon, scope).name == "magnetic.npz"
+    own = snapshot_path(colon.path, scope.path, "in_situ")
+    own.parent.mkdir()
+    own.touch()
+    assert find_snapshots(colon, scope) == own and own.name == "magnetic_in_situ.npz"

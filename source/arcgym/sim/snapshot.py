@@ -13,7 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from arcgym.assets import Colon, Endoscope
     from arcgym.sim.simulation import Simulation
+
+DEFAULT_MATERIAL = "paper"
+"""Tissue preset that snapshots are made in unless their file names another one."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,8 @@ class SnapshotSet:
             raise ValueError(
                 f"The snapshots are of another wall mesh or endoscope than {sim.colon.path} with {sim.endoscope.path} "
                 f"(fingerprint {self.fingerprint}, expected {expected}). "
-                "Remake them with scripts/tools/make_snapshots.py."
+                f"Make them with scripts/tools/make_snapshots.py --colon {sim.colon.path} "
+                f"--material {sim.colon.cfg.material} --endoscope {sim.endoscope.path.stem}."
             )
 
 
@@ -105,6 +110,16 @@ def fingerprint(sim: Simulation) -> str:
     return digest.hexdigest()[:16]
 
 
-def snapshot_path(colon_path: Path, endoscope_path: Path) -> Path:
-    """Where the snapshots of a colon and an endoscope lie: ``snapshots/<endoscope>.npz`` beside the colon's stage."""
-    return colon_path.parent / "snapshots" / f"{endoscope_path.stem}.npz"
+def snapshot_path(colon_path: Path, endoscope_path: Path, material: str = DEFAULT_MATERIAL) -> Path:
+    """Where the snapshots of a colon and an endoscope lie, beside the colon's stage.
+
+    ``snapshots/<endoscope>.npz``, or ``snapshots/<endoscope>_<material>.npz`` in another tissue than the default.
+    """
+    suffix = "" if material == DEFAULT_MATERIAL else f"_{material}"
+    return colon_path.parent / "snapshots" / f"{endoscope_path.stem}{suffix}.npz"
+
+
+def find_snapshots(colon: Colon, endoscope: Endoscope) -> Path:
+    """Path of the snapshots made in the colon's tissue, else of those made in the default one, which may not fit."""
+    own = snapshot_path(colon.path, endoscope.path, colon.cfg.material)
+    return own if own.is_file() else snapshot_path(colon.path, endoscope.path)

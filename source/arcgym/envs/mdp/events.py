@@ -15,7 +15,7 @@ from arcgym.assets.materials import anchor_scale, tissue_preset
 from arcgym.envs.mdp.segments import segment_span
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
-from arcgym.sim.snapshot import SnapshotSet, snapshot_path
+from arcgym.sim.snapshot import SnapshotSet, find_snapshots
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -27,8 +27,8 @@ REST_POSE = -1
 class reset_to_segment_start(ManagerTermBase):
     """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
 
-    States come from the file of snapshots that belongs to this colon and this endoscope, loaded once. The first segment
-    of the colon starts from the rest pose if the file does not have it.
+    States come from the file of snapshots that belongs to this colon, its tissue and this endoscope, loaded once. The
+    first segment of the colon starts from the rest pose if the file does not have it.
     """
 
     def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
@@ -49,7 +49,7 @@ class reset_to_segment_start(ManagerTermBase):
     @staticmethod
     def _find(env: ManagerBasedEnv, segment: str) -> int:
         is_first = segment_span(env, segment)[0] <= 0.0
-        path = snapshot_path(env.scene["colon"].path, env.scene["endoscope"].path)
+        path = find_snapshots(env.scene["colon"], env.scene["endoscope"])
         if env.sim.snapshots is None and (path.is_file() or not is_first):
             env.sim.load_snapshots(SnapshotSet.load(path))
         snapshots = env.sim.snapshots
