@@ -10,8 +10,8 @@ import numpy as np
 
 ALPHA_TURNING = 300.0
 """Turning of the shaft from which a crossing counts as an alpha loop [deg]."""
-FRONTAL = (0, 2)
-"""World axes of the picture that a magnetic endoscope imager shows: the patient from the front."""
+VIEWS = np.radians(np.arange(-20.0, 21.0, 5.0))
+"""Turns about the body axis from which a loop is looked at besides the front [rad], positive from the left side."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,8 @@ class Loop:
     """
     crossings: int
     """Places where the shaft crosses itself, seen from the front."""
+    views: float
+    """Share of the :data:`VIEWS` in which it crosses itself: how far from edge-on the loop is seen."""
 
     @property
     def alpha(self) -> bool:
@@ -34,7 +36,13 @@ class Loop:
 
 def measure_loop(points: np.ndarray) -> Loop:
     """Loop of a shaft through ``points`` [m], shape (n, 3)."""
-    return Loop(turning(points), writhe(points), crossings(points[:, FRONTAL]))
+    seen = [crossings(from_front(points, azimuth)) for azimuth in VIEWS]
+    return Loop(turning(points), writhe(points), crossings(from_front(points)), float(np.mean(np.array(seen) > 0)))
+
+
+def from_front(points: np.ndarray, azimuth: float = 0.0) -> np.ndarray:
+    """Points as seen from the patient's front, as a magnetic endoscope imager shows them, or from beside it, (n, 2)."""
+    return np.stack([points[:, 0] * np.cos(azimuth) + points[:, 1] * np.sin(azimuth), points[:, 2]], axis=1)
 
 
 def turning(points: np.ndarray) -> float:

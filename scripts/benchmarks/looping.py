@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pushes a colonoscope through a mobile sigmoid colon until it loops, then straightens the loop.
+"""Pushes a colonoscope through a mobile sigmoid colon, turns the shaft into an alpha loop, and straightens it.
 
 python scripts/benchmarks/looping.py --out docs/images --json_out docs/data/looping.json
 
-First a scripted expert pushes: the shaft loops, the tip falls behind and then stands still. Then the tip is hooked and
-the shaft withdrawn, rolled clockwise as a colonoscopist does, not at all, and anticlockwise, each from the same state.
-Printed: looping ratio (inserted length over the tip's arc length), turning, writhe and crossings of the shaft, forces.
-Draws the shaft from outside and the curves. Needs matplotlib (``pip install arcgym[dev]``).
+First a scripted expert pushes the tip past the sigmoid colon. It pushes on from there, once as before and once while
+the shaft is rolled anticlockwise: the tip falls behind, and the loop crosses itself as seen from the front. Then the
+tip is hooked and the shaft withdrawn, rolled clockwise as a colonoscopist does, not at all, and anticlockwise, each
+from the same state.
+Printed: looping ratio (inserted length over the tip's arc length), turning, writhe and crossings of shaft and colon,
+forces. Draws the shaft from outside and the curves. Needs matplotlib (``pip install arcgym[dev]``).
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import torch
-from _loops import Loop, measure_loop
+from _loops import Loop, crossings, from_front, measure_loop
 from PIL import Image
 
 from arcgym.assets import PROXIMAL_CFG, ColonCfg
@@ -35,63 +37,103 @@ from arcgym.sensors import SkinnedSurface
 from arcgym.sim import SimulationCfg, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
 from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
-from arcgym_tasks.navigation.scripted_expert import make_expert
+from arcgym_tasks.navigation.scripted_expert import PushExpert
 
 STEPS = 48
 """Physics steps in a control step of 0.1 s."""
-PAST_SIGMOID = 0.13
-"""How far into the descending colon the tip is pushed [m]."""
+PAST_SIGMOID = 0.12
+"""How far into the descending colon the tip is pushed before the shaft is rolled [m]."""
+LOOPING = {"roll": -1.0, "time": 15.0}
+"""Roll rate [rad/s] and duration [s] of pushing on; positive is clockwise to the operator, who looks along the scope.
+"""
 WITHDRAWAL = {"speed": 0.03, "time": 9.0, "hook": 1.5}
 """Speed [m/s] and duration [s] of the withdrawal, and the bending that hooks the tip [rad]."""
 ROLLS = {"clockwise": 0.6, "none": 0.0, "anticlockwise": -0.6}
-"""Roll rates while withdrawing [rad/s]; clockwise as seen from the operator, looking along the scope."""
+"""Roll rates while withdrawing [rad/s]."""
+LABELS = {"push": "push", "push on": "push on, no roll", "loop": "push on, roll anticlockwise"}
+"""Legend of the runs that push."""
 Row = dict[str, float]
 
 
 def main() -> None:
-    """Push, straighten, draw."""
+    """Push, loop, straighten, draw."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--colon", default="colon_4/colon.usda", help="stage of the colon")
+    parser.add_argument("--colon", default="colon_1/colon.usda", help="stage of the colon")
     parser.add_argument("--material", default="in_situ", help="tissue preset")
+    parser.add_argument("--mesocolon", type=float, help="height of the sigmoid mesocolon [m] (default: the preset's)")
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--max_time", type=float, default=60.0, help="longest time of pushing [s]")
-    parser.add_argument("--out", type=Path, help="folder for looping_views.jpg and looping_curves.png")
+    parser.add_argument("--out", type=Path, help="folder for the pictures")
+    parser.add_argument("--name", default="looping", help="first part of the pictures' names")
     parser.add_argument("--json_out", type=Path, help="file for the curves")
     args = parser.parse_args()
-    colon = ColonCfg(usd_path=args.colon, material=args.material)
+    slack = {} if args.mesocolon is None else {"sigmoid": args.mesocolon}
+    colon = ColonCfg(usd_path=args.colon, material=args.material, anchor_slack=slack)
     scene = InteractiveScene(
         InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=PROXIMAL_CFG), SimulationCfg(device=args.device)
     )
-    draw_view = view_of(scene)
-    runs = {"push": list(push(scene, args.max_time))}
-    views = {"pushed": draw_view()}
-    looped = SnapshotSet(("looped",), (scene.sim.read_snapshot(0).at_rest(),), fingerprint(scene.sim))
-    scene.sim.load_snapshots(looped)
-    for name, rate in ROLLS.items():
-        scene.sim.write_snapshot(0)
-        scene.sim.forward()
-        runs[name] = list(withdraw(scene, rate))
-        views[name] = draw_view()
+    runs, views = manoeuvre(scene, args.max_time)
     summary = {name: {"start": rows[0], "end": rows[-1]} for name, rows in runs.items()}
     if args.out:
-        save_views(views, args.out / "looping_views.jpg")
-        draw_curves(runs, args.out / "looping_curves.png")
+        save_views(views, args.out / f"{args.name}_views.jpg")
+        draw_curves(runs, args.out / f"{args.name}_curves.png")
     if args.json_out:
         thinned = {name: [*rows[:-1:5], rows[-1]] for name, rows in runs.items()}
-        text = json.dumps({"colon": args.colon, "material": args.material, "every_s": 0.5, "runs": thinned})
-        args.json_out.write_text(text.replace("}, {", "},\n{") + "\n")
+        about = {"colon": args.colon, "material": args.material, "mesocolon": args.mesocolon, "every_s": 0.5}
+        args.json_out.write_text(json.dumps({**about, "runs": thinned}).replace("}, {", "},\n{") + "\n")
     print(json.dumps(summary))
+
+
+def manoeuvre(scene: InteractiveScene, max_time: float) -> tuple[dict[str, list[Row]], dict[str, np.ndarray]]:
+    """Curves of pushing, looping and each way of straightening, and pictures after each."""
+    draw_view = view_of(scene)
+    runs = {"push": list(push(scene, max_time))}
+    views = {"push": draw_view()}
+    keep_state(scene)
+    runs["push on"] = list(push_on(scene, 0.0))
+    back_to_kept(scene)
+    runs["loop"] = list(push_on(scene, LOOPING["roll"]))
+    views["loop"] = draw_view()
+    keep_state(scene)
+    for name, rate in ROLLS.items():
+        back_to_kept(scene)
+        runs[name] = list(withdraw(scene, rate))
+        views[name] = draw_view()
+    return runs, views
+
+
+def keep_state(scene: InteractiveScene) -> None:
+    """Keep the scene as it is, at rest."""
+    sim = scene.sim
+    sim.load_snapshots(SnapshotSet(("kept",), (sim.read_snapshot(0).at_rest(),), fingerprint(sim)))
+    back_to_kept(scene)
+
+
+def back_to_kept(scene: InteractiveScene) -> None:
+    """Put the scene into the state last kept."""
+    scene.sim.write_snapshot(0)
+    scene.sim.forward()
 
 
 def push(scene: InteractiveScene, max_time: float) -> Iterator[Row]:
     """Drive the tip past the sigmoid colon; one row a control step."""
-    expert = make_expert(scene)
+    expert = PushExpert(scene)
     end = scene["colon"].stage.segment_bounds()["descending"][0] + PAST_SIGMOID
     for step in range(int(10.0 * max_time)):
         expert.act()
         yield advance(scene, "push", step)
         if float(scene["endoscope"].data.tip_arc_length[0]) > end:
             return
+
+
+def push_on(scene: InteractiveScene, roll_rate: float) -> Iterator[Row]:
+    """Push on while rolling; one row a control step."""
+    expert, endoscope = PushExpert(scene), scene["endoscope"]
+    expert.bending += endoscope.data.bending
+    for step in range(int(10.0 * LOOPING["time"])):
+        expert.act()
+        endoscope.set_insertion_command(expert.velocity, torch.full_like(expert.velocity, roll_rate))
+        yield advance(scene, f"push, roll {roll_rate:+.1f}", step)
 
 
 def withdraw(scene: InteractiveScene, roll_rate: float) -> Iterator[Row]:
@@ -103,7 +145,7 @@ def withdraw(scene: InteractiveScene, roll_rate: float) -> Iterator[Row]:
     for step in range(int(10.0 * WITHDRAWAL["time"])):
         endoscope.set_bending_command(hook[:, 0], hook[:, 1])
         endoscope.set_insertion_command(speed, torch.full_like(speed, roll_rate))
-        yield advance(scene, f"roll {roll_rate:+.1f}", step)
+        yield advance(scene, f"withdraw, roll {roll_rate:+.1f}", step)
 
 
 def advance(scene: InteractiveScene, label: str, step: int) -> Row:
@@ -123,7 +165,8 @@ def read(scene: InteractiveScene, time: float) -> Row:
     tip, inserted = float(data.tip_arc_length[0]), float(data.inserted_length[0])
     loop: Loop = measure_loop(shaft(scene))
     row = {"time": time, "tip_arc": tip, "inserted": inserted, "looping_ratio": inserted / max(tip, 1.0e-3)}
-    row |= asdict(loop) | {"alpha": loop.alpha, "push": float(data.base_force[0])}
+    row |= asdict(loop) | {"alpha": loop.alpha, "colon_crossings": crossings(from_front(left_colon(scene)))}
+    row |= {"push": float(data.base_force[0])}
     row |= {"link_force": float(data.wall_force_w[0].norm(dim=1).max())}
     row |= {"wall_moved": float(colon.nodal_displacement.max()), "strain": float(colon.wall_strain.max())}
     return {name: round(float(value), 4) for name, value in row.items()}
@@ -133,6 +176,13 @@ def shaft(scene: InteractiveScene) -> np.ndarray:
     """Centres of the links inside the body [m], shape (n, 3)."""
     points = scene["endoscope"].data.body_pos_w[0].cpu().numpy()
     return points[int(np.argmax(points[:, 2] > 0.0)) :]
+
+
+def left_colon(scene: InteractiveScene) -> np.ndarray:
+    """Centreline from the anus to the end of the descending colon [m], shape (n, 3)."""
+    end = scene["colon"].stage.segment_bounds()["descending"][1]
+    data = scene["colon"].data
+    return data.centerline_pos_w[0][data.centerline_arc < end].cpu().numpy()
 
 
 def view_of(scene: InteractiveScene) -> Callable[[], np.ndarray]:
@@ -153,26 +203,28 @@ def view_of(scene: InteractiveScene) -> Callable[[], np.ndarray]:
 
 
 def save_views(views: dict[str, np.ndarray], path: Path) -> None:
-    """Put the pictures of the pushed shaft and of the one withdrawn clockwise side by side."""
-    Image.fromarray(np.concatenate([views["pushed"], views["clockwise"]], axis=1)).save(path, quality=88)
+    """Put the pictures of the pushed shaft, of the loop and of the one withdrawn clockwise side by side."""
+    pictures = [views[name] for name in ("push", "loop", "clockwise")]
+    Image.fromarray(np.concatenate(pictures, axis=1)).save(path, quality=85)
 
 
 def draw_curves(runs: dict[str, list[Row]], path: Path) -> None:
-    """Inserted length against tip progress; turning, writhe and crossings in time."""
+    """Inserted length against tip progress; views in which the shaft crosses itself and its turning, in time."""
     figure, axes = plt.subplots(1, 3, figsize=(12.0, 3.6))
-    begin = runs["push"][-1]["time"]
+    pushed = runs["push"][-1]["time"]
+    begin = {"push": 0.0, "push on": pushed, "loop": pushed}
     for name, rows in runs.items():
-        label = name if name == "push" else f"withdraw, roll {name}"
+        label = LABELS.get(name, f"withdraw, roll {name}")
         column = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-        time = column["time"] + (0.0 if name == "push" else begin)
+        time = column["time"] + begin.get(name, pushed + LOOPING["time"])
         axes[0].plot(column["tip_arc"], column["inserted"], label=label)
-        axes[1].plot(time, column["turning"])
-        axes[2].plot(time, column["writhe"])
+        axes[1].plot(time, 100.0 * column["views"])
+        axes[2].plot(time, column["turning"])
     axes[0].axline((0.2, 0.2), slope=1.0, color="0.7", lw=0.8)
     axes[0].set(xlabel="arc length of the tip [m]", ylabel="inserted length [m]")
     axes[0].legend(fontsize=7)
-    axes[1].set(xlabel="time [s]", ylabel="turning of the shaft [deg]")
-    axes[2].set(xlabel="time [s]", ylabel="writhe of the shaft")
+    axes[1].set(xlabel="time [s]", ylabel="views in which the shaft crosses itself [%]")
+    axes[2].set(xlabel="time [s]", ylabel="turning of the shaft [deg]")
     figure.tight_layout()
     figure.savefig(path, dpi=110)
 
