@@ -118,6 +118,22 @@ def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
 
 
 @wp.func
+def direction_angle(sine: float, cosine: float) -> float:
+    """Angle whose sine and cosine are in the ratio given [rad].
+
+    Up to 45 degrees from the tangent of its half by the polynomial of ``atanf`` in Cephes (Moshier 1989), which takes
+    a CPU a third of the time of ``atan2``.
+    """
+    span = wp.sqrt(sine * sine + cosine * cosine) + cosine
+    if wp.abs(sine) >= 0.41421356 * span:
+        return wp.atan2(sine, cosine)
+    t = sine / span
+    z = t * t
+    series = ((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1
+    return 2.0 * (t + series * z * t)
+
+
+@wp.func
 def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: int) -> float:
     """Dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
     corners = shell.hinges[h]
@@ -127,7 +143,7 @@ def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: i
     b = x[corners[1], w] - start
     squared = wp.length_sq(edge)
     sine = -wp.sqrt(squared) * wp.dot(edge, wp.cross(a, b))
-    return wp.atan2(sine, wp.dot(a, edge) * wp.dot(b, edge) - squared * wp.dot(a, b))
+    return direction_angle(sine, wp.dot(a, edge) * wp.dot(b, edge) - squared * wp.dot(a, b))
 
 
 @wp.kernel
