@@ -50,10 +50,11 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
         ColonImportError: A given end is not in the lumen, or the lumen is too wide or too short for a colon.
     """
     tree, course, clearance = _search(grid, ends, frame)
-    path = tree.points[course.nodes]
-    cut = cut_off(grid, course.attached, path, tree.clearance[course.nodes])
-    hole = fill_tube(grid, path[0])
-    if cut or hole > LEAST_HOLE:
+    hole = fill_tube(grid, tree.points[course.nodes[0]])
+    if hole > LEAST_HOLE:
+        tree, course, clearance = _search(grid, ends, frame)
+    cut = cut_off(grid, course.attached, tree.points[course.nodes], tree.clearance[course.nodes])
+    if cut:
         tree, course, clearance = _search(grid, ends, frame, prune=False)
     points = resample(tree.points[course.nodes], 2 * grid.spacing)
     points = to_pole(clearance, points, _CECUM_LOOK) if ends[1] is None else points

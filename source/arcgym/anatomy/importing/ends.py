@@ -21,6 +21,10 @@ _MOST_CUT = 0.40
 _TUBE_CALIBRE = 0.008
 _TUBE_SHARE = 0.5
 _LEAST_TUBE = 0.018
+_LONGEST_CANAL = 0.055
+_BESIDE = 0.015
+_AMPULLA_SHARE = 0.78
+_OPEN_TUBE = 0.0035
 _BEFORE = 0.080
 _POLE_REACH = 0.090
 
@@ -157,8 +161,21 @@ def _without_tube(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray, list[
     start = _thin_tail(arc, width, _TUBE_SHARE, _TUBE_CALIBRE)
     if start is None or arc[-1] - arc[start] < _LEAST_TUBE or arc[start] < (1.0 - _MOST_CUT) * arc[-1]:
         return nodes, []
+    if _is_canal(arc, width, start):
+        return nodes, []
     tube = Attached("rectal tube", points[start:], clearance[start:], float(clearance[start : start + 8].min()))
     return back[: start + 1][::-1], [tube]
+
+
+def _is_canal(arc: np.ndarray, width: np.ndarray, start: int) -> bool:
+    """Tells whether a thin tail is a collapsed anal canal: short, nearly closed, and right below the wide rectum.
+
+    A rectal tube is open, longer, or leaves a canal that is narrower than the rectum.
+    """
+    before = (arc > arc[start] - _BEFORE) & (arc <= arc[start])
+    beside = before & (arc > arc[start] - _BESIDE)
+    wide = float(width[beside].max()) > _AMPULLA_SHARE * float(width[before].max())
+    return wide and arc[-1] - arc[start] < _LONGEST_CANAL and float(np.median(width[start:])) < _OPEN_TUBE
 
 
 def _side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[Attached]) -> list[Attached]:

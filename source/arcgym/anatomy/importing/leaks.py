@@ -79,7 +79,7 @@ def _keep_connected(grid: Grid, path: np.ndarray) -> None:
 
 
 def fill_tube(grid: Grid, anus: np.ndarray, axis: int = 2) -> float:
-    """Fills, in place, holes in cross-sections of the rectum: a tube's wall and its own lumen.
+    """Fills, in place, holes in cross-sections of the rectum: a tube's wall and its own lumen, and so its balloon.
 
     Args:
         grid: The lumen in the patient's frame.
@@ -93,13 +93,12 @@ def fill_tube(grid: Grid, anus: np.ndarray, axis: int = 2) -> float:
     high = np.minimum(np.ceil(grid.index(anus + _TUBE_REACH)).astype(int), grid.values.shape)
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     part = np.moveaxis(grid.values[box], axis, 0)
-    filled = 0
+    before = int((part > 0.5).sum())
     for section in part:
         inside = section > 0.5
         labels, count = ndimage.label(ndimage.binary_fill_holes(inside) & ~inside)
         area = np.bincount(labels.ravel(), minlength=count + 1) * grid.spacing**2
         small = (area < _TUBE_SECTION) & (np.arange(count + 1) > 0)
-        hole = small[labels]
-        filled += int(hole.sum())
-        section[hole] = 1.0
-    return filled * grid.spacing**3
+        section[small[labels]] = 1.0
+    part[ndimage.binary_fill_holes(part > 0.5) & (part <= 0.5)] = 1.0
+    return (int((part > 0.5).sum()) - before) * grid.spacing**3
