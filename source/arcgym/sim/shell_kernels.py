@@ -15,19 +15,7 @@ spares the sweep its normals and inverse tangents.
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import shortened
-from arcgym.sim.wall_kernels import (
-    Pressing,
-    Tissue,
-    VertexBlock,
-    WallContacts,
-    WallNodes,
-    add_contact,
-    add_loops,
-    contact_force,
-    inertia_and_anchor,
-    quiet,
-)
+from arcgym.sim.wall_kernels import Tissue, VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
 
 SMALLEST = wp.constant(1.0e-4)
@@ -259,48 +247,12 @@ def add_elements(
     return out
 
 
-@wp.kernel
-def sweep_colour(
-    colour: wp.array(dtype=int),
-    nodes: WallNodes,
-    shell: ShellElements,
-    tissue: Tissue,
-    inertial: wp.array2d(dtype=wp.vec3),
-    contacts: WallContacts,
-    largest_move: float,
-    force: wp.array2d(dtype=wp.vec3),
-    x: wp.array2d(dtype=wp.vec3),
-):
-    """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
-    k, w = wp.tid()
-    i = colour[k]
-    if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
-        return
-    block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-    block = add_elements(block, shell, x, i, w, tissue.moduli[w])
-    block = add_contact(block, contacts, x, i, w)
-    block = add_loops(block, contacts.loops, x[i, w], i, w)
-    x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
-
-
-@wp.kernel
-def residual(
-    nodes: WallNodes,
-    shell: ShellElements,
-    tissue: Tissue,
-    inertial: wp.array2d(dtype=wp.vec3),
-    contacts: WallContacts,
-    pressing: Pressing,
-    x: wp.array2d(dtype=wp.vec3),
-    force: wp.array2d(dtype=wp.vec3),
-):
-    """Total force on every mobile vertex where the elements were measured. Launch (V, W)."""
-    i, w = wp.tid()
-    block = VertexBlock()
-    if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
-        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-        for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
-            block.force += shell.corner_force[shell.fan_corner[k], w]
-        block.force += contact_force(contacts.records, pressing, i, w)
-        block = add_loops(block, contacts.loops, x[i, w], i, w)
-    force[i, w] = block.force
+@wp.func
+def add_forces(
+    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+) -> VertexBlock:
+    """Add the measured forces of the triangles around vertex ``i`` of world ``w``."""
+    out = block
+    for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
+        out.force += shell.corner_force[shell.fan_corner[k], w]
+    return out

@@ -8,19 +8,7 @@ parameters; force and Hessian of a vertex are written in closed form.
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import shortened
-from arcgym.sim.wall_kernels import (
-    Pressing,
-    Tissue,
-    VertexBlock,
-    WallContacts,
-    WallNodes,
-    add_contact,
-    add_loops,
-    contact_force,
-    inertia_and_anchor,
-    quiet,
-)
+from arcgym.sim.wall_kernels import VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -75,49 +63,3 @@ def add_elastic(
         out.force -= vol * (mu * (f0 * m[0] + f1 * m[1] + f2 * m[2]) + pressure * g)
         out.hessian += vol * (la * wp.outer(g, g) + mu * wp.dot(m, m) * wp.identity(n=3, dtype=float))
     return out
-
-
-@wp.kernel
-def sweep_colour(
-    colour: wp.array(dtype=int),
-    nodes: WallNodes,
-    solid: SolidElements,
-    tissue: Tissue,
-    inertial: wp.array2d(dtype=wp.vec3),
-    contacts: WallContacts,
-    largest_move: float,
-    force: wp.array2d(dtype=wp.vec3),
-    x: wp.array2d(dtype=wp.vec3),
-):
-    """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
-    k, w = wp.tid()
-    i = colour[k]
-    if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
-        return
-    block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-    block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
-    block = add_contact(block, contacts, x, i, w)
-    block = add_loops(block, contacts.loops, x[i, w], i, w)
-    x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
-
-
-@wp.kernel
-def residual(
-    nodes: WallNodes,
-    solid: SolidElements,
-    tissue: Tissue,
-    inertial: wp.array2d(dtype=wp.vec3),
-    contacts: WallContacts,
-    pressing: Pressing,
-    x: wp.array2d(dtype=wp.vec3),
-    force: wp.array2d(dtype=wp.vec3),
-):
-    """Total force on every mobile vertex. Launch (V, W)."""
-    i, w = wp.tid()
-    block = VertexBlock()
-    if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
-        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-        block = add_elastic(block, solid, x, i, w, tissue.moduli[w])
-        block.force += contact_force(contacts.records, pressing, i, w)
-        block = add_loops(block, contacts.loops, x[i, w], i, w)
-    force[i, w] = block.force

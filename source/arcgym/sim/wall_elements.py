@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import Any, Protocol
 
 import numpy as np
@@ -13,6 +12,7 @@ import warp as wp
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim import shell_kernels, solid_kernels
 from arcgym.sim.shell_fans import fan_blades, hinge_of_edges, triangle_rest
+from arcgym.sim.sweep_kernels import sweep_kernels
 from arcgym.sim.wall_kernels import Tissue
 from arcgym.sim.wall_parameters import ShellParameters, WallParameters
 from arcgym.sim.wall_topology import vertex_entries
@@ -21,8 +21,10 @@ from arcgym.sim.wall_topology import vertex_entries
 class WallElements(Protocol):
     """Elements of all worlds' walls."""
 
-    kernels: ModuleType
-    """Module with the kernels ``sweep_colour`` and ``residual`` for this kind of wall."""
+    sweep_colour: wp.Kernel
+    """Sweep over this kind of elements, see :mod:`arcgym.sim.sweep_kernels`."""
+    residual: wp.Kernel
+    """Total force with this kind of elements."""
     data: Any
     """Struct that those kernels take."""
 
@@ -40,7 +42,9 @@ def wall_elements(wall: WallParameters, num_envs: int, device: str) -> WallEleme
 class Solid:
     """Tetrahedra, which need nothing measured."""
 
-    kernels: ModuleType = solid_kernels
+    sweep_colour, residual = sweep_kernels(
+        solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic
+    )
 
     def __init__(self, points: np.ndarray, tets: np.ndarray, device: str):
         """Copy the T tets of one world's V vertices to the device.
@@ -66,7 +70,9 @@ class Solid:
 class Shell:
     """Triangles and hinges, measured once a step."""
 
-    kernels: ModuleType = shell_kernels
+    sweep_colour, residual = sweep_kernels(
+        shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
+    )
 
     def __init__(self, geometry: ShellGeometry, vertices: int, num_envs: int, device: str):
         """Copy the elements of one world's wall to the device and allocate what is measured in all W worlds.

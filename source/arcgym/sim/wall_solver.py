@@ -148,7 +148,7 @@ class WallSolver:
         for colour in self.colours:
             args = [colour, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
             wp.launch(
-                self.elements.kernels.sweep_colour,
+                self.elements.sweep_colour,
                 (len(colour), self.num_envs),
                 [*args, self.cfg.largest_move, self.force, x],
                 device=self.device,
@@ -173,7 +173,7 @@ class WallSolver:
         links = (contacts.links.radius.shape[0], self.num_envs)
         wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.pressing], device=self.device)
         args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.pressing, x, force]
-        wp.launch(self.elements.kernels.residual, x.shape, args, device=self.device)
+        wp.launch(self.elements.residual, x.shape, args, device=self.device)
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
