@@ -127,6 +127,19 @@ def test_rings_that_overlap_at_rest_push_only_when_closer() -> None:
         assert press.stiffness.numpy().any() == pushes
 
 
+def test_wall_gathered_on_the_shaft_does_not_push() -> None:
+    """A tube of 24 rings, pushed together to a fifth of its length with its rings at 45 degrees."""
+    angle, height = np.arange(12) * np.pi / 6.0, 0.0125 * np.arange(24)
+    ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
+    rest = (ring + np.stack([0.0 * height, 0.0 * height, height], axis=1)[:, None]).reshape(-1, 3)
+    loops = LoopContact(
+        WallSolverCfg(), rest, np.repeat(np.arange(24), 12), np.arange(288).reshape(24, 12), 0.0, 1, "cpu"
+    )
+    gathered = rest * [1.0, 1.0, 0.2] + rest[:, [2, 2, 0]] * [0.0, 0.0, 1.0]
+    press = loops.measure(wp.array(gathered[:, None], dtype=wp.vec3, device="cpu"))
+    assert loops.balls.near.numpy().any() and not press.stiffness.numpy().any()
+
+
 def test_nothing_changes_where_nothing_touches(sim_in: HairpinSim) -> None:
     ends = []
     for self_contact in (True, False):

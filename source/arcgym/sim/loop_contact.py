@@ -55,12 +55,14 @@ class LoopContact:
         centre = ring_mean(points, ring)
         away = np.linalg.norm(points - centre[ring], axis=1)
         spacing = np.linalg.norm(np.diff(centre, axis=0), axis=1)
-        may_touch = _may_touch(spacing, ring_mean(away, ring))
+        half_bend = 0.5 * BACK_TO_BACK * ring_mean(away, ring)
+        may_touch = _may_touch(spacing, half_bend)
         self.active = cfg.self_contact and bool(may_touch.any())
         self.shape = kernels.LoopShape()
         self.shape.members = wp.array(members, dtype=int, device=device)
         self.shape.allowed = wp.array(np.where(may_touch, 0.0, kernels.NEVER), dtype=float, device=device)
         self.shape.thickness, self.shape.stiffness = thickness, cfg.self_contact_stiffness
+        self.shape.half_bend = wp.array(half_bend, dtype=float, device=device)
         self.shape.next_touch = wp.array(_next_touch(may_touch), dtype=int, device=device)
         self.shape.widest = LARGEST_SWELLING * float(away.max())
         self.shape.pitch = LARGEST_STRETCH * float(spacing.max(initial=1.0e-3))
@@ -94,10 +96,10 @@ class LoopContact:
         return self.press
 
 
-def _may_touch(spacing: np.ndarray, radius: np.ndarray) -> np.ndarray:
+def _may_touch(spacing: np.ndarray, half_bend: np.ndarray) -> np.ndarray:
     """Which pairs of rings are far enough apart along the colon, shape (R, R), bool."""
     arc = np.concatenate([[0.0], np.cumsum(spacing)])
-    return np.abs(np.subtract.outer(arc, arc)) > 0.5 * BACK_TO_BACK * np.add.outer(radius, radius)
+    return np.abs(np.subtract.outer(arc, arc)) > np.add.outer(half_bend, half_bend)
 
 
 def _next_touch(may_touch: np.ndarray) -> np.ndarray:

@@ -16,6 +16,12 @@ NEVER = wp.constant(-1.0e9)
 """Gap allowed to rings of the same stretch, which do not touch each other [m]."""
 REST_MARGIN = wp.constant(1.0e-4)
 """How much closer than at rest rings must come that touch at rest [m]."""
+DEEPEST = wp.constant(0.005)
+"""Overlap beyond which a pair pushes no harder [m]: a crumpled wall may overlap deeply from one step to the next."""
+NESTED = wp.constant(0.5)
+"""Distance of two centres over how far the rings reach, under which one is inside the other and nothing pushes."""
+ONSET = wp.constant(0.25)
+"""Range of that ratio, and of the way between rings over its least, within which the stiffness grows to its whole."""
 FAINT = wp.constant(1.0e-9)
 """Force under which a vertex counts as untouched [N]."""
 
@@ -25,6 +31,7 @@ class LoopShape:
     """Rings of one world's wall, shared by all worlds."""
 
     members: wp.array2d(dtype=int)  # vertices of each ring, -1 padded, shape (R, S)
+    half_bend: wp.array(dtype=float)  # half the least way along the colon between two such rings that touch, shape (R,)
     next_touch: wp.array(dtype=int)  # first ring after each that may touch it, shape (R,)
     allowed: wp.array2d(dtype=float)  # smallest gap of each pair, negative where they overlap at rest [m], shape (R, R)
     thickness: float  # distance between vertices of walls that touch [m]
@@ -123,6 +130,28 @@ def rest_gaps(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls):
 
 
 @wp.func
+def way_between(balls: RingBalls, r: int, s: int, w: int, longest: float) -> float:
+    """Way along the deformed colon between two rings, counted up to ``longest`` [m]."""
+    way = float(0.0)
+    k = wp.min(r, s)
+    while k < wp.max(r, s) and way < longest:
+        way += wp.length(centre_of(balls.ball[k + 1, w]) - centre_of(balls.ball[k, w]))
+        k += 1
+    return way
+
+
+@wp.func
+def pair_stiffness(
+    shape: LoopShape, balls: RingBalls, r: int, s: int, w: int, distance: float, overlap: float
+) -> float:
+    """Stiffness of a pair at a ``distance`` of its centres [N/m]: none where one stretch is gathered on the shaft."""
+    least = shape.half_bend[r] + shape.half_bend[s]
+    around = way_between(balls, r, s, w, (1.0 + ONSET) * least) / least - 1.0
+    beside = apart / (apart + overlap) - NESTED
+    return shape.stiffness * wp.clamp(wp.min(around, beside) / ONSET, 0.0, 1.0)
+
+
+@wp.func
 def add_pair(
     shape: LoopShape,
     x: wp.array2d(dtype=wp.vec3),
@@ -131,10 +160,11 @@ def add_pair(
     own: wp.vec4,
     n: wp.vec3,
     push: float,
+    stiffness: float,
     first: bool,
     press: LoopPress,
 ):
-    """Share the force ``push`` [N] along -n between the vertices of ring ``r``; ``first`` clears what was there."""
+    """Share a force ``push`` [N] along -n between the vertices of ring ``r``; ``first`` clears what was there."""
     total = facing(shape, x, r, w, own, n)[1]
     for k in range(shape.members.shape[1]):
         i = shape.members[r, k]
@@ -143,10 +173,10 @@ def add_pair(
             force = (-share * push) * n
             if first:
                 press.plane[i, w] = wp.vec4(force[0], force[1], force[2], 0.0)
-                press.stiffness[i, w] = 2.0 * share * shape.stiffness
+                press.stiffness[i, w] = 2.0 * share * stiffness
             else:
                 press.plane[i, w] = press.plane[i, w] + wp.vec4(force[0], force[1], force[2], 0.0)
-                press.stiffness[i, w] = press.stiffness[i, w] + 2.0 * share * shape.stiffness
+                press.stiffness[i, w] = press.stiffness[i, w] + 2.0 * share * stiffness
 
 
 @wp.func
@@ -203,7 +233,8 @@ def press_loops(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls
             n = way / d
             depth = shape.allowed[r, s] - pair_gap(shape, x, r, s, w, own, other, n)
             if depth > 0.0:
-                add_pair(shape, x, r, w, own, n, shape.stiffness * depth, touched == 0, press)
+                stiffness = pair_stiffness(shape, balls, r, s, w, d, depth)
+                add_pair(shape, x, r, w, own, n, stiffness * wp.min(depth, DEEPEST), stiffness, touched == 0, press)
                 touched = 1
         s += 1 + rings_to_skip(shape, own, d)
     finish_ring(shape, x, r, w, touched, press)
