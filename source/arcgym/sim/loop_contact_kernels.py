@@ -141,10 +141,8 @@ def way_between(balls: RingBalls, r: int, s: int, w: int, longest: float) -> flo
 
 
 @wp.func
-def pair_stiffness(
-    shape: LoopShape, balls: RingBalls, r: int, s: int, w: int, distance: float, overlap: float
-) -> float:
-    """Stiffness of a pair at a ``distance`` of its centres [N/m]: none where one stretch is gathered on the shaft."""
+def pair_stiffness(shape: LoopShape, balls: RingBalls, r: int, s: int, w: int, apart: float, overlap: float) -> float:
+    """Stiffness of a pair, centres ``apart`` [m], in N/m: none where one stretch of wall is gathered on the shaft."""
     least = shape.half_bend[r] + shape.half_bend[s]
     around = way_between(balls, r, s, w, (1.0 + ONSET) * least) / least - 1.0
     beside = apart / (apart + overlap) - NESTED
