@@ -27,7 +27,7 @@ DRIFT_TOLERANCE = 1e-3
 """Largest displacement of the wall after a second without contact [m]."""
 
 FAR_AWAY = 1.0
-"""Height of the capsule while the wall is watched [m]: above every colon, as the sphincter would draw it in from below."""
+"""Height of the capsule while the wall is watched [m]: above every colon; below, the sphincter would draw it in."""
 
 
 def main() -> int:

@@ -55,6 +55,46 @@ def test_tube_beyond_the_anus_is_cut_off(tmp_path: Path) -> None:
     assert grid.sample(pipe[20:]).max() < 0.5
 
 
+def test_collapsed_anal_canal_is_kept(tmp_path: Path) -> None:
+    line, _ = course()
+    canal = tube(line[0], (0.0, 0.0, -0.045))
+    found = found_in(write_volume(tmp_path / "a.mha", extra=canal, extra_radius=0.003, voxel=2.0))[1]
+    assert found.cut == []
+    assert found.points[0] == pytest.approx(canal[-1], abs=0.01)
+
+
+def test_collapsed_stretch_is_no_end(tmp_path: Path) -> None:
+    """Where the lumen is a thread for 4 cm, the colon goes on beyond."""
+    line, whole = course()
+    thread = line[len(line) // 2 - 22 : len(line) // 2 + 22]
+    path = write_volume(tmp_path / "a.mha", gap=0.04 + 2 * RADIUS, extra=thread, extra_radius=0.0025, voxel=2.0)
+    found = found_in(path)[1]
+    assert found.cut == []
+    assert length(found.points) == pytest.approx(whole, rel=0.06)
+
+
+def test_small_bowel_joined_at_both_ends_is_no_short_cut(tmp_path: Path) -> None:
+    """A loop runs straight from the descending colon to the transverse colon, 20 cm less than the way round."""
+    line, whole = course()
+    first, last = (line[np.linalg.norm(line - p, axis=1).argmin()] for p in ([-0.14, -0.02, 0.20], [0.0, 0.09, 0.24]))
+    loop = tube(first, tuple(last - first))
+    grid, found = found_in(write_volume(tmp_path / "a.mha", extra=loop, extra_radius=0.008))
+    assert length(found.points) == pytest.approx(whole, rel=0.06)
+    assert {cut["kind"] for cut in found.cut} == {"side branch"}
+    assert grid.sample(loop[len(loop) // 2][None]).max() < 0.5
+
+
+def test_balloon_in_the_rectum_is_filled(tmp_path: Path) -> None:
+    """A ball with a radius of 9 mm in the middle of the lumen: its sections are holes."""
+    line, _ = course()
+    grid, _ = keep_colon(read_volume(write_volume(tmp_path / "a.mha", voxel=2.0), None, None, 0.002), 0.05)
+    voxels = grid.points(np.indices(grid.values.shape).reshape(3, -1).T)
+    hole = (np.linalg.norm(voxels - line[12], axis=1) < 0.009).reshape(grid.values.shape)
+    grid.values[hole] = 0.0
+    assert find_path(grid, [None, None], "ras").filled_hole == pytest.approx(4 / 3 * np.pi * 0.009**3, rel=0.3)
+    assert grid.sample(line[12][None])[0] > 0.5
+
+
 def test_nothing_is_cut_off_a_plain_tube(tmp_path: Path) -> None:
     assert found_in(write_volume(tmp_path / "a.mha"))[1].cut == []
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The committed colon, voxelised and imported again, against the truth."""
+"""Every committed colon, written as a surface and imported again, against the truth."""
 
 from __future__ import annotations
 
@@ -8,65 +8,72 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import trimesh
+from test_surfaces import write
 
 from arcgym.anatomy import ColonStage, read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
 from arcgym.anatomy.importing.measures import hausdorff95, surface_samples
 
-COLON = Path(__file__).resolve().parents[2] / "assets" / "usd" / "colon_1" / "colon.usda"
+COLONS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 BENT = 0.08
 """Distance from the anal verge within which the importer bends the canal upright [m]."""
 
-POLE_BOUND = 0.022
-"""A caecum that is nearly a ball does not show its pole: the same along the surface is 20 mm here."""
+SAMPLES = 0.0005
+"""Distance of the samples of both surfaces [m]; adds less than half of it to the distance between them."""
+
+KINDS = {
+    "colon_1": (".ply", "mm", True),
+    "colon_2": (".stl", "m", False),
+    "colon_3": (".vtk", "mm", True),
+    "colon_4": (".obj", "mm", False),
+    "colon_5": (".glb", "m", True),
+}
+"""Format, unit, and whether a colon is turned inside out; in millimetres its axes are left, posterior, cranial."""
 
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
-def truth() -> ColonStage:
-    return read_colon(COLON)
-
-
-@pytest.fixture(scope="module", params=["mm", "m"])
-def imported(request: pytest.FixtureRequest, truth: ColonStage, tmp_path_factory: pytest.TempPathFactory) -> ColonStage:
-    """The inner surface, open at the anus: once in millimetres, inside out and posterior forwards, once as it is."""
-    folder = tmp_path_factory.mktemp("colon")
-    points, faces = truth.visual.points, truth.visual.faces
-    if request.param == "mm":
-        points, faces = 1e3 * points * [-1, -1, 1], faces[:, ::-1]
-    trimesh.Trimesh(points, faces, process=False).export(folder / "colon.ply")
-    told = import_to_folder(folder / "colon.ply", folder / "out", ImportSettings())
-    assert told["orientation"]["frame"] == ("lps" if request.param == "mm" else "ras")
-    return read_colon(folder / "out" / "colon.usda")
+@pytest.fixture(scope="module", params=KINDS)
+def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[ColonStage, ColonStage]:
+    """A committed colon, and what its inner surface, open at the anus, was imported to."""
+    truth = read_colon(COLONS / request.param / "colon.usda")
+    suffix, unit, inside_out = KINDS[request.param]
+    points, faces = truth.visual.points.astype(float), truth.visual.faces
+    points = 1e3 * points * [-1, -1, 1] if unit == "mm" else points
+    folder = tmp_path_factory.mktemp(request.param)
+    surface = write(folder / f"colon{suffix}", points, faces[:, ::-1] if inside_out else faces)
+    told = import_to_folder(surface, folder / "out", ImportSettings())
+    assert told["input"]["units"] == unit
+    assert told["orientation"]["frame"] == ("lps" if unit == "mm" else "ras")
+    assert [check for check in told["checks"] if not check["ok"]] == []
+    return truth, read_colon(folder / "out" / "colon.usda")
 
 
 def offset(stage: ColonStage) -> np.ndarray:
     return np.array(stage.metadata["translationAfterRotation"])
 
 
-def test_length(imported: ColonStage, truth: ColonStage) -> None:
+def test_length(pair: tuple[ColonStage, ColonStage]) -> None:
+    truth, imported = pair
     assert imported.length == pytest.approx(truth.length, rel=0.02)
 
 
-def test_surface(imported: ColonStage, truth: ColonStage) -> None:
-    a = surface_samples(imported.visual.points, imported.visual.faces, 0.001)
-    b = surface_samples(truth.visual.points, truth.visual.faces, 0.001) + offset(imported)
+def test_surface(pair: tuple[ColonStage, ColonStage]) -> None:
+    truth, imported = pair
+    a = surface_samples(imported.visual.points, imported.visual.faces, SAMPLES)
+    b = surface_samples(truth.visual.points, truth.visual.faces, SAMPLES) + offset(imported)
     a, b = (x[np.linalg.norm(x, axis=1) > BENT] for x in (a, b))
     assert max(hausdorff95(a, b)) < 0.0015
 
 
-def test_landmarks(imported: ColonStage, truth: ColonStage) -> None:
+def test_landmarks(pair: tuple[ColonStage, ColonStage]) -> None:
+    truth, imported = pair
     for name in set(truth.landmarks) & set(imported.landmarks):
-        place = [
-            np.array(
-                [
-                    np.interp(stage.landmarks[name], stage.centerline.arc, stage.centerline.points[:, k])
-                    for k in range(3)
-                ]
-            )
-            for stage in (imported, truth)
-        ]
-        bound = POLE_BOUND if name == "cecum_pole" else 0.015
-        assert np.linalg.norm(place[0] - offset(imported) - place[1]) < bound, name
+        away = place(imported, name) - offset(imported) - place(truth, name)
+        assert np.linalg.norm(away) < 0.015, name
+
+
+def place(stage: ColonStage, landmark: str) -> np.ndarray:
+    """Returns the position of a landmark [m]."""
+    line = stage.centerline
+    return np.array([np.interp(stage.landmarks[landmark], line.arc, line.points[:, k]) for k in range(3)])

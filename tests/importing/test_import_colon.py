@@ -18,6 +18,7 @@ from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.volumes import read_volume
 from arcgym.anatomy.stage_checks import inspect_file
 from arcgym.anatomy.validate import failed
+from arcgym.anatomy.vessel_styles import STYLES
 from arcgym.sim.wall_topology import lumen_topology
 
 COARSE = ImportSettings(voxel=0.0025, visual_spacing=0.006, visual_columns=32, proxy_spacing=0.01, proxy_columns=16)
@@ -74,6 +75,17 @@ def test_canal_rises_from_the_origin(imported: Path) -> None:
     start = stage.centerline.points[:3]
     assert np.abs(start[0]).max() < 1e-6
     assert (start[2] - start[0])[2] == pytest.approx(0.01, abs=0.001)
+
+
+def test_every_segment_shows_its_own_vessels(imported: Path) -> None:
+    """v lies in the band of the texture that is drawn for the segment, except on the dome, which has its own chart."""
+    stage = read_colon(imported / "colon.usda")
+    arc = (stage.visual.skin_weights * stage.wall.ring_arc[stage.wall.ring[stage.visual.skin_indices]]).sum(1)
+    for style in STYLES:
+        start, end = (stage.segment_bounds()[style.segments[k]][k] for k in (0, -1))
+        here = (arc > start + 0.006) & (arc < min(end, stage.length - 0.04) - 0.006)
+        v = stage.visual.uv[here, 1]
+        assert style.band[0] - 1e-3 < v.min() and v.max() < style.band[1] + 1e-3
 
 
 def test_simulator_takes_the_wall(imported: Path) -> None:
