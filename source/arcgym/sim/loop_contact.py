@@ -26,7 +26,8 @@ class LoopContact:
     """Keeps loops of the wall from passing through each other.
 
     Rings push on rings, so contact is as coarse as the rings are long, and there is no friction between loops: the
-    outside of the bowel is wet and smooth. Rings that overlap at rest may go on doing so.
+    outside of the bowel is wet and smooth. Rings that overlap at rest may go on doing so; folds of one stretch, and a
+    wall gathered on the shaft, do not count.
     """
 
     def __init__(

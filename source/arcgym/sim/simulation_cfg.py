@@ -59,7 +59,8 @@ class WallSolverCfg:
     """Whether loops of the colon push each other away where they touch. Nothing changes where they do not. Switch it
     off to compare; ``solver="newton"`` does without."""
     self_contact_stiffness: float = 2000.0
-    """Penalty stiffness between two rings that touch [N/m]: at 1 N they overlap by 0.5 mm."""
+    """Penalty stiffness between two rings that touch [N/m]: at 1 N they overlap by 0.5 mm. Beyond 5 mm, 10 N, the push
+    no longer grows: loops that are pressed together harder pass through each other."""
 
 
 @configclass
