@@ -76,6 +76,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--max-gap", type=float, default=50.0, help="longest gap to bridge [mm] (default: 50)")
     parser.add_argument("--min-lumen", type=float, default=8.0, help="least radius of the wall [mm] (default: 8)")
     parser.add_argument("--wall-thickness", type=float, default=2.0, help="thickness of the wall [mm] (default: 2)")
+    parser.add_argument("--ring-spacing", type=float, default=12.5, help="distance of wall rings [mm] (default: 12.5)")
+    parser.add_argument("--sectors", type=int, default=12, help="wall vertices around a ring (default: 12)")
     return parser
 
 
@@ -97,6 +99,8 @@ def _settings(args: argparse.Namespace) -> object:
         max_gap=1e-3 * args.max_gap,
         min_lumen_radius=1e-3 * args.min_lumen,
         wall_thickness=1e-3 * args.wall_thickness,
+        ring_spacing=1e-3 * args.ring_spacing,
+        sectors=args.sectors,
     )
 
 

@@ -60,12 +60,15 @@ def test_stage_passes_its_checks(imported: Path) -> None:
     assert failed(inspect_file(str(imported / "colon.usda"))[1]) == []
 
 
-def test_landmark_by_position_is_where_the_course_is_nearest(tmp_path: Path) -> None:
+def test_landmark_by_position_and_a_finer_wall(tmp_path: Path) -> None:
     line, _ = course()
     place = tuple(float(value) for value in 1e3 * line[100])
-    settings = replace(COARSE, landmarks={"rectosigmoid": place}, posture="prone")
-    import_to_folder(write_volume(tmp_path / "tube.mha"), tmp_path / "tube", settings)
+    settings = replace(COARSE, landmarks={"rectosigmoid": place}, posture="prone", sectors=16, ring_spacing=0.010)
+    told = import_to_folder(write_volume(tmp_path / "tube.mha"), tmp_path / "tube", settings)
     stage = read_colon(tmp_path / "tube" / "colon.usda")
+    assert [check for check in told["checks"] if not check["ok"]] == []
+    assert stage.wall.num_sectors == 16
+    assert np.diff(stage.wall.ring_arc) == pytest.approx(0.010, rel=0.05)
     assert stage.landmarks["rectosigmoid"] == pytest.approx(0.200 + RADIUS, abs=0.008)
     assert stage.metadata["gravityInScan"] == [0.0, 1.0, 0.0]
 

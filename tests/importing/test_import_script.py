@@ -38,6 +38,6 @@ def test_surface_becomes_a_stage(suffix: str, scale: float, inside_out: bool, op
     stage = read_colon(out / "colon.usda")
     line, length = course()
     whole = length + RADIUS * (1.0 if opened else 2.0)
-    assert stage.length == pytest.approx(whole, rel=0.02)
+    assert stage.length == pytest.approx(whole, rel=0.03)
     pole = stage.centerline.points[-1] - np.array(stage.metadata["translationAfterRotation"])
     assert np.linalg.norm(pole - line[-1]) < 2.0 * RADIUS

@@ -6,6 +6,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from arcgym.anatomy.spec import ColonSpec
+
+from .errors import ColonImportError
+
+_RANGES = {
+    "voxel": (0.0003, 0.01),
+    "max_gap": (0.0, 0.15),
+    "ring_spacing": (0.004, 0.03),
+    "sectors": (6, 64),
+    "wall_thickness": (0.0005, 0.006),
+    "min_lumen_radius": (0.004, 0.03),
+}
+"""Smallest and largest value of settings in metres and of counts."""
+
 
 @dataclass(frozen=True)
 class ImportSettings:
@@ -38,12 +52,12 @@ class ImportSettings:
     """Edge of the voxels that are worked on [m]. Smaller keeps finer folds and costs time and memory."""
     max_gap: float = 0.05
     """Longest collapsed or fluid-filled stretch to bridge [m]."""
-    ring_spacing: float = 0.0125
-    """Distance of the wall's rings [m]."""
-    sectors: int = 12
-    """Wall vertices around a ring."""
-    wall_thickness: float = 0.002
-    """Thickness of the simulated wall [m]."""
+    ring_spacing: float = ColonSpec.ring_spacing
+    """Distance of the wall's rings [m], that of generated colons unless told otherwise."""
+    sectors: int = ColonSpec.sectors
+    """Wall vertices around a ring, likewise; more suit a wide colon: 12 are 13 mm apart where it is 50 mm wide."""
+    wall_thickness: float = ColonSpec.wall_thickness
+    """Thickness of the simulated wall [m], likewise."""
     min_lumen_radius: float = 0.008
     """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through with 1.5 mm to spare."""
     clearance: float = 0.003
@@ -56,3 +70,14 @@ class ImportSettings:
     """Distance of the cross-sections of the surface drawn for policies [m]."""
     proxy_columns: int = 28
     """Points around the surface drawn for policies."""
+
+    def __post_init__(self) -> None:
+        """Checks the sizes.
+
+        Raises:
+            ColonImportError: Names the setting, its value and what is allowed.
+        """
+        for name, (low, high) in _RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise ColonImportError(f"{name} is {value:g}", f"Pass {low:g} to {high:g} (lengths in metres).")
