@@ -23,8 +23,6 @@ HARDEST = wp.constant(3.0)
 """Depth beyond which a contact does not harden any more, in multiples of its hardening depth."""
 CLEAR = wp.constant(0.25)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
-FOLD = wp.constant(0.004)
-"""How much nearer than the front of a fold its far side may be, as they pass through each other [m]."""
 
 
 @wp.struct
@@ -300,19 +298,15 @@ def place_contacts(
 def clear_contacts(links: LinkShapes, records: ContactRecords):
     """Keep the wall off from all sides of a link that is clear of it. Launch (W, L).
 
-    A link whose axis is clear of the wall, and that sees the lumen's side of it, has not gone through and will not in
-    this step. The far side of a fold pushes it on then, too, whose normal tells nothing.
+    A link whose axis is clear of the wall has not gone through and will not in this step. The far side of a fold, whose
+    normal tells nothing, pushes it on then, too.
     """
     w, link = wp.tid()
     row = w * links.radius.shape[0] + link
     nearest = float(FAR)
-    front = float(FAR)
     for k in range(records.count[row]):
-        slot = row * records.capacity + k
-        nearest = wp.min(nearest, records.distance[slot])
-        if wp.dot(records.way[slot], records.normal[slot]) > 0.0:
-            front = wp.min(front, records.distance[slot])
-    if nearest > CLEAR * links.radius[link] and front < nearest + FOLD:
+        nearest = wp.min(nearest, records.distance[row * records.capacity + k])
+    if nearest > CLEAR * links.radius[link]:
         for k in range(records.count[row]):
             slot = row * records.capacity + k
             records.normal[slot] = records.way[slot]
