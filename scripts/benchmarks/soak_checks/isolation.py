@@ -79,8 +79,9 @@ def breakage_caught(env: Any) -> list[str]:
     problems = []
     if env.world_failures != failures + 1:
         problems.append(f"{env.world_failures - failures} worlds counted as recovered, expected 1")
-    if not bool(terminated[0]) or bool(terminated[1:].any()):
-        problems.append(f"worlds {terminated.nonzero().flatten().tolist()} terminated, expected [0]")
+    recovered = (terminated & ~env.termination_manager.terminated).nonzero().flatten().tolist()
+    if recovered != [0]:
+        problems.append(f"worlds {recovered} terminated for it, expected [0]")
     found = {**leaves("obs", obs), "reward": reward, **env.sim.world_arrays()}
     problems += [f"{name} is not finite" for name, value in found.items() if not bool(torch.isfinite(value).all())]
     return problems
