@@ -1,0 +1,61 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Generated colons as label volumes with gaps, leaks, tubes and noise, imported and compared with the truth.
+
+``pytest -m slow -s tests/importing/test_voxelised.py`` prints the figures.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from label_volumes import DIRECTIONS
+from voxelised import gap, noise, place, rectal_tube, small_bowel, write_voxelised
+
+from arcgym.anatomy import read_colon
+from arcgym.anatomy.importing import ImportSettings, import_to_folder
+from arcgym.anatomy.importing.measures import hausdorff95, surface_samples
+
+COLONS = Path(__file__).resolve().parents[2] / "assets" / "usd"
+BENT = 0.08
+"""Distance from the anal verge within which the importer bends the canal upright [m]."""
+
+CASES = {
+    "noise and fluid": ("colon_1", "identity", [noise, gap(0.5, 0.05, fluid=True)], []),
+    "gaps": ("colon_2", "flipped_x", [gap(0.3, 0.005), gap(0.75, 0.015), gap(1.15, 0.028)], []),
+    "small bowel": ("colon_3", "oblique", [small_bowel(0.7)], ["side branch"]),
+    "small bowel, joined twice": ("colon_4", "permuted", [small_bowel(1.0)], ["side branch"]),
+    "thread and tube": ("colon_5", "flipped_z", [gap(0.85, 0.03, thread=0.002), rectal_tube], ["rectal tube"]),
+}
+"""Colon, direction matrix, what is done to it, and what has to be cut off again."""
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_import_is_near_the_truth(case: str, tmp_path: Path) -> None:
+    name, direction, edits, cut = CASES[case]
+    truth = read_colon(COLONS / name / "colon.usda")
+    volume = write_voxelised(truth, tmp_path / "colon.nii.gz", DIRECTIONS[direction], edits)
+    told = import_to_folder(volume, tmp_path / "out", ImportSettings())
+    imported = read_colon(tmp_path / "out" / "colon.usda")
+    shift = np.array(imported.metadata["translationAfterRotation"])
+    a = surface_samples(imported.visual.points, imported.visual.faces, 0.0005)
+    b = surface_samples(truth.visual.points, truth.visual.faces, 0.0005) + shift
+    surface = max(hausdorff95(*(x[np.linalg.norm(x, axis=1) > BENT] for x in (a, b))))
+    away = {
+        mark: np.linalg.norm(place(imported, imported.landmarks[mark]) - shift - place(truth, truth.landmarks[mark]))
+        for mark in set(truth.landmarks) & set(imported.landmarks)
+    }
+    worst = max(away, key=lambda mark: away[mark])
+    ratio = imported.length / truth.length
+    print(
+        f"\n{case}: length {100 * (ratio - 1):+.1f} %, surface {1e3 * surface:.2f} mm, {worst} {1e3 * away[worst]:.0f} mm"
+    )
+    assert ratio == pytest.approx(1.0, abs=0.02)
+    assert surface < 0.0015
+    assert away[worst] < 0.015, worst
+    assert set(cut) <= {piece["kind"] for piece in told["cleaning"]["cut"]}
+    assert [check for check in told["checks"] if not check["ok"]] == []
