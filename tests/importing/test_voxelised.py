@@ -51,9 +51,7 @@ def test_import_is_near_the_truth(case: str, tmp_path: Path) -> None:
     }
     worst = max(away, key=lambda mark: away[mark])
     ratio = imported.length / truth.length
-    print(
-        f"\n{case}: length {100 * (ratio - 1):+.1f} %, surface {1e3 * surface:.2f} mm, {worst} {1e3 * away[worst]:.0f} mm"
-    )
+    print(f"\n{case}: length {ratio - 1:+.1%}, surface {1e3 * surface:.2f} mm, {worst} {1e3 * away[worst]:.0f} mm")
     assert ratio == pytest.approx(1.0, abs=0.02)
     assert surface < 0.0015
     assert away[worst] < 0.015, worst

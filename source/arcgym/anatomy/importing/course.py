@@ -25,7 +25,9 @@ _LARGEST_SHIFT = 0.005
 _END_LENGTH = 0.03
 _LENGTH_ROUNDS = 6
 _LENGTH_SMOOTHING = 0.009
-_CANAL = (0.015, 0.070)
+_CANAL = 0.015
+_CANAL_BEND = (0.020, 0.055)
+_CANAL_CURVATURE = 10.0
 
 
 def resample(points: np.ndarray, spacing: float) -> np.ndarray:
@@ -203,14 +205,15 @@ def with_upright_canal(points: np.ndarray) -> tuple[np.ndarray, float]:
 
     Returns:
         The new points [m] and the angle by which the canal was turned [rad]; lengths are kept, and everything beyond
-        7 cm only moves.
+        4 cm, or 7 cm if it was turned far, only moves.
     """
     edge = np.diff(points, axis=0)
     length = np.linalg.norm(edge, axis=1)
     arc = np.cumsum(length) - 0.5 * length
-    first = edge[arc < _CANAL[0]].sum(0)
+    first = edge[arc < _CANAL].sum(0)
     upright, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [first])
-    share = np.clip((arc - _CANAL[0]) / (_CANAL[1] - _CANAL[0]), 0.0, 1.0)
+    bend = float(np.clip(upright.magnitude() / _CANAL_CURVATURE, *_CANAL_BEND))
+    share = np.clip((arc - _CANAL) / bend, 0.0, 1.0)
     fade = 1.0 - share * share * (3 - 2 * share)
     turned = Rotation.from_rotvec(fade[:, None] * upright.as_rotvec()).apply(edge)
     return np.concatenate([np.zeros((1, 3)), np.cumsum(turned, axis=0)]), float(upright.magnitude())
