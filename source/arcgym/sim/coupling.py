@@ -66,7 +66,7 @@ class TwoLevelCoupling:
             x: Wall positions [m], shape (W*V,).
             v: Wall velocities [m/s], shape (W*V,).
             wall_force: Sum of mean link forces [N], shape (W*L,).
-            pierced: Set to 1 where the axis of a link is behind the wall, shape (W,).
+            pierced: Set to 1 where the axis of a link is about to get behind the wall, or there, shape (W,).
         """
         self.cfg, self.model, self.control = cfg, model, control
         self.actuation, self.contact, self.wall = actuation, contact, wall

@@ -4,7 +4,7 @@
 
 import warp as wp
 
-from arcgym.sim.contact_kernels import ContactLaw, ContactRecords, LinkShapes, contact_push, slip_scale, touch
+from arcgym.sim.contact_kernels import CLEAR, ContactLaw, ContactRecords, LinkShapes, contact_push, slip_scale, touch
 from arcgym.sim.geometry_kernels import corner_point
 from arcgym.sim.scope_kernels import Articulated, LinkLoads, moved
 from arcgym.utils import warp_setup  # noqa: F401
@@ -63,7 +63,7 @@ def load_contacts(
 ):
     """Sum the contacts of each link with the wall where it is. Launch (L, W).
 
-    Sets ``pierced``, shape (W,), where a link's axis is behind the wall.
+    Sets ``pierced``, shape (W,), where a link's axis is so close to the wall that it may get, or be, behind it.
     """
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
@@ -78,7 +78,7 @@ def load_contacts(
         p = corner_point(x, f, u, w)
         radius = links.radius[link] + law.wall_radius
         c = touch(p, records.normal[slot], pose, links.half_length[link], radius)
-        if c.gap < -radius:
+        if c.gap + radius < CLEAR * links.radius[link]:
             pierced[w] = 1
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - centre)
         one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)

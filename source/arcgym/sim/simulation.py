@@ -148,7 +148,8 @@ class Simulation:
 
     @property
     def pierced(self) -> torch.Tensor:
-        """Worlds in which the axis of a link has been behind the wall since the last :meth:`step` began, (N,), bool.
+        """Worlds in which the axis of a link came within a quarter of its radius of the wall, or behind it, in the last
+        :meth:`step`, shape (N,), bool.
 
         Not told with ``solver="newton"``.
         """

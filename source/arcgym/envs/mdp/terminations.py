@@ -36,7 +36,7 @@ def withdrawn(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
 
 
 def pierced(env: ManagerBasedRLEnv) -> torch.Tensor:
-    """A link has gone through the wall; what follows means nothing, for the wall does not tear.
+    """A link is going through the wall; what follows would mean nothing, for the wall does not tear.
 
     It takes about 100 N on one link: a full push with the shaft twisted to its limit in the rectum.
     """
