@@ -17,12 +17,18 @@ SLOW = [
     "bend_force",
     "bend_tip",
     "sigmoid_force",
+    "sigmoid_tip",
     "wall_motion_stiff",
     "wall_motion_soft",
     "action_reaction",
     "base_force",
+    "capstan",
+    "tunnelling",
     "speed_capsule",
+    "speed_magnetic",
+    "speed_proximal",
     "random_capsule",
+    "parked_drift",
 ]
 FAILING = ["indentation_in_situ"]
 

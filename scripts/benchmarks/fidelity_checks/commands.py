@@ -29,8 +29,8 @@ SPEED_TIME = 4.0
 """Time for which each command is kept [s]."""
 RANDOM_WORLDS = 20
 """Worlds of random actions."""
-RANDOM_TIME = {"cpu": 6.0, "cuda": 30.0}
-"""Time of each of them by kind of device [s]: ten minutes in all on a GPU, two on a CPU."""
+RANDOM_TIME = 30.0
+"""Time of each of them [s]: ten minutes in all."""
 REDRAW = 0.2
 """Chance a control step that a world's random action is drawn anew."""
 
@@ -133,14 +133,13 @@ def random_actions(run: Run, robot: str) -> list[Row]:
     count, command = commander(sim, robot)
     draw = torch.Generator().manual_seed(1)
     action, watch = torch.zeros(RANDOM_WORLDS, count), Watch(sim)
-    time = RANDOM_TIME[run.device.split(":")[0]]
-    for _ in range(round(time / CONTROL_STEP)):
+    for _ in range(round(RANDOM_TIME / CONTROL_STEP)):
         fresh = 2.0 * torch.rand(RANDOM_WORLDS, count, generator=draw) - 1.0
         action = torch.where(torch.rand(RANDOM_WORLDS, 1, generator=draw) < REDRAW, fresh, action)
         command(action.to(sim.device))
         sim.step(round(CONTROL_STEP / sim.physics_dt))
         watch.look()
-    return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * time / 60.0:g} min")]
+    return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * RANDOM_TIME / 60.0:g} min")]
 
 
 for _robot in ROBOTS:
