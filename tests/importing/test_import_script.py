@@ -21,10 +21,17 @@ SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "tools" / "import_col
 
 pytestmark = pytest.mark.slow
 
+TOO_LONG = pytest.mark.xfail(strict=True, reason="as an STL, this open tube comes out 2.2 % too long")
+
 
 @pytest.mark.parametrize(
     ("suffix", "scale", "inside_out", "opened"),
-    [(".stl", 1e3, True, True), (".obj", 1.0, False, False), (".vtk", 1e3, False, False), (".vtk", 1.0, True, True)],
+    [
+        pytest.param(".stl", 1e3, True, True, marks=TOO_LONG),
+        (".obj", 1.0, False, False),
+        (".vtk", 1e3, False, False),
+        (".vtk", 1.0, True, True),
+    ],
 )
 def test_surface_becomes_a_stage(suffix: str, scale: float, inside_out: bool, opened: bool, tmp_path: Path) -> None:
     grid = read_volume(write_volume(tmp_path / "tube.mha"), None, None, 0.003)
@@ -38,6 +45,6 @@ def test_surface_becomes_a_stage(suffix: str, scale: float, inside_out: bool, op
     stage = read_colon(out / "colon.usda")
     line, length = course()
     whole = length + RADIUS * (1.0 if opened else 2.0)
-    assert stage.length == pytest.approx(whole, rel=0.03)
+    assert stage.length == pytest.approx(whole, rel=0.02)
     pole = stage.centerline.points[-1] - np.array(stage.metadata["translationAfterRotation"])
     assert np.linalg.norm(pole - line[-1]) < 2.0 * RADIUS
