@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.spatial.transform import Rotation
@@ -12,6 +14,7 @@ from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.segments import SEGMENTS
 
 from .grid import Grid
+from .openings import Opening, to_opening
 from .polar import cast_rings
 from .pouch import to_fitted_pole
 
@@ -56,13 +59,16 @@ def plain_curve(points: np.ndarray) -> Curve:
     return Curve(points, np.linspace(0.0, 1.0, len(SEGMENTS) + 1)[1:])
 
 
-def centred(grid: Grid, path: np.ndarray, find_pole: bool = True, rounds: int = 6) -> np.ndarray:
+def centred(
+    grid: Grid, path: np.ndarray, find_pole: bool = True, openings: Sequence[Opening] = (), rounds: int = 6
+) -> np.ndarray:
     """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
 
     Args:
         grid: The lumen.
         path: Way from the anus to the caecum [m], its ends a radius away from the wall, shape (n, 3).
         find_pole: Whether the caecal pole is not known and has to be found.
+        openings: Holes of a surface; at an end, the way leads to the middle of its hole.
         rounds: How often it is moved.
 
     Returns:
@@ -71,8 +77,11 @@ def centred(grid: Grid, path: np.ndarray, find_pole: bool = True, rounds: int = 
     points = smooth(resample(path, SPACING), 1.5)
     for _ in range(rounds):
         points = _centred_once(grid, points)
-    points = _to_the_wall(grid, _to_the_wall(grid, points, rounds=0)[::-1], rounds=16)[::-1]
-    points = to_fitted_pole(grid, points) if find_pole else points
+    to_anus = to_opening(points[::-1], openings)
+    points = (_to_the_wall(grid, points[::-1]) if to_anus is None else to_anus)[::-1]
+    to_cecum = to_opening(points, openings)
+    points = _to_the_wall(grid, points) if to_cecum is None else to_cecum
+    points = to_fitted_pole(grid, points) if find_pole and to_cecum is None else points
     return resample(smooth(resample(points, SPACING), 1.5), SPACING)
 
 
@@ -95,24 +104,13 @@ def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
     return out
 
 
-def _to_the_wall(grid: Grid, points: np.ndarray, rounds: int) -> np.ndarray:
-    """Goes on from the last point to the wall, through the middle of the lumen near the place where it gets there.
-
-    An open end has such a middle. The pole of a caecum that is round has none: with no rounds, the way is straight.
-    """
+def _to_the_wall(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Goes straight on from the last point to the wall."""
     start = points[-1]
-    back = points[-1 - round(_END_LENGTH / SPACING)]
-    end = _wall_ahead(grid, start, start - back)
-    reach = float(np.linalg.norm(end - start))
-    axis = np.arange(-reach, reach + 1e-9, 0.001)
-    ball = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), -1).reshape(-1, 3)
-    ball = ball[np.linalg.norm(ball, axis=1) < reach]
-    for _ in range(rounds):
-        lumen = ball[grid.sample(end + ball) > 0.5]
-        if not len(lumen):
-            break
-        end = _wall_ahead(grid, start, end + lumen.mean(0) - start)
-    return points if reach < 0.5 * SPACING else np.concatenate([points, resample(np.stack([start, end]), SPACING)[1:]])
+    end = _wall_ahead(grid, start, start - points[-1 - round(_END_LENGTH / SPACING)])
+    if np.linalg.norm(end - start) < 0.5 * SPACING:
+        return points
+    return np.concatenate([points, resample(np.stack([start, end]), SPACING)[1:]])
 
 
 def _wall_ahead(grid: Grid, start: np.ndarray, way: np.ndarray, step: float = 0.0005) -> np.ndarray:

@@ -25,6 +25,7 @@ _LONGEST_CANAL = 0.055
 _BESIDE = 0.015
 _AMPULLA_SHARE = 0.78
 _OPEN_TUBE = 0.0035
+_ROUND = 1.2
 _BEFORE = 0.080
 _POLE_REACH = 0.090
 
@@ -161,7 +162,7 @@ def _without_tube(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray, list[
     start = _thin_tail(arc, width, _TUBE_SHARE, _TUBE_CALIBRE)
     if start is None or arc[-1] - arc[start] < _LEAST_TUBE or arc[start] < (1.0 - _MOST_CUT) * arc[-1]:
         return nodes, []
-    if _is_canal(arc, width, start):
+    if _is_canal(arc, width, start) or _is_trough(tree, points, width, start):
         return nodes, []
     tube = Attached("rectal tube", points[start:], clearance[start:], float(clearance[start : start + 8].min()))
     return back[: start + 1][::-1], [tube]
@@ -176,6 +177,18 @@ def _is_canal(arc: np.ndarray, width: np.ndarray, start: int) -> bool:
     beside = before & (arc > arc[start] - _BESIDE)
     wide = float(width[beside].max()) > _AMPULLA_SHARE * float(width[before].max())
     return wide and arc[-1] - arc[start] < _LONGEST_CANAL and float(np.median(width[start:])) < _OPEN_TUBE
+
+
+def _is_trough(tree: LumenTree, points: np.ndarray, width: np.ndarray, start: int) -> bool:
+    """Tells whether a thin tail is the colon itself, cut open lengthwise: its sections are no discs.
+
+    A scan or a surface that ends in a plane cuts a rectum that runs along that plane into a trough. Half a disc has
+    the area of a disc of 1.4 times the radius that fits in.
+    """
+    _, nearest = cKDTree(points).query(tree.lumen)
+    volume = tree.voxel**3 * np.bincount(nearest, minlength=len(points))[start:].sum()
+    area = volume / max(_arc(points[start:])[-1], tree.voxel)
+    return bool(np.sqrt(area / np.pi) > _ROUND * float(np.median(width[start:])) + 0.5 * tree.voxel)
 
 
 def _side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[Attached]) -> list[Attached]:

@@ -24,10 +24,11 @@ from .course import centred, plain_curve, relaxed, with_upright_canal
 from .errors import ColonImportError
 from .grid import Grid
 from .landmarks import find_segment_ends
+from .openings import Opening, find_openings
 from .orientation import FRAMES, Orientation, orient
 from .polar import cast, cast_rings, own_loop
 from .settings import ImportSettings
-from .surfaces import SURFACE_SUFFIXES, read_surface
+from .surfaces import SURFACE_SUFFIXES, fill_surface, load_surface
 from .visual_fitting import fit_visual
 from .volumes import VOLUME_SUFFIXES, read_volume
 from .wall_fitting import FittedWall, fit_wall
@@ -101,20 +102,21 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
         ColonImportError: The input cannot become a colon; says what was found and what to pass.
     """
     progress = _Progress()
-    grid, source = _read(path, settings)
+    grid, openings, source = _read(path, settings)
     progress.done("read", f"{grid.mask.sum() * grid.spacing**3 * 1e6:.0f} ml in {'x'.join(map(str, grid.mask.shape))}")
     grid, cleaning = keep_colon(grid, settings.max_gap)
     progress.done(
         "clean", f"{cleaning.pieces} pieces, {len(cleaning.bridges)} bridged, {len(cleaning.dropped)} dropped"
     )
     course, orientation, cleaning.cut = _course(grid, settings, source["kind"] == "surface")
-    grid, course = _turned(grid, course, FRAMES[orientation.frame])
+    rotation = FRAMES[orientation.frame]
+    grid, course = _turned(grid, course, rotation)
     progress.done("centreline", f"likeness {orientation.likeness:.2f}, frame {orientation.frame}")
     grid = Grid(gaussian_filter(grid.values, _SMOOTHING / grid.spacing), grid.origin, grid.spacing)
-    measured = _measure(grid, course, settings)
+    measured = _measure(grid, course, settings, [opening.turned(rotation) for opening in openings])
     progress.done("radii", f"{1e3 * measured.curve.length:.0f} mm long")
     curve, measured, canal = _placed(measured)
-    given = _given_landmarks(settings, measured.curve, FRAMES[orientation.frame], curve.length)
+    given = _given_landmarks(settings, measured.curve, rotation, curve.length)
     ends, guessed = find_segment_ends(curve.points, curve.s, given)
     curve = Curve(curve.points, ends)
     fitted = fit_wall(curve, measured.s, measured.radius, settings)
@@ -130,18 +132,21 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
         "guessed_landmarks": guessed,
         "seconds": progress.seconds,
     }
-    return ImportedColon(stage, grid, measured.curve.points, FRAMES[orientation.frame], fitted, report)
+    return ImportedColon(stage, grid, measured.curve.points, rotation, fitted, report)
 
 
-def _read(path: Path, settings: ImportSettings) -> tuple[Grid, dict[str, str]]:
+def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], dict[str, str]]:
+    """Returns the lumen, where it is open if it was a surface, and what was read."""
     if not path.is_file():
         raise ColonImportError(f"{path} does not exist", "Pass a label volume or a surface.")
     name = path.name.lower()
     if name.endswith(VOLUME_SUFFIXES):
-        return read_volume(path, settings.label, settings.spacing, settings.voxel), {"kind": "volume", "units": "mm"}
+        grid = read_volume(path, settings.label, settings.spacing, settings.voxel)
+        return grid, [], {"kind": "volume", "units": "mm"}
     if name.endswith(SURFACE_SUFFIXES):
-        grid, unit = read_surface(path, settings.units, settings.spacing, settings.voxel)
-        return grid, {"kind": "surface", "units": unit}
+        points, faces, unit = load_surface(path, settings.units, settings.spacing)
+        grid = fill_surface(points, faces, settings.voxel)
+        return grid, find_openings(points, faces), {"kind": "surface", "units": unit}
     known = ", ".join(VOLUME_SUFFIXES + SURFACE_SUFFIXES)
     raise ColonImportError(f"{path} is of no known kind", f"Pass a file that ends in {known}.")
 
@@ -168,8 +173,8 @@ def _turned(grid: Grid, course: np.ndarray, rotation: np.ndarray) -> tuple[Grid,
     return Grid(np.ascontiguousarray(values), origin, grid.spacing), course @ rotation.T
 
 
-def _measure(grid: Grid, course: np.ndarray, settings: ImportSettings) -> Measured:
-    points = centred(grid, course, find_pole=settings.cecum is None)
+def _measure(grid: Grid, course: np.ndarray, settings: ImportSettings, openings: list[Opening]) -> Measured:
+    points = centred(grid, course, settings.cecum is None, openings)
     half_width = settings.min_lumen_radius + settings.wall_thickness + 0.5 * settings.clearance
     curve = plain_curve(relaxed(points, np.full(len(points), half_width)))
     s = np.linspace(0.0, curve.length, round(curve.length / _MEASURE_SPACING) + 1)

@@ -38,6 +38,12 @@ def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel:
     Raises:
         ColonImportError: The file is damaged, empty, not finite, or of no colon's size.
     """
+    points, faces, unit = load_surface(path, units, scale)
+    return fill_surface(points, faces, voxel), unit
+
+
+def load_surface(path: Path, units: str, scale: tuple[float, ...] | None) -> tuple[np.ndarray, np.ndarray, str]:
+    """Reads a surface: vertices [m], triangles and the unit that was used; arguments as for :func:`read_surface`."""
     points, faces = _load_vtk(path) if path.suffix in (".vtk", ".vtp") else _load_mesh(path)
     if len(faces) < 100:
         raise ColonImportError(f"{path} holds {len(faces)} triangles", "Pass a closed surface of the colon's lumen.")
@@ -46,7 +52,7 @@ def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel:
         raise ColonImportError(f"{path} holds {bad} vertices that are NaN or infinite", "Repair the surface first.")
     points = points * (1.0 if scale is None else np.asarray(scale, float))
     unit = _guess_unit(path, points) if units == "auto" else units
-    return _fill(points * UNITS[unit], faces, voxel), unit
+    return points * UNITS[unit], faces, unit
 
 
 def _load_mesh(path: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -91,7 +97,8 @@ def _guess_unit(path: Path, points: np.ndarray) -> str:
     )
 
 
-def _fill(points: np.ndarray, faces: np.ndarray, voxel: float) -> Grid:
+def fill_surface(points: np.ndarray, faces: np.ndarray, voxel: float) -> Grid:
+    """Returns the inside of a surface: vertices [m], triangles, edge of the voxels [m]."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonDataModel import vtkImageData
     from vtkmodules.vtkImagingStencil import vtkImageStencilToImage, vtkPolyDataToImageStencil

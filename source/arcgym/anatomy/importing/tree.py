@@ -37,6 +37,10 @@ class LumenTree:
     """Largest clearance within 13 mm, more than a node's own where it is off the middle [m], shape (n,)."""
     tips: list[int]
     """Last node of every branch; the root is one where nothing goes on from it in another direction."""
+    lumen: np.ndarray
+    """Middles of the lumen's voxels [m], shape (m, 3)."""
+    voxel: float
+    """Edge of these voxels [m]."""
 
     @cached_property
     def step(self) -> np.ndarray:
@@ -95,7 +99,9 @@ def lumen_tree(clearance: Grid, given: Sequence[np.ndarray] = ()) -> LumenTree:
         ridge, cost = ridge[left], cost[left]
     index = np.array(growth.nodes)
     room, wide = (values[tuple(index.T)].astype(float) for values in (clearance.values, widest))
-    tree = LumenTree(clearance.points(index), np.array(growth.parent), room, wide, growth.tips)
+    lumen = clearance.points(np.argwhere(clearance.values > 0))
+    points, parent = clearance.points(index), np.array(growth.parent)
+    tree = LumenTree(points, parent, room, wide, growth.tips, lumen, clearance.spacing)
     if not len(given) and _passes_through(tree):
         return tree
     return replace(tree, tips=[0, *tree.tips])
