@@ -25,7 +25,7 @@ _LONGEST_CANAL = 0.055
 _BESIDE = 0.015
 _AMPULLA_SHARE = 0.78
 _OPEN_TUBE = 0.0035
-_ROUND = 1.2
+_ROUND, _BLUR = 1.1, 0.8
 _BEFORE = 0.080
 _POLE_REACH = 0.090
 
@@ -188,7 +188,7 @@ def _is_trough(tree: LumenTree, points: np.ndarray, width: np.ndarray, start: in
     _, nearest = cKDTree(points).query(tree.lumen)
     volume = tree.voxel**3 * np.bincount(nearest, minlength=len(points))[start:].sum()
     area = volume / max(_arc(points[start:])[-1], tree.voxel)
-    return bool(np.sqrt(area / np.pi) > _ROUND * float(np.median(width[start:])) + 0.5 * tree.voxel)
+    return bool(np.sqrt(area / np.pi) > _ROUND * float(np.median(width[start:])) + _BLUR * tree.voxel)
 
 
 def _side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[Attached]) -> list[Attached]:
