@@ -10,7 +10,18 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.anatomy import SEGMENTS, Centerline, ColonStage, VisualMesh, read_colon, segment_index, write_colon
+from arcgym.anatomy import (
+    ANCHOR_FIXED,
+    ANCHOR_FREE,
+    SEGMENTS,
+    Centerline,
+    ColonStage,
+    VisualMesh,
+    WallMesh,
+    read_colon,
+    segment_index,
+    write_colon,
+)
 from arcgym.anatomy.visual import TEXTURE_LENGTH, grid_triangles, skin_to_rings, smooth_normals
 from arcgym.anatomy.wall import build_wall
 from arcgym.assets import ColonCfg, EndoscopeCfg
@@ -24,6 +35,8 @@ from fidelity_checks.table import Run
 
 SEGMENT = "sigmoid"
 """Part of the shipped colon that the tubes take their measures from."""
+HELD_RINGS = (2, 1)
+"""Spacings of the shipped rings over which a tube is held at its start and at its end, as the colon is."""
 FREE = dict.fromkeys(SEGMENTS, 0.0)
 """Anchor stiffness of a tube that is held at its ends alone."""
 
@@ -106,9 +119,10 @@ def tube_stage(tube: Tube) -> ColonStage:
     codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
     shipped = shipped_stage()
     visual = _visual(tube, arc, sectors, measures.radius)
+    held = (HELD_RINGS[0] * measures.spacing, tube.length - HELD_RINGS[1] * measures.spacing)
     return ColonStage(
         name="tube",
-        wall=build_wall(layers, codes, arc, capped=False),
+        wall=_hold(build_wall(layers, codes, arc, capped=False), *held),
         visual=visual,
         visual_proxy=visual,
         centerline=Centerline(
@@ -123,6 +137,14 @@ def tube_stage(tube: Tube) -> ColonStage:
         detail_texture=shipped.detail_texture,
         metadata={"provenance": "scripts/benchmarks/fidelity.py", "licence": "BSD-3-Clause", "patient": "none"},
     )
+
+
+def _hold(wall: WallMesh, start: float, end: float) -> WallMesh:
+    """Hold the wall before one arc length and beyond another [m], however fine its rings are."""
+    arc = wall.ring_arc[wall.ring]
+    still = (arc < start + 1.0e-4) | (arc > end - 1.0e-4)
+    loose = np.where(wall.anchor == ANCHOR_FIXED, ANCHOR_FREE, wall.anchor)
+    return replace(wall, anchor=np.where(still, ANCHOR_FIXED, loose).astype(np.int32))
 
 
 def _visual(tube: Tube, ring_arc: np.ndarray, sectors: int, radius: float) -> VisualMesh:
