@@ -210,7 +210,7 @@ def test_gravity_weighs_the_real_masses(tiny_sim: TinySim) -> None:
     assert speed == pytest.approx(-9.81 / 3.0 / 480.0, rel=0.01)
 
 
-@pytest.mark.parametrize(("lower", "lift"), [(0.005, 0.0), (0.03, 20.0)])
+@pytest.mark.parametrize(("lower", "lift"), [(0.005, 0.0), (0.03, 20.0), (0.08, 0.0)])
 def test_a_loop_that_comes_out_of_the_anus_is_lifted(tiny_sim: TinySim, lower: float, lift: float) -> None:
     sim = tiny_sim("proximal", 12)
     low = int(np.argmin(np.abs(sim.endoscope.rest_height + 0.05)))

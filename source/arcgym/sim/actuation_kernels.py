@@ -39,6 +39,8 @@ class TipPull:
 
 FIRST_RINGS = wp.constant(1)
 """Last of the colon's rings that a link near the anus may be in."""
+SPHINCTER = wp.constant(0.05)
+"""Length over which the sphincter lifts what sinks into it; what is farther down is out, and stays there [m]."""
 
 
 @wp.struct
@@ -138,7 +140,7 @@ def load_links(
     """Weight of every link, and the springs of the introducer near the colon's first rings. Launch (L, W).
 
     Low links are pulled sideways onto the Z axis. The base's slide tells how high each would be in a straight shaft; a
-    link lower than that, and lower than the lid, is lifted. ``ring`` has the shape (W, L).
+    link up to ``SPHINCTER`` lower than that, and lower than the lid, is lifted. ``ring`` has the shape (W, L).
     """
     link, w = wp.tid()
     i = w * resistance.shape[0] + link
@@ -152,7 +154,7 @@ def load_links(
             force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)
             held = wp.vec3(dt * damping, dt * damping, 0.0)
         low = guide.lid + wp.min(guide.rest[link] + joint_q[w * coords], 0.0) - p[2]
-        if low > 0.0:
+        if low > 0.0 and low < SPHINCTER:
             force[2] = force[2] + guide.stiffness * low - damping * v[2]
             held[2] = dt * damping
     body_f[i] = wp.spatial_vector(force, wp.vec3(0.0))
