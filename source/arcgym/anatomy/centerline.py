@@ -17,6 +17,7 @@ from .spec import ColonSpec
 SAMPLE_SPACING = 0.005
 """Distance of the relaxed points [m]."""
 
+_SIGMOID = SEGMENTS.index("sigmoid")
 _HOLD_TIED, _HOLD_MOBILE, _HOLD_REPOSED = 0.0072, 0.003, 0.025
 
 
@@ -44,7 +45,19 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
     points = relax(route, edge, base_radius(spec, arc), hold, spec, places)
     points = _smoothed(points)
     arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    return Curve(points, arc[np.cumsum(counts)])
+    ends = arc[np.cumsum(counts)]
+    if spec.iliac_fossa is not None:
+        ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])
+    return Curve(points, ends)
+
+
+def _height_crossing(height: np.ndarray, arc: np.ndarray, level: float, bounds: np.ndarray) -> float:
+    """Returns where the descending colon, followed down from its upper border, first is below a level [m]."""
+    below = np.flatnonzero((height < level) & (arc < bounds[1]))
+    if not len(below) or below[-1] + 1 == len(arc):
+        return float(bounds[0])
+    k = int(below[-1])
+    return float(np.interp(level, height[k : k + 2], arc[k : k + 2]))
 
 
 def _smoothed(points: np.ndarray) -> np.ndarray:

@@ -47,6 +47,14 @@ DIVERTICULA_PREVALENCE, DIVERTICULA_MEAN = 0.42, 14.0
 DIVERTICULA_SITES = {"sigmoid": 0.75, "descending": 0.11, "transverse": 0.06, "ascending": 0.08}
 """Where diverticula are (Peery et al.)."""
 
+DESCENDING_LENGTH, ASCENDING_LENGTH = 0.215, 0.145
+"""Lengths of descending and ascending colon that the typical frame of :mod:`arcgym.anatomy.courses` has room for [m]:
+a longer one needs a higher flexure, as both run straight up the flank from the iliac fossa."""
+
+ILIAC_FOSSA = 0.178
+"""Height above the anal verge at which the descending colon of random patients ends [m]: in the left iliac fossa, a
+little below the iliac crest (Standring, Gray's Anatomy), as in the five patients (0.175 to 0.187)."""
+
 _MOST_DIVERTICULA = 24
 _LONG_TRANSVERSE = 0.56
 
@@ -85,6 +93,9 @@ def draw_spec(seed: int) -> ColonSpec:
         segments=segments,
         sigmoid_shape=_draw_sigmoid(rng, lengths["sigmoid"]),
         transverse_shape="plain" if lengths["transverse"] < _LONG_TRANSVERSE else "redundant",
+        iliac_fossa=ILIAC_FOSSA,
+        left_rise=round(lengths["descending"] - DESCENDING_LENGTH, 4),
+        right_rise=round(lengths["ascending"] - ASCENDING_LENGTH, 4),
         transverse_sag=float(np.clip(0.10 + 0.45 * (lengths["transverse"] - 0.40), 0.07, 0.17)),
         acute_bends=draw_bends(rng, total),
         min_bend_radius=MIN_BEND_RADIUS,
@@ -112,7 +123,8 @@ def draw_bends(rng: np.random.Generator, length: float) -> int:
 def segment_lengths(total: float) -> dict[str, float]:
     """Returns the length of each segment [m]: sigmoid and transverse on the line through Hanson's two groups.
 
-    Rectum and caecum are the default spec's; the others share the rest in its proportions.
+    Rectum, caecum and flexures, which are bends, are the default spec's; descending and ascending colon share the rest
+    in its proportions.
     """
     share = (total - REGULAR_LENGTH) / (LONG_LENGTH - REGULAR_LENGTH)
     default = {name: segment.length for name, segment in ColonSpec().segments.items()}
@@ -121,7 +133,7 @@ def segment_lengths(total: float) -> dict[str, float]:
         "sigmoid": REGULAR_SIGMOID + share * (LONG_SIGMOID - REGULAR_SIGMOID),
         "transverse": REGULAR_TRANSVERSE + share * (LONG_TRANSVERSE - REGULAR_TRANSVERSE) - halves,
     }
-    lengths |= {name: default[name] for name in ("rectum", "cecum")}
+    lengths |= {name: default[name] for name in ("rectum", "splenic", "hepatic", "cecum")}
     rest = [name for name in SEGMENTS if name not in lengths]
     scale = (total - sum(lengths.values())) / sum(default[name] for name in rest)
     return {name: lengths[name] if name in lengths else default[name] * scale for name in SEGMENTS}

@@ -14,6 +14,9 @@ from .spec import ColonSpec
 _ROUTE_SLACK = 1.15
 """Length of the mesenteric courses before relaxation, relative to the wanted one; relaxation rounds the corners."""
 
+_DESCENDING, _ASCENDING = (0.160, 0.395), (0.112, 0.310)
+"""Heights between which descending and ascending colon are stretched when their flexure is raised [m]."""
+
 _BACK = -0.02
 """Where the soft parts behind the mobile segments begin, anterior of the anal verge [m]."""
 
@@ -29,10 +32,29 @@ def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.nd
     for name in SEGMENTS:
         route = np.array(routes[name])
         shift = rng.normal(0.0, spec.jitter, route.shape)
-        points[name] = route if name == "rectum" else route + shift
+        points[name] = route if name == "rectum" else _raised(name, route, spec) + shift
         if spec.posture == "prone" and name not in RETROPERITONEAL:
             points[name] = _flatten(points[name])
     return points
+
+
+def _raised(name: str, route: np.ndarray, spec: ColonSpec) -> np.ndarray:
+    """Lifts the flexures, stretching the descending and ascending colon and carrying the transverse colon along."""
+    along = np.linspace(0.0, 1.0, len(route))
+    rise: dict[str, float | np.ndarray] = {
+        "descending": spec.left_rise * _share(route[:, 2], *_DESCENDING),
+        "splenic": spec.left_rise,
+        "transverse": spec.left_rise + along * (spec.right_rise - spec.left_rise),
+        "hepatic": spec.right_rise,
+        "ascending": spec.right_rise * _share(route[:, 2], *_ASCENDING),
+    }
+    moved = route.copy()
+    moved[:, 2] += rise.get(name, 0.0)
+    return moved
+
+
+def _share(height: np.ndarray, low: float, high: float) -> np.ndarray:
+    return np.clip((height - low) / (high - low), 0.0, 1.0)
 
 
 def _flatten(points: np.ndarray) -> np.ndarray:

@@ -116,6 +116,14 @@ class ColonSpec:
     """Least radius of the centreline [m]. A colonoscope's bending section turns on about 25-30 mm."""
     transverse_sag: float = 0.10
     """How far the middle of the transverse colon hangs below its ends [m]."""
+    left_rise: float = 0.0
+    """How much higher than usual the left flexure lies [m]. The descending colon runs straight up the flank: give it
+    about the length that the descending colon is longer than 0.215 m, or its borders leave their usual heights."""
+    right_rise: float = 0.0
+    """How much higher than usual the right flexure lies [m]; likewise for an ascending colon longer than 0.145 m."""
+    iliac_fossa: float | None = None
+    """Height above the anal verge at which the descending colon ends and the sigmoid begins [m], wherever relaxation
+    has moved the course; the lengths of both differ by as much. None leaves the border where the lengths put it."""
     jitter: float = 0.004
     """Standard deviation of the random shift of the course's control points [m]."""
     radius_variation: float = 0.05

@@ -15,21 +15,17 @@ RECTUM = 0.150
 CECUM = 0.062
 """Length of the caecum below the ileocaecal valve [m], about 6 cm (Gray's Anatomy)."""
 
-ILIAC_CREST = (0.177, 0.2, 0.415)
-"""Height of the iliac crest above the anal verge, where the descending colon becomes the sigmoid [m]; by how much it is
-higher where the left flexure is; and at which height of that [m]."""
+ILIAC_FOSSA = 0.178
+"""Height above the anal verge at which the descending colon becomes the sigmoid: in the left iliac fossa, a little
+below the iliac crest [m]."""
 
-SPLENIC_FLEXURE = (0.036, 0.115)
-"""How far below its top the left flexure begins and ends, as a share of the top's height above the anal verge."""
+SPLENIC_FLEXURE = (0.037, 0.075)
+"""How far before and after its middle the left flexure begins and ends [m]. Its middle is that of the stretches that
+lie within 1 cm and within 5 cm of its top."""
 
-HEPATIC_FLEXURE = (0.018, 0.295)
-"""The right flexure begins this far before its top [m] and ends at this share of the way down to the caecal pole."""
-
-SPLENIC_LENGTH, HEPATIC_LENGTH = 0.115, 0.108
-"""Typical lengths of the flexures [m]."""
-
-DESCENDING_LENGTH, ASCENDING_LENGTH = 0.215, 0.145
-"""Typical lengths of descending and ascending colon between the flexures and the iliac fossae [m]."""
+HEPATIC_FLEXURE, LIMB_SHARE = 0.107, 0.185
+"""Length of the right flexure [m], and where it ends: at this share of the way from the upper part of its descending
+limb to the caecum. That upper part is the mean of where the limb is steep, 3 cm and 8 cm below the top."""
 
 BORDERS = (
     "rectosigmoid",
@@ -43,12 +39,15 @@ BORDERS = (
 """Landmarks between segments, in order."""
 
 _SHORTEST_SEGMENT = 0.02
-_LONGEST_FLEXURE = 0.16
+_TOPS = (0.01, 0.05)
+_LONGEST_TOP = 0.10
+_LIMB_DROPS = (0.03, 0.08)
+_LONGEST_LIMB = 0.16
+_STEEP = 0.8
 _SLOPE_LENGTH = 0.008
 _LEVEL_SLOPE = 0.35
-_NEAR_CREST = 0.07
+_NEAR_FOSSA = 0.07
 _NEAR_TOP = 0.06
-_NO_TYPICAL_LENGTH = 0.06
 _TYPICAL_SHARES = (0.088, 0.402, 0.532, 0.599, 0.818, 0.882, 0.963)
 
 
@@ -67,7 +66,7 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
     unknown = set(given) - set(BORDERS)
     if unknown:
         raise ColonImportError(f"Unknown landmarks {sorted(unknown)}", f"Pass --landmark with {', '.join(BORDERS)}.")
-    found = {**_with_lengths(_from_course(points, arc)), **given}
+    found = {**_from_course(points, arc), **given}
     borders = np.array([found[name] for name in BORDERS])
     guessed: list[str] = []
     if (np.diff(np.r_[0.0, borders, arc[-1]]) < _SHORTEST_SEGMENT).any():
@@ -79,63 +78,54 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
 
 
 def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
-    """Finds the borders by the tops of both flexures and by heights.
-
-    The heights are means of generated colons (:mod:`arcgym.anatomy.routes`), which spread by 15 mm along the course.
-    """
+    """Finds the borders by the tops of both flexures, their limbs, and the height of the iliac fossa."""
     length, share, height = arc[-1], arc / arc[-1], points[:, 2]
     splenic = _top(points * [-1, 1, 1], arc, (share > 0.30) & (share < 0.75), lateral=0.0)
     after = (arc > splenic + 0.12) & (arc < length - 0.12)
     hepatic = _top(points, arc, after, lateral=0.5) if after.any() else splenic
-    tall = float(np.interp(splenic, arc, height) - height[0])
-    level = float(np.interp(splenic, arc, height))
-    right = float(np.interp(hepatic, arc, height))
-    pole = float(height[arc > max(hepatic, length - 0.2)].min())
-    down = right - HEPATIC_FLEXURE[1] * max(right - pole, 0.0)
+    left, limb = _middle_of_top(arc, height, splenic), _limb(arc, height, hepatic)
+    cecum = length - min(CECUM, 0.06 * length)
+    right = limb + LIMB_SHARE * max(cecum - limb, 0.0)
     return {
         "rectosigmoid": min(RECTUM, 0.2 * length),
-        "sigmoid_descending": _groove_end(arc, height, splenic, tall),
-        "splenic_flexure_entry": _below(arc, height, splenic, level - SPLENIC_FLEXURE[0] * tall, _LONGEST_FLEXURE, -1),
-        "splenic_flexure_exit": _below(arc, height, splenic, level - SPLENIC_FLEXURE[1] * tall, _LONGEST_FLEXURE, 1),
-        "hepatic_flexure_entry": hepatic - HEPATIC_FLEXURE[0],
-        "hepatic_flexure_exit": _below(arc, height, hepatic, down, _LONGEST_FLEXURE, 1),
-        "cecum_entry": length - min(CECUM, 0.06 * length),
+        "sigmoid_descending": _groove_end(arc, height, splenic),
+        "splenic_flexure_entry": left - SPLENIC_FLEXURE[0],
+        "splenic_flexure_exit": left + SPLENIC_FLEXURE[1],
+        "hepatic_flexure_entry": right - HEPATIC_FLEXURE,
+        "hepatic_flexure_exit": right,
+        "cecum_entry": cecum,
     }
 
 
-def _with_lengths(found: dict[str, float]) -> dict[str, float]:
-    """Moves borders towards where the next one, found better, and the typical length between them would put them."""
-    typical = (
-        ("splenic_flexure_exit", "splenic_flexure_entry", SPLENIC_LENGTH, 0.5),
-        ("splenic_flexure_entry", "splenic_flexure_exit", -SPLENIC_LENGTH, 0.4),
-        ("hepatic_flexure_exit", "cecum_entry", -ASCENDING_LENGTH, 0.3),
-        ("hepatic_flexure_entry", "hepatic_flexure_exit", -HEPATIC_LENGTH, 0.7),
-        ("sigmoid_descending", "splenic_flexure_entry", -DESCENDING_LENGTH, 0.2),
-    )
-    moved = dict(found)
-    for name, other, length, share in typical:
-        way = found[other] + length - found[name]
-        if abs(way) < _NO_TYPICAL_LENGTH:
-            moved[name] = found[name] + share * way
-    return moved
+def _middle_of_top(arc: np.ndarray, height: np.ndarray, top: float) -> float:
+    """Returns the middle of a flexure: a top may be flat, or have two humps, so that its highest point moves about."""
+    near, level = np.abs(arc - top) < _LONGEST_TOP, np.interp(top, arc, height)
+    middles = []
+    for depth in _TOPS:
+        high = arc[near & (height > level - depth)]
+        middles.append(0.5 * (high[0] + high[-1]))
+    return float(np.mean(middles))
 
 
-def _below(arc: np.ndarray, height: np.ndarray, top: float, level: float, most: float, way: int) -> float:
-    """Returns where the course, followed from a top backwards or forwards, is first below a level, or lowest."""
-    near = np.flatnonzero((way * (arc - top) > 0) & (way * (arc - top) < most))[::way]
-    if not len(near):
-        return top
-    below = near[height[near] < level]
-    return float(arc[below[0] if len(below) else near[height[near].argmin()]])
+def _limb(arc: np.ndarray, height: np.ndarray, top: float) -> float:
+    """Returns the mean of where the course is steep behind a top and where it is well below it."""
+    near = (arc > top) & (arc < top + _LONGEST_LIMB)
+    level = np.interp(top, arc, height)
+    low = [arc[near & (height > level - drop)].max(initial=top) for drop in _LIMB_DROPS]
+    steep = arc[near & (_slope(arc, height) < -_STEEP)]
+    return float(np.mean([*low, steep[0] if len(steep) else np.mean(low)]))
 
 
-def _groove_end(arc: np.ndarray, height: np.ndarray, top: float, tall: float) -> float:
-    """Follows the descending colon down to the iliac crest, or to where it turns up again just above it."""
-    base, slope_of_height, typical_height = ILIAC_CREST
-    level = height[0] + min(base + slope_of_height * (tall - typical_height), 0.6 * tall)
+def _slope(arc: np.ndarray, height: np.ndarray) -> np.ndarray:
     step = float(arc[1] - arc[0])
-    slope = gaussian_filter1d(np.gradient(height, step), _SLOPE_LENGTH / step, mode="nearest")
-    turned = (slope < _LEVEL_SLOPE) & (height < level + _NEAR_CREST * tall)
+    return gaussian_filter1d(np.gradient(height, step), _SLOPE_LENGTH / step, mode="nearest")
+
+
+def _groove_end(arc: np.ndarray, height: np.ndarray, top: float) -> float:
+    """Follows the descending colon down to the iliac fossa, or to where it turns up again just above it."""
+    tall = float(np.interp(top, arc, height) - height[0])
+    level = height[0] + min(ILIAC_FOSSA, 0.6 * tall)
+    turned = (_slope(arc, height) < _LEVEL_SLOPE) & (height < level + _NEAR_FOSSA * tall)
     near = np.flatnonzero((arc < top - _NEAR_TOP) & (arc > 0.3 * top))[::-1]
     if not len(near):
         return 0.5 * top
