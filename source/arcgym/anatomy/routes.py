@@ -31,7 +31,8 @@ def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.nd
     points = {}
     for name in SEGMENTS:
         route = np.array(routes[name])
-        shift = rng.normal(0.0, spec.jitter, route.shape)
+        at_end = name == "cecum" and spec.cecum_jitter is not None
+        shift = rng.normal(0.0, spec.cecum_jitter if at_end else spec.jitter, route.shape)
         points[name] = route if name == "rectum" else _raised(name, route, spec) + shift
         if spec.posture == "prone" and name not in RETROPERITONEAL:
             points[name] = _flatten(points[name])
