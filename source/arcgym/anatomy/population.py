@@ -51,7 +51,7 @@ DESCENDING_LENGTH, ASCENDING_LENGTH = 0.215, 0.145
 """Lengths of descending and ascending colon that the typical frame of :mod:`arcgym.anatomy.courses` has room for [m]:
 a longer one needs a higher flexure, as both run straight up the flank from the iliac fossa."""
 
-ILIAC_FOSSA = 0.178
+ILIAC_FOSSA = 0.180
 """Height above the anal verge at which the descending colon of random patients ends [m]: in the left iliac fossa, a
 little below the iliac crest (Standring, Gray's Anatomy), as in the five patients (0.175 to 0.187)."""
 

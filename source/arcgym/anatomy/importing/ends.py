@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
 from .orientation import FRAMES, likeness
@@ -25,7 +26,7 @@ _LONGEST_CANAL = 0.055
 _BESIDE = 0.015
 _AMPULLA_SHARE = 0.78
 _OPEN_TUBE = 0.0035
-_ROUND, _BLUR = 1.1, 0.8
+_ROUND, _BLUR = 1.05, 0.8
 _BEFORE = 0.080
 _POLE_REACH = 0.090
 
@@ -186,8 +187,8 @@ def _is_trough(tree: LumenTree, points: np.ndarray, width: np.ndarray, start: in
     the area of a disc of 1.4 times the radius that fits in.
     """
     _, nearest = cKDTree(points).query(tree.lumen)
-    volume = tree.voxel**3 * np.bincount(nearest, minlength=len(points))[start:].sum()
-    area = volume / max(_arc(points[start:])[-1], tree.voxel)
+    volume = tree.voxel**3 * np.bincount(nearest, minlength=len(points))[start:]
+    area = np.median(uniform_filter1d(volume, 5)) / np.linalg.norm(np.diff(points[start:], axis=0), axis=1).mean()
     return bool(np.sqrt(area / np.pi) > _ROUND * float(np.median(width[start:])) + _BLUR * tree.voxel)
 
 

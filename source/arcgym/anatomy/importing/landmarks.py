@@ -15,7 +15,7 @@ RECTUM = 0.150
 CECUM = 0.062
 """Length of the caecum below the ileocaecal valve [m], about 6 cm (Gray's Anatomy)."""
 
-ILIAC_FOSSA = 0.178
+ILIAC_FOSSA = 0.180
 """Height above the anal verge at which the descending colon becomes the sigmoid: in the left iliac fossa, a little
 below the iliac crest [m]."""
 
