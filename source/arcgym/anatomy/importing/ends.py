@@ -188,7 +188,9 @@ def _is_trough(tree: LumenTree, points: np.ndarray, width: np.ndarray, start: in
     """
     _, nearest = cKDTree(points).query(tree.lumen)
     volume = tree.voxel**3 * np.bincount(nearest, minlength=len(points))[start:]
-    area = np.median(uniform_filter1d(volume, 5)) / np.linalg.norm(np.diff(points[start:], axis=0), axis=1).mean()
+    area = (
+        float(np.median(uniform_filter1d(volume, 5))) / np.linalg.norm(np.diff(points[start:], axis=0), axis=1).mean()
+    )
     return bool(np.sqrt(area / np.pi) > _ROUND * float(np.median(width[start:])) + _BLUR * tree.voxel)
 
 
