@@ -31,8 +31,8 @@ def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.nd
     points = {}
     for name in SEGMENTS:
         route = np.array(routes[name])
-        at_end = name == "cecum" and spec.cecum_jitter is not None
-        shift = rng.normal(0.0, spec.cecum_jitter if at_end else spec.jitter, route.shape)
+        jitter = spec.jitter if name != "cecum" or spec.cecum_jitter is None else spec.cecum_jitter
+        shift = rng.normal(0.0, jitter, route.shape)
         points[name] = route if name == "rectum" else _raised(name, route, spec) + shift
         if spec.posture == "prone" and name not in RETROPERITONEAL:
             points[name] = _flatten(points[name])
