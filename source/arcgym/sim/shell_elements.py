@@ -15,7 +15,7 @@ def stretching_stiffness(points: np.ndarray, geometry: ShellGeometry) -> tuple[n
     K_ab = A (mu (g_b g_a^T + m_a.m_b F F^T) + lambda g_a g_b^T), with the shape gradients m and g = F m.
 
     Returns:
-        The two parts, each of shape (F, 3, 3, 3, 3): triangle, corner, axis, corner, axis.
+        The two parts, each by triangle, corner, axis, corner and axis, shape (F, 3, 3, 3, 3).
     """
     x = points.astype(np.float64)[geometry.triangles]
     frame = np.einsum("tki,tkc->tic", x[:, 1:] - x[:, :1], geometry.inv_rest)
