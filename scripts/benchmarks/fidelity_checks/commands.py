@@ -19,7 +19,7 @@ import numpy as np
 from fidelity_checks.contact import follow
 from fidelity_checks.insertion import BEND, CONTROL_STEP
 from fidelity_checks.models import build
-from fidelity_checks.table import Row, Run, absolute, check
+from fidelity_checks.table import Plot, Row, Run, absolute, check
 
 ROBOTS = ("capsule", "magnetic", "proximal")
 """All robots."""
@@ -92,6 +92,7 @@ class Watch:
         env.num_envs, env.device = sim.num_envs, sim.device
         self._sim, self._check = sim, LumenCheck(env)
         self.outside, self.broken, self.worlds = 0, 0, np.zeros(sim.num_envs, bool)
+        self.force: list[np.ndarray] = []
 
     def look(self) -> None:
         """Count the present state."""
@@ -101,6 +102,14 @@ class Watch:
         self.outside += int(outside.sum())
         self.broken = int(lost.sum())
         self.worlds |= (outside.any(dim=1) | lost).cpu().numpy()
+        self.force.append(self._sim.endoscope.data.wall_force_w.norm(dim=-1).amax(dim=1).cpu().numpy())
+
+    def plot(self, name: str) -> Plot:
+        """Largest force on a link over time, in the worst of the worlds and in the median one."""
+        time, force = CONTROL_STEP * np.arange(1, len(self.force) + 1), np.array(self.force)
+        plot = Plot(name, "time [s]", "largest force on a link [N]")
+        plot.points += [("worst world", time, force.max(axis=1)), ("median world", time, np.median(force, axis=1))]
+        return plot
 
     def row(self, name: str, what: str) -> Row:
         """Events counted; each world that is not finite at the end is one."""
@@ -122,6 +131,7 @@ def speeds(run: Run, robot: str) -> list[Row]:
         command(corners)
         sim.step(round(CONTROL_STEP / sim.physics_dt))
         watch.look()
+    run.plots.append(watch.plot(f"speed_{robot}"))
     return [watch.row(f"speed_{robot}", f"full commands for {SPEED_TIME:g} s")]
 
 
@@ -139,6 +149,7 @@ def random_actions(run: Run, robot: str) -> list[Row]:
         command(action.to(sim.device))
         sim.step(round(CONTROL_STEP / sim.physics_dt))
         watch.look()
+    run.plots.append(watch.plot(f"random_{robot}"))
     return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * RANDOM_TIME / 60.0:g} min")]
 
 

@@ -31,16 +31,29 @@ SHOVE = 20.0
 def balance(run: Run) -> list[Row]:
     """Forces on scope, wall and base once the scope rests in the bend, mean over a control step."""
     sim = push(run, BEND, DEPTH, rest=2.0).sim
-    on_scope, on_wall, base, steps = np.zeros(3), np.zeros(3), 0.0, round(CONTROL_STEP / sim.physics_dt)
+    steps, data = round(CONTROL_STEP / sim.physics_dt), sim.endoscope.data
+    samples = []
     for _ in range(steps):
         sim.step(1)
-        on_scope += sim.endoscope.data.wall_force_w[0].sum(dim=0).cpu().numpy() / steps
-        on_wall += contact_force_on_wall(sim) / steps
-        base += sim.endoscope.data.base_force.item() / steps
+        on_scope = data.wall_force_w[0].sum(dim=0).cpu().numpy().astype(float)
+        samples.append((on_scope, contact_force_on_wall(sim), data.base_force.item()))
+    on_scope, on_wall, base = (np.mean(values, axis=0) for values in zip(*samples, strict=True))
+    run.plots.append(balance_plot(samples, sim.physics_dt))
     size = float(np.linalg.norm(on_scope))
     error = float(np.linalg.norm(on_scope + on_wall)) / size
     action = Row("action_reaction", float(np.linalg.norm(on_wall)), size, error, 0.02, "N", "error of the vector sum")
-    return [action, relative("base_force", base, -float(on_scope[2]), 0.02, "N")]
+    return [action, relative("base_force", float(base), -float(on_scope[2]), 0.02, "N")]
+
+
+def balance_plot(samples: list[tuple[np.ndarray, np.ndarray, float]], dt: float) -> Plot:
+    """Sizes of both forces between wall and scope, and of both along the base, over time."""
+    time = 1.0e3 * dt * np.arange(len(samples))
+    plot = Plot("balance", "time [ms]", "force [N]")
+    plot.lines.append(("of the wall on the scope", time, [float(np.linalg.norm(s)) for s, _, _ in samples]))
+    plot.points.append(("of the scope on the wall", time, [float(np.linalg.norm(w)) for _, w, _ in samples]))
+    plot.lines.append(("of the wall along the base", time, [-float(s[2]) for s, _, _ in samples]))
+    plot.points.append(("on the base", time, [b for _, _, b in samples]))
+    return plot
 
 
 def contact_force_on_wall(sim: Any) -> np.ndarray:
@@ -160,11 +173,17 @@ def tunnelling(run: Run) -> list[Row]:
         link, side = -1 - links[world // len(sides)], world % len(sides)
         across = quat_apply(sim.endoscope.data.body_quat_w[world, link], torch.tensor(sides[side], device=sim.device))
         loads.force[world, link] = SHOVE * across
-    events, deepest = np.zeros(sim.num_envs), 0.0
+    events, moved, times = np.zeros(sim.num_envs), [], []
     for _ in range(20):
         sim.step(24)
         events += [links_outside(sim, world) for world in range(sim.num_envs)]
-        deepest = max(deepest, float(sim.colon.data.nodal_displacement.nan_to_num(0.0).max()))
+        moved.append(sim.colon.data.nodal_displacement.nan_to_num(0.0).amax(dim=1).cpu().numpy())
+        times.append(24 * len(moved) * sim.physics_dt)
+    deepest = float(np.max(moved))
+    plot = Plot("tunnelling", "time [s]", "largest displacement of the wall [mm]")
+    names = ("+X", "-X", "+Y", "-Y")
+    plot.points += [(f"tip to {name}", times, 1.0e3 * np.array(moved)[:, k]) for k, name in enumerate(names)]
+    run.plots.append(plot)
     note = f"in {np.count_nonzero(events)} of {sim.num_envs} worlds, {int(sim.non_finite.sum())} not finite; "
     note += f"the wall moved by up to {1e3 * deepest:.0f} mm"
     return [absolute("tunnelling", float(events.sum()), 0.0, 0.0, "", note)]

@@ -141,17 +141,27 @@ def straight_advance(run: Run) -> list[Row]:
     trace = push(run, STRAIGHT, DEPTH)
     tip = float(trace.tip[-1][2] - trace.tip[0][2])
     base = trace.inserted[-1] - trace.inserted[0]
+    advance = 1.0e3 * (np.array(trace.inserted) - trace.inserted[0])
+    plot = Plot("straight_advance", "advance of the base [mm]", "advance of the tip [mm]")
+    plot.lines.append(("no loss", advance, advance))
+    plot.points.append(("shipped settings", advance, [1.0e3 * (p[2] - trace.tip[0][2]) for p in trace.tip]))
+    run.plots.append(plot)
     return [relative("straight_advance", tip, base, 0.01, "m")]
 
 
 @check("volume_stiff", "volume_soft")
 def volume(run: Run) -> list[Row]:
     """Volume ratio of the wall's elements while the scope is pushed through the bend."""
-    rows = []
+    rows, plot = [], Plot("volume", "inserted length [m]", "volume ratio, least and largest")
     for name, material in PRESETS.items():
-        ratios = np.array(push(run, BEND, DEPTH, material, rest=2.0).volume).ravel()
+        trace = push(run, BEND, DEPTH, material, rest=2.0)
+        least, largest = np.array(trace.volume).T
+        plot.points += [(f"{name}, least", trace.inserted, least), (f"{name}, largest", trace.inserted, largest)]
+        ratios = np.array(trace.volume).ravel()
         worst = float(ratios[np.argmax(np.abs(ratios - 1.0))])
         rows.append(absolute(f"volume_{name}", worst, 1.0, 0.05, "", f"{ratios.min():.3f} to {ratios.max():.3f}"))
+    plot.lines.append(("incompressible", trace.inserted, np.ones(len(trace.inserted))))
+    run.plots.append(plot)
     return rows
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
+from PIL import Image
 
 from fidelity_checks.table import Plot
 
@@ -38,4 +39,5 @@ def draw_one(plot: Plot, path: Path) -> Path:
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, dpi=110, metadata={"Software": None})
     plt.close(figure)
+    Image.open(path).quantize(64, dither=Image.Dither.NONE).save(path, optimize=True)  # a quarter of the size
     return path

@@ -124,13 +124,18 @@ class TubeModel:
         force = weight.reshape(-1, 1) * traction(angle, z)
         return force / np.linalg.norm(force, axis=1).sum()
 
-    def compliance(self, traction: Traction) -> float:
-        """Displacement under the load, weighted by it, for a load of one newton [m/N]."""
+    def displacements(self, traction: Traction) -> np.ndarray:
+        """Displacement of the nodes under a load of one newton [m/N], shape (n, 3)."""
         force, matrix = self.loads(traction), self.stiffness()
         z = self.points()[:, 2]
         free = np.repeat((z > 1.0e-9) & (z < self.length - 1.0e-9), 3)
-        load = force.ravel()[free]
-        return float(load @ splu(matrix[free][:, free]).solve(load))
+        moved = np.zeros(free.shape)
+        moved[free] = splu(matrix[free][:, free]).solve(force.ravel()[free])
+        return moved.reshape(-1, 3)
+
+    def compliance(self, traction: Traction) -> float:
+        """Displacement under the load, weighted by it, for a load of one newton [m/N]."""
+        return float((self.loads(traction) * self.displacements(traction)).sum())
 
 
 def brick_rule() -> list[tuple[float, np.ndarray]]:

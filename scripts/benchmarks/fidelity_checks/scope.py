@@ -118,10 +118,14 @@ def torsion(run: Run) -> list[Row]:
     sim, loads = shaft_in_air(run, 1)
     loads.torque[0, -1, 2] = torque
     settle(sim)
-    length = float(sim.endoscope.stage.link_length[:-1].sum())
-    twist = twist_angle(sim, -1) - twist_angle(sim, 0)
-    reference = torque * length / TWIST_RIGIDITY
-    return [relative("torsion", twist, reference, 0.10, "rad")]
+    lengths = np.r_[0.0, np.cumsum(sim.endoscope.stage.link_length[:-1])]
+    twist = np.array([twist_angle(sim, link) for link in range(LINKS)]) - twist_angle(sim, 0)
+    reference = torque * lengths / TWIST_RIGIDITY
+    plot = Plot("torsion", "distance from the base [m]", "twist [mrad]")
+    plot.lines.append(("T s / GJ", lengths, 1.0e3 * reference))
+    plot.points.append(("shipped settings", lengths, 1.0e3 * twist))
+    run.plots.append(plot)
+    return [relative("torsion", float(twist[-1]), float(reference[-1]), 0.10, "rad")]
 
 
 def twist_angle(sim: Any, link: int) -> float:

@@ -77,8 +77,13 @@ def parked(run: Run) -> list[Row]:
     """Way of the farthest-moving link of a scope that rests in the bend for a minute."""
     sim = push(run, BEND, DEPTH, rest=2.0).sim
     links, steps = sim.endoscope.data.body_pos_w, round(CONTROL_STEP / sim.physics_dt)
-    start, drift = links.clone(), 0.0
+    start, drift = links.clone(), []
     for _ in range(round(60.0 / CONTROL_STEP)):
         sim.step(steps)
-        drift = max(drift, float((links - start).norm(dim=-1).max()))
-    return [absolute("parked_drift", drift, 0.0, 0.001, "m")]
+        drift.append(float((links - start).norm(dim=-1).max()))
+    times = CONTROL_STEP * np.arange(1, len(drift) + 1)
+    shown = slice(None, None, 10)
+    plot = Plot("parked_drift", "time [s]", "way of the link moved farthest [µm]")
+    plot.points.append(("resting scope", times[shown], 1.0e6 * np.array(drift[shown])))
+    run.plots.append(plot)
+    return [absolute("parked_drift", max(drift), 0.0, 0.001, "m")]

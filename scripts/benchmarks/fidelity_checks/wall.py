@@ -16,7 +16,7 @@ import numpy as np
 from fidelity_checks.loads import load_wall, settle
 from fidelity_checks.models import FREE, Tube, build, wall_measures
 from fidelity_checks.references import Traction, TubeModel
-from fidelity_checks.table import Row, Run, check, relative
+from fidelity_checks.table import Plot, Row, Run, check, relative
 
 FORCE = 2.0
 """Sizes of the dead forces on the wall, added up [N]: strains stay small."""
@@ -68,8 +68,8 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
     return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
-def shipped_compliance(sim: Any, traction: Traction) -> float:
-    """Displacement under the load, weighted by it, for one newton [m/N]."""
+def shipped_displacements(sim: Any, traction: Traction) -> tuple[np.ndarray, np.ndarray]:
+    """Load on each vertex of the shipped wall, one newton in all, and its displacement [m/N], both of shape (V, 3)."""
     wall, rest = sim.colon.wall, sim.colon.data.nodal_pos_w[0].clone()
     points = wall.points.astype(float)
     load = traction(np.arctan2(points[:, 1], points[:, 0]), points[:, 2] - free_span(sim)[0])
@@ -78,7 +78,14 @@ def shipped_compliance(sim: Any, traction: Traction) -> float:
     load_wall(sim, FORCE * load)
     settle(sim, tolerance=5.0e-7)
     moved = (sim.colon.data.nodal_pos_w[0] - rest).cpu().numpy()
-    return float((load * moved).sum() / FORCE)
+    return load, moved / FORCE
+
+
+def seam(points: np.ndarray) -> np.ndarray:
+    """Points on the line that the load pulls along X, by ascending Z: angle zero, innermost."""
+    angle, radius = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
+    line = np.flatnonzero((np.abs(angle) < 1.0e-6) & (radius < radius.min() + 1.0e-5))
+    return line[np.argsort(points[line, 2])]
 
 
 @check("wall_beam", quick=True)
@@ -100,6 +107,14 @@ def stiffness_row(run: Run, name: str, tube: Tube, load: Any, mesh: dict[str, in
     sim = build(run, CAPSULE_CFG, tube, colon={"anchor_stiffness": FREE})
     start, end = free_span(sim)
     traction = load(end - start)
-    ours = shipped_compliance(sim, traction)
-    exact = reference_tube(sim, **mesh).compliance(traction)
+    force, moved = shipped_displacements(sim, traction)
+    ours, tube_model = float((force * moved).sum()), reference_tube(sim, **mesh)
+    nodes, limit = tube_model.points(), tube_model.displacements(traction)
+    exact = float((tube_model.loads(traction) * limit).sum())
+    plot = Plot(name, "place along the tube [m]", "displacement of the pulled line [mm/N]")
+    points = sim.colon.wall.points.astype(float)
+    line, own = seam(nodes), seam(points)
+    plot.lines.append(("27-node bricks", start + nodes[line, 2], 1.0e3 * limit[line, 0]))
+    plot.points.append(("shipped settings", points[own, 2], 1.0e3 * moved[own, 0]))
+    run.plots.append(plot)
     return relative(name, 1.0 / ours, 1.0 / exact, bound, "N/m", f"{exact / ours:.2f} times the reference")
