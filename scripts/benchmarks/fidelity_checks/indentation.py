@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -126,14 +127,11 @@ def converged() -> dict[str, Any]:
     }
 
 
-@check("indentation_paper", "indentation_in_situ")
-def indentation(run: Run) -> list[Row]:
-    """Depth of the tip under a load, mean of the places, against a finer mesh with a stiffer contact."""
-    return [indentation_row(run, material) for material in LOADS]
+def indentation(run: Run, material: str) -> list[Row]:
+    """Depth of the tip under a load, mean of the places, against a finer mesh with a stiffer contact.
 
-
-def indentation_row(run: Run, material: str) -> Row:
-    """The load with the largest error; all errors go into the note."""
+    The row is of the load with the largest error; all errors go into the note.
+    """
     ours, limit = indent(run, TUBE, material), indent(run, REFINED, material, **converged())
     plot = Plot(f"indentation_{material}", "depth from first touch [mm]", "force [N]")
     top = LOADS[material][-1]
@@ -153,10 +151,14 @@ def indentation_row(run: Run, material: str) -> Row:
     stiffness = 1.0e-3 * top / float(ours.depth_at(top).mean())
     worst = max(rows, key=lambda row: abs(row.error) if math.isfinite(row.error) else math.inf)
     note = f"{errors}; {stiffness:.2f} N/mm at {top:g} N, porcine {PORCINE[0]} to {PORCINE[1]}"
-    return relative(name, worst.value, worst.reference, 0.10, "m", note)
+    return [relative(name, worst.value, worst.reference, 0.10, "m", note)]
 
 
 def _shown(curve: Curve, place: int, top: float) -> tuple[np.ndarray, np.ndarray]:
     """Depth [mm] and force [N] from the first touch up to a load."""
     shown = (curve.depth[place] >= 0.0) & (curve.force[place] <= 1.1 * top)
     return 1.0e3 * curve.depth[place][shown], curve.force[place][shown]
+
+
+for _material in LOADS:
+    check(f"indentation_{_material}")(partial(indentation, material=_material))
