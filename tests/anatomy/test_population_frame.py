@@ -15,7 +15,7 @@ from arcgym.anatomy.routes import control_points
 from arcgym.anatomy.spec import ColonSpec
 
 
-def points(**changes: float) -> dict[str, np.ndarray]:
+def points(**changes: float | bool) -> dict[str, np.ndarray]:
     return control_points(replace(ColonSpec(), **changes), np.random.default_rng(0))
 
 
@@ -28,11 +28,24 @@ def test_flexures_rise_and_carry_the_transverse_colon_along() -> None:
     assert np.all(np.diff(rise["descending"]) > 0.0) and np.all(np.diff(rise["ascending"]) < 0.0)
 
 
-def test_caecum_without_jitter_is_the_typical_one() -> None:
+def test_straight_caecum_has_its_full_length_without_jitter() -> None:
     """Everything before it stays as it was."""
-    still, moved = points(cecum_jitter=0.0), points()
-    assert still["ascending"] == pytest.approx(moved["ascending"])
-    assert still["cecum"][-1] == pytest.approx([0.118, 0.018, 0.077])
+    straight, free = points(), points(straight_cecum=False)
+    assert straight["ascending"] == pytest.approx(free["ascending"])
+    chords = np.linalg.norm(np.diff(straight["cecum"], axis=0), axis=1)
+    assert chords.sum() == pytest.approx(ColonSpec().segments["cecum"].length, abs=0.005)
+
+
+def test_caecum_of_random_patients_turns_gently() -> None:
+    """Forwards and to the middle, by less than 45 degrees, on a radius larger than its lumen's."""
+    spec = draw_spec(26)
+    curve = make_centerline(spec, np.random.default_rng(26))
+    s = np.linspace(*curve.bounds("cecum"), 20)
+    way = curve.frame(s)[0]
+    assert way[0] @ way[-1] > np.cos(np.radians(45.0))
+    assert way[-1][0] < 0.0 < way[-1][1]
+    curvature = curve.interpolate(s, curve.curvature[:, None])
+    assert curvature.max() * 0.5 * spec.segments["cecum"].middle_diameter < 0.6
 
 
 def test_random_patients_are_as_high_as_their_flank_is_long() -> None:

@@ -109,3 +109,7 @@ FIXED_ROUTES: dict[str, list[tuple[float, float, float]]] = {
     "cecum": [(0.130, 0.006, 0.112), (0.118, 0.018, 0.077)],
 }
 """Courses of the segments that are held."""
+
+STRAIGHT_CECUM: list[tuple[float, float, float]] = [(0.130, 0.006, 0.112), (0.121, 0.021, 0.083), (0.109, 0.044, 0.060)]
+"""Course of a straight caecum: as long as it is, on in the ascending colon's line, turning by 30 degrees forwards
+and to the middle, as it lies on the iliacus."""

@@ -17,7 +17,7 @@ def colon_1() -> ColonSpec:
     segments["descending"] = replace(segments["descending"], diverticula=12)
     segments["transverse"] = replace(segments["transverse"], polyps=1)
     segments["sigmoid"] = replace(segments["sigmoid"], polyps=1)
-    return _compact(
+    return _committed(
         ColonSpec(
             name="colon_1",
             patient="man, 65 years: slightly redundant sigmoid with sharp angulations, descending diverticula; supine",
@@ -42,7 +42,7 @@ def colon_2() -> ColonSpec:
 def colon_3() -> ColonSpec:
     """Man of 51, supine: redundant transverse colon that hangs into the pelvis, no polyps."""
     segments = _with_lengths(sigmoid=0.45, descending=0.205, transverse=0.56, ascending=0.145)
-    return _compact(
+    return _committed(
         ColonSpec(
             name="colon_3",
             patient="man, 51 years: redundant transverse colon, no polyps; supine (the patient of colon_2)",
@@ -70,7 +70,7 @@ def colon_4() -> ColonSpec:
     }
     for name, (start, middle) in diameters.items():
         lengths[name] = replace(lengths[name], start_diameter=start, middle_diameter=middle)
-    return _compact(
+    return _committed(
         ColonSpec(
             name="colon_4",
             patient="woman, 51 years: highly redundant sigmoid and transverse colon, many sharp bends; supine",
@@ -91,7 +91,7 @@ def colon_5() -> ColonSpec:
     segments = _with_lengths(sigmoid=0.62, descending=0.205, transverse=0.39, ascending=0.145)
     segments["descending"] = replace(segments["descending"], diverticula=15, wide_diverticula=2)
     segments["ascending"] = replace(segments["ascending"], diverticula=10, wide_diverticula=2)
-    return _compact(
+    return _committed(
         ColonSpec(
             name="colon_5",
             patient="man, 60 years: 16 polyps, ascending and descending diverticula, redundant sigmoid, residual stool;"
@@ -125,10 +125,15 @@ def _with_lengths(**lengths: float) -> dict[str, SegmentSpec]:
     return segments | {name: replace(segments[name], length=length) for name, length in lengths.items()}
 
 
-def _compact(spec: ColonSpec) -> ColonSpec:
-    """Makes files of less than 3 MB instead of 7, as the repository holds them all."""
+def _committed(spec: ColonSpec) -> ColonSpec:
+    """Lets the caecum bend as it may, and makes files of less than 3 MB, as the repository holds them all, not of 7."""
     return replace(
-        spec, visual_rows=430, visual_columns=50, visual_refinements=2, mucosa=replace(spec.mucosa, width=512)
+        spec,
+        straight_cecum=False,
+        visual_rows=430,
+        visual_columns=50,
+        visual_refinements=2,
+        mucosa=replace(spec.mucosa, width=512),
     )
 
 

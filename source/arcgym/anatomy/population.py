@@ -93,7 +93,6 @@ def draw_spec(seed: int) -> ColonSpec:
         segments=segments,
         sigmoid_shape=_draw_sigmoid(rng, lengths["sigmoid"]),
         transverse_shape="plain" if lengths["transverse"] < _LONG_TRANSVERSE else "redundant",
-        cecum_jitter=0.0,
         iliac_fossa=ILIAC_FOSSA,
         left_rise=round(lengths["descending"] - DESCENDING_LENGTH, 4),
         right_rise=round(lengths["ascending"] - ASCENDING_LENGTH, 4),

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from .courses import FIXED_ROUTES, SIGMOID_SHAPES, TRANSVERSE_SHAPES
+from .courses import FIXED_ROUTES, SIGMOID_SHAPES, STRAIGHT_CECUM, TRANSVERSE_SHAPES
 from .segments import RETROPERITONEAL, SEGMENTS
 from .spec import ColonSpec
 
@@ -31,9 +31,10 @@ def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.nd
     points = {}
     for name in SEGMENTS:
         route = np.array(routes[name])
-        jitter = spec.jitter if name != "cecum" or spec.cecum_jitter is None else spec.cecum_jitter
-        shift = rng.normal(0.0, jitter, route.shape)
+        shift = rng.normal(0.0, spec.jitter, route.shape)
         points[name] = route if name == "rectum" else _raised(name, route, spec) + shift
+        if name == "cecum" and spec.straight_cecum:
+            points[name] = np.array(STRAIGHT_CECUM)
         if spec.posture == "prone" and name not in RETROPERITONEAL:
             points[name] = _flatten(points[name])
     return points

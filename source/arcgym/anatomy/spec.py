@@ -126,9 +126,9 @@ class ColonSpec:
     has moved the course; the lengths of both differ by as much. None leaves the border where the lengths put it."""
     jitter: float = 0.004
     """Standard deviation of the random shift of the course's control points [m]."""
-    cecum_jitter: float | None = None
-    """Likewise for the caecum, with which the course ends: shifts bend its tip to any side. None takes
-    :attr:`jitter`; random patients have 0, so that the caecum goes on straight, or as its neighbours push it."""
+    straight_cecum: bool = True
+    """Whether the caecum goes on in the ascending colon's line, turning gently forwards, as most do. If not, its course
+    is too short for it: it bends wherever :attr:`jitter` and its neighbours push it, as in the five patients."""
     radius_variation: float = 0.05
     """Relative standard deviation of the lumen radius along the colon."""
     clearance: float = 0.005

@@ -27,7 +27,6 @@ _RANGES = {
     "right_rise": (-0.08, 0.15),
     "iliac_fossa": (0.10, 0.30),
     "jitter": (0.0, 0.02),
-    "cecum_jitter": (0.0, 0.02),
     "radius_variation": (0.0, 0.2),
     "clearance": (0.0, 0.1),
     "wall_thickness": (0.0005, 0.006),
