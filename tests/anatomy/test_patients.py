@@ -125,7 +125,7 @@ def test_wide_sacs_let_the_tip_in() -> None:
     assert (pushed > 0.008).sum() >= 2 * 4 * len(wide)
 
 
-@pytest.mark.parametrize(("name", "wanted"), zip(PATIENTS, (10, 11, 11, 14, 11), strict=True))
+@pytest.mark.parametrize(("name", "wanted"), list(zip(PATIENTS, (10, 11, 11, 14, 11), strict=True)))
 def test_acute_bends(stages: dict[str, ColonStage], name: str, wanted: int) -> None:
     line = stages[name].centerline
     assert len(acute_bends(line.points.astype(float), line.arc.astype(float))) == pytest.approx(wanted, abs=1)

@@ -133,8 +133,7 @@ def _closed(points: np.ndarray, faces: np.ndarray) -> Any:
 
     vertices, cells, data = vtkPoints(), vtkCellArray(), vtkPolyData()
     vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
-    rows = np.column_stack([np.full(len(faces), 3), faces]).astype(np.int64)
-    cells.SetCells(len(faces), numpy_to_vtkIdTypeArray(rows.ravel(), deep=True))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(faces.astype(np.int64).ravel(), deep=True))
     data.SetPoints(vertices)
     data.SetPolys(cells)
     clean, fill = vtkCleanPolyData(), vtkFillHolesFilter()
