@@ -61,7 +61,11 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
         rejected.append(f"seed {seed}: " + "; ".join(str(check) for check in problems))
         _LOGGER.info("Rejected %s", rejected[-1])
     else:
-        raise AnatomyError(f"ColonSpec '{spec.name}' gave no usable anatomy.\n" + "\n".join(rejected))
+        raise AnatomyError(
+            f"ColonSpec '{spec.name}' gave no usable anatomy in {spec.max_attempts} attempts. Take another seed, or"
+            " change acute_bends, min_bend_radius, the lengths of the segments that failed, or max_attempts:\n"
+            + "\n".join(rejected)
+        )
     folder.mkdir(parents=True, exist_ok=True)
     albedo, detail = write_textures(folder, spec.seed, spec.mucosa)
     openings = {_OPENINGS[lesion.kind]: lesion.s for lesion in lesions if lesion.kind in _OPENINGS}
