@@ -12,7 +12,10 @@ from label_volumes import RADIUS, course, write_volume
 
 from arcgym.anatomy.importing.centerline import FoundPath, find_path
 from arcgym.anatomy.importing.cleaning import keep_colon
+from arcgym.anatomy.importing.clearance import coarse_clearance
+from arcgym.anatomy.importing.ends import into_the_canal
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.tree import lumen_tree
 from arcgym.anatomy.importing.volumes import read_volume
 
 
@@ -114,3 +117,19 @@ def test_air_and_fluid_may_have_labels_of_their_own(tmp_path: Path) -> None:
     line, whole = course()
     path = write_volume(tmp_path / "a.mha", extra=tube(line[-1], (0.0, 0.0, -0.08)), extra_radius=RADIUS, value=2)
     assert length(found_in(path, (1, 2))[1].points) > length(found_in(path, (1,))[1].points) + 0.05
+
+
+def test_path_into_a_corner_of_the_rectum_is_led_into_the_canal(tmp_path: Path) -> None:
+    """A canal of 45 mm leaves downwards, a pouch of 30 mm sideways; the tube between them is 16 mm in radius."""
+    line, _ = course()
+    canal, pouch = tube(line[0], (0.0, 0.0, -0.045)), tube(line[0], (-0.03, 0.0, 0.0))
+    path = write_volume(tmp_path / "a.mha", extra=np.concatenate([canal, pouch]), extra_radius=0.008, voxel=2.0)
+    tree = lumen_tree(coarse_clearance(read_volume(path, None, None, 0.002)))
+
+    def tip_at(place: np.ndarray) -> int:
+        return min(tree.tips, key=lambda tip: float(np.linalg.norm(tree.points[tip] - place)))
+
+    right, wrong = (tree.between(tip_at(end), tip_at(line[-1])) for end in (canal[-1], pouch[-1]))
+    assert right[0] != wrong[0]
+    assert into_the_canal(tree, wrong)[0] == right[0]
+    assert into_the_canal(tree, right)[0] == right[0]

@@ -29,6 +29,7 @@ _OPEN_TUBE = 0.0035
 _ROUND, _BLUR = 1.05, 0.8
 _BEFORE = 0.080
 _POLE_REACH = 0.090
+_CANAL_REACH, _CANAL_FARTHER, _CANAL_CALIBRE = 0.060, 0.005, 0.004
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def find_course(tree: LumenTree, frame: str, fixed: tuple[int | None, int | None
         nodes, cut = _without_leak(tree, nodes)
         attached += cut
     if fixed[0] is None:
-        nodes, cut = _without_tube(tree, nodes)
+        nodes, cut = _without_tube(tree, into_the_canal(tree, nodes))
         attached += cut
     return Course(nodes, attached + _side_branches(tree, nodes, attached))
 
@@ -153,6 +154,39 @@ def _other_end(tree: LumenTree, kept: np.ndarray, cut: np.ndarray, width: np.nda
         if length > near:
             best, near = nodes, length
     return best
+
+
+def into_the_canal(tree: LumenTree, nodes: np.ndarray) -> np.ndarray:
+    """Leads the anus's end into the branch there that sticks out most: the canal, not a corner of the rectum.
+
+    Args:
+        tree: The lumen.
+        nodes: Way from the anus to the caecum, shape (n,).
+
+    Returns:
+        The way, with another beginning where a branch of the last 6 cm sticks out of the rectum by 5 mm more.
+    """
+    back = nodes[::-1]
+    arc = _arc(tree.points[back])
+    rectum = back[arc > arc[-1] - _BEFORE]
+    place = {int(node): k for k, node in enumerate(back)}
+    best, farthest = back, _out_of(tree, rectum, int(back[-1])) + _CANAL_FARTHER
+    for tip in tree.tips:
+        way = tree.between(int(back[0]), tip)
+        leaves = max((place[int(n)] for n in way if int(n) in place), default=0)
+        beyond = way[leaves + 1 :]
+        if arc[leaves] < arc[-1] - _CANAL_REACH or len(beyond) < 2 or _out_of(tree, rectum, tip) < farthest:
+            continue
+        if float(np.median(calibre(tree.clearance[beyond], tree.points[beyond], 0.006))) > _CANAL_CALIBRE:
+            best, farthest = way, _out_of(tree, rectum, tip)
+    return best[::-1]
+
+
+def _out_of(tree: LumenTree, rectum: np.ndarray, tip: int) -> float:
+    """Returns how far a tip is out of the balls that fit into the wide part of a rectum [m]."""
+    clearance = tree.clearance[rectum]
+    wide = rectum[clearance > _AMPULLA_SHARE * clearance.max()]
+    return float((np.linalg.norm(tree.points[wide] - tree.points[tip], axis=1) - tree.clearance[wide]).min())
 
 
 def _without_tube(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray, list[Attached]]:
