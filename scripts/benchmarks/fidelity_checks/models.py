@@ -35,7 +35,7 @@ from fidelity_checks.table import Run
 
 SEGMENT = "sigmoid"
 """Part of the shipped colon that the tubes take their measures from."""
-HELD_RINGS = (2, 1)
+HELD_SPACINGS = (2, 1)
 """Spacings of the shipped rings over which a tube is held at its start and at its end, as the colon is."""
 FREE = dict.fromkeys(SEGMENTS, 0.0)
 """Anchor stiffness of a tube that is held at its ends alone."""
@@ -119,7 +119,7 @@ def tube_stage(tube: Tube) -> ColonStage:
     codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
     shipped = shipped_stage()
     visual = _visual(tube, arc, sectors, measures.radius)
-    held = (HELD_RINGS[0] * measures.spacing, tube.length - HELD_RINGS[1] * measures.spacing)
+    held = (HELD_SPACINGS[0] * measures.spacing, tube.length - HELD_SPACINGS[1] * measures.spacing)
     return ColonStage(
         name="tube",
         wall=_hold(build_wall(layers, codes, arc, capped=False), *held),
