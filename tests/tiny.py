@@ -11,7 +11,8 @@ import numpy as np
 from PIL import Image
 
 from arcgym.anatomy import Centerline, ColonStage, TissueMaterial, VisualMesh, segment_index, write_colon
-from arcgym.anatomy.visual import TEXTURE_LENGTH, grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.stage_types import TEXTURE_LENGTH
+from arcgym.anatomy.visual import grid_triangles, skin_to_rings, smooth_normals
 from arcgym.anatomy.wall import build_wall
 
 TINY_SEGMENTS = ("rectum", "sigmoid", "descending", "splenic", "transverse")

@@ -12,8 +12,7 @@ import pytest
 from tiny import tiny_colon_stage, write_tiny_colon
 
 from arcgym.anatomy import ColonStage, read_colon
-from arcgym.anatomy.measures import tet_volumes
-from arcgym.anatomy.wall import inner_faces
+from arcgym.anatomy.measures import inner_faces, tet_volumes
 
 
 @pytest.mark.parametrize("part", ["wall", "visual", "visual_proxy", "centerline"])

@@ -176,6 +176,7 @@ class ScopeRun:
     def __init__(self, path: Path, worlds: int = 1) -> None:
         self.stage: EndoscopeStage = read_endoscope(path)
         builder = ModelBuilder(gravity=(0.0, 0.0, 0.0))
+        SolverMuJoCo.register_custom_attributes(builder)
         add_endoscope_usd(builder, path, self.stage)
         self.model = replicated(builder, worlds)
         options = {"disable_contacts": True, "integrator": "implicitfast", "iterations": 10, "ls_iterations": 5}

@@ -11,7 +11,7 @@ import warp as wp
 from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
-from arcgym.anatomy.wall import inner_faces
+from arcgym.anatomy.measures import inner_faces
 from arcgym.assets.anchors import AnchorSprings
 from arcgym.sim.wall_readout import WallReadout, inverse_rest
 from arcgym.sim.wall_topology import lumen_topology

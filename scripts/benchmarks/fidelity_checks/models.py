@@ -22,7 +22,8 @@ from arcgym.anatomy import (
     segment_index,
     write_colon,
 )
-from arcgym.anatomy.visual import TEXTURE_LENGTH, grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.stage_types import TEXTURE_LENGTH
+from arcgym.anatomy.visual import grid_triangles, skin_to_rings, smooth_normals
 from arcgym.anatomy.wall import build_wall
 from arcgym.assets import ColonCfg, EndoscopeCfg
 from arcgym.assets.colon import Colon

@@ -44,7 +44,7 @@ class LumenCheck:
 
 def lumen_triangles(colon: Any) -> np.ndarray:
     """Triangles of the simulated wall's inner surface, or of a shell, shape (F, 3)."""
-    from arcgym.anatomy.wall import inner_faces
+    from arcgym.anatomy.measures import inner_faces
 
     wall = getattr(colon, "wall", None) or colon.stage.wall
     triangles = getattr(wall, "triangles", None)

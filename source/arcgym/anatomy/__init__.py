@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Colon anatomy: generating, validating, writing and reading stages. Needs numpy, scipy, pillow and usd-core only."""
 
-from .generate import AnatomyError, make_colon
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .measures import inner_faces
 from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS, segment_index
 from .spec import ColonSpec, FoldSpec, SegmentSpec
 from .stage import (
@@ -15,7 +19,9 @@ from .stage import (
     read_colon,
     write_colon,
 )
-from .wall import inner_faces
+
+if TYPE_CHECKING:
+    from .generate import AnatomyError, make_colon
 
 __all__ = [
     "ANCHOR_ELASTIC",
@@ -39,3 +45,12 @@ __all__ = [
     "segment_index",
     "write_colon",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Imports the generator when it is asked for: what reads stages alone starts a second earlier without SciPy."""
+    if name not in ("AnatomyError", "make_colon"):
+        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    from . import generate
+
+    return getattr(generate, name)

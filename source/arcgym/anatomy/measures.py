@@ -32,6 +32,24 @@ def face_normals(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.cross(b - a, c - a)
 
 
+def inner_faces(tets: np.ndarray, layer: np.ndarray) -> np.ndarray:
+    """Returns the lumen side of the wall.
+
+    Args:
+        tets: Vertex indices, shape (T, 4).
+        layer: Layer of each vertex, shape (V,).
+
+    Returns:
+        Boundary faces whose vertices all lie in layer 0, wound so that normals point from the lumen into the wall,
+        shape (F, 3), int32.
+    """
+    # In a tetrahedron of positive volume these windings point towards the fourth vertex, that is into the wall.
+    faces = np.concatenate([tets[:, [0, 1, 2]], tets[:, [0, 3, 1]], tets[:, [0, 2, 3]], tets[:, [1, 3, 2]]])
+    faces = faces[(np.asarray(layer)[faces] == 0).all(1)]
+    _, first, uses = np.unique(np.sort(faces, 1), axis=0, return_index=True, return_counts=True)
+    return faces[np.sort(first[uses == 1])].astype(np.int32)
+
+
 def winds_outwards(points: np.ndarray, faces: np.ndarray) -> bool:
     """Tells whether the faces of a tube enclose positive volume, that is, whether their normals leave the lumen."""
     center = points[faces].astype(np.float64).mean(1) - points.mean(0)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .measures import inner_faces
 from .stage_types import WallMesh
-from .wall import inner_faces
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ from __future__ import annotations
 import numpy as np
 from pxr import Usd, UsdValidation
 
+from .measures import inner_faces
 from .mesh_checks import boundary_faces, cap_openings, count_crossings, edge_uses, winding_numbers
 from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from .stage import StageError, read_colon
 from .stage_types import ColonStage, WallMesh
 from .validate import Check, validate_stage
-from .wall import inner_faces
 
 _LENGTH_RANGE = 0.1, 3.0
 _DIAMETER_RANGE = 0.010, 0.120

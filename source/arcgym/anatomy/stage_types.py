@@ -12,6 +12,9 @@ import numpy as np
 
 from .segments import SEGMENTS, segment_index
 
+TEXTURE_LENGTH = 0.24
+"""Length of colon that one repeat of the texture covers [m]."""
+
 
 class StageError(ValueError):
     """A stage file cannot be used; the message names file, prim and attribute, what was found and how to mend it."""
@@ -65,8 +68,8 @@ class VisualMesh:
     normals: np.ndarray
     """Unit normals towards the lumen, shape (M, 3), float32."""
     uv: np.ndarray
-    """Texture coordinates: u turns around the lumen, v along it, one unit each repeat of the texture (0.24 m of colon).
-    Both may leave 0 to 1; shape (M, 2), float32."""
+    """Texture coordinates: u turns around the lumen, v along it, one unit each repeat of the texture, which covers
+    :data:`TEXTURE_LENGTH`. Both may leave 0 to 1; shape (M, 2), float32."""
     tint: np.ndarray
     """Above 0 on polyps, below 0 inside diverticula, in [-1, 1], shape (M,), float32."""
     skin_indices: np.ndarray

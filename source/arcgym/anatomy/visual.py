@@ -13,12 +13,9 @@ from .measures import face_normals
 from .refine import refine
 from .rows import row_positions
 from .segments import SEGMENTS
-from .stage_types import VisualMesh, WallMesh
+from .stage_types import TEXTURE_LENGTH, VisualMesh, WallMesh
 from .surface import DOME_LENGTH, Surface
 from .vessel_styles import texture_rows
-
-TEXTURE_LENGTH = 0.24
-"""Length of colon that one repeat of the texture covers [m]."""
 
 _TWIST = 0.55
 _DOME_ROW = 0.875

@@ -73,24 +73,6 @@ def polygon_triangles(sectors: int) -> np.ndarray:
     return np.array(triangles, np.int32)
 
 
-def inner_faces(tets: np.ndarray, layer: np.ndarray) -> np.ndarray:
-    """Returns the lumen side of the wall.
-
-    Args:
-        tets: Vertex indices, shape (T, 4).
-        layer: Layer of each vertex, shape (V,).
-
-    Returns:
-        Boundary faces whose vertices all lie in layer 0, wound so that normals point from the lumen into the wall,
-        shape (F, 3), int32.
-    """
-    # In a tetrahedron of positive volume these windings point towards the fourth vertex, that is into the wall.
-    faces = np.concatenate([tets[:, [0, 1, 2]], tets[:, [0, 3, 1]], tets[:, [0, 2, 3]], tets[:, [1, 3, 2]]])
-    faces = faces[(np.asarray(layer)[faces] == 0).all(1)]
-    _, first, uses = np.unique(np.sort(faces, 1), axis=0, return_index=True, return_counts=True)
-    return faces[np.sort(first[uses == 1])].astype(np.int32)
-
-
 def _extrude(points: np.ndarray, triangles: np.ndarray, stride: int) -> np.ndarray:
     """Splits each prism between a triangle and its copy one layer out into three tetrahedra.
 

@@ -20,7 +20,6 @@ from numpy.typing import ArrayLike
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
 from newton import JointType, ModelBuilder, ParticleFlags, ShapeFlags
-from newton.solvers import SolverMuJoCo
 
 from arcgym.anatomy import ColonStage, StageError
 from arcgym.anatomy.layout import TISSUE_PATH, WALL_PATH
@@ -105,7 +104,6 @@ def add_endoscope_usd(builder: ModelBuilder, path: str | Path, stage: EndoscopeS
     Raises:
         StageError: If what Newton imported differs from `stage`.
     """
-    SolverMuJoCo.register_custom_attributes(builder)
     counts = _counts(builder)
     _import_stage(builder, path, ENDOSCOPE_PATH)
     indices = EndoscopeIndices(*(range(*ends) for ends in zip(counts, _counts(builder), strict=True)))

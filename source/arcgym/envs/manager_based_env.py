@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import logging
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -16,6 +17,7 @@ from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.configclass import validate
+from arcgym.utils.garbage import paused_collection
 from arcgym.utils.seed import set_seed
 from arcgym.utils.string import resolve_callable
 from arcgym.utils.threads import one_thread
@@ -35,6 +37,7 @@ class ManagerBasedEnv(gym.Env):
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
 
+    @paused_collection()
     def __init__(self, cfg: ManagerBasedEnvCfg, render_mode: str | None = None) -> None:
         """Builds scene and managers.
 
@@ -63,7 +66,6 @@ class ManagerBasedEnv(gym.Env):
         self.load_managers()
         self.event_manager.apply("startup")
         self._refresh_all()
-        self._configure_spaces()
         self.obs_buf: dict[str, Observation] = {}
         logger.info("%s", self)
 
@@ -93,6 +95,26 @@ class ManagerBasedEnv(gym.Env):
     def step_dt(self) -> float:
         """Control step [s]."""
         return self.cfg.sim.dt * self.cfg.decimation
+
+    @cached_property
+    def single_observation_space(self) -> gym.spaces.Dict:
+        """Observation of one world: a space for each group."""
+        return observation_space(self.observation_manager)
+
+    @cached_property
+    def single_action_space(self) -> gym.spaces.Box:
+        """Action of one world, shape (A,), unbounded: actions are clipped by their terms."""
+        return gym.spaces.Box(-np.inf, np.inf, (self.action_manager.total_action_dim,), np.float32)
+
+    @cached_property
+    def observation_space(self) -> gym.Space:  # type: ignore[override]
+        """Observation of all worlds. Made when it is asked for: its bounds are as large as a batch of images."""
+        return batched(self.single_observation_space, self.num_envs)
+
+    @cached_property
+    def action_space(self) -> gym.Space:  # type: ignore[override]
+        """Action of all worlds, shape (N, A)."""
+        return batched(self.single_action_space, self.num_envs)
 
     @property
     def unwrapped(self) -> ManagerBasedEnv:
@@ -203,13 +225,6 @@ class ManagerBasedEnv(gym.Env):
         """Recomputes what follows from positions, and draws every world again."""
         self.sim.forward()
         self.scene.update(0.0)
-
-    def _configure_spaces(self) -> None:
-        actions = gym.spaces.Box(-np.inf, np.inf, (self.action_manager.total_action_dim,), np.float32)
-        self.single_observation_space = observation_space(self.observation_manager)
-        self.single_action_space = actions
-        self.observation_space = batched(self.single_observation_space, self.num_envs)
-        self.action_space = batched(actions, self.num_envs)
 
 
 def _build_scene(cfg: ManagerBasedEnvCfg) -> InteractiveScene:

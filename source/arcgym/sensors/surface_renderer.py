@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import warp as wp
 
-from arcgym.anatomy.visual import TEXTURE_LENGTH
+from arcgym.anatomy.stage_types import TEXTURE_LENGTH
 from arcgym.utils import warp_setup  # noqa: F401
 
 from .camera_kernels import cast_rays, develop, expose, find_covered, row_brightness

@@ -8,10 +8,9 @@ import numpy as np
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
-from newton.solvers import SolverMuJoCo
 
+from arcgym.anatomy.measures import inner_faces
 from arcgym.anatomy.shell import ShellMesh
-from arcgym.anatomy.wall import inner_faces
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
@@ -23,10 +22,8 @@ from arcgym.sim.wall_topology import LumenTopology, lumen_topology
 
 
 def empty_builder() -> newton.ModelBuilder:
-    """Builder without gravity that takes MuJoCo's attributes."""
-    builder = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
-    SolverMuJoCo.register_custom_attributes(builder)
-    return builder
+    """Builder without gravity."""
+    return newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
 
 
 def scope_builder(endoscope: Endoscope, mass_scaling: float) -> newton.ModelBuilder:

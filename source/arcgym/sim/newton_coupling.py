@@ -57,7 +57,7 @@ class NewtonCoupling:
         self.solver = self._solver()
 
     def _model(self, sim: Simulation) -> newton.Model:
-        world = model_building.empty_builder()
+        world = _empty_builder()
         sim.colon.add_to(world)
         mobile = sim.colon.mobile()
         for i in np.flatnonzero(~mobile):
@@ -74,7 +74,7 @@ class NewtonCoupling:
             world.shape_material_kd[shape] = 0.0
             world.shape_material_mu[shape] = contact.friction
         world.color()
-        builder = model_building.empty_builder()
+        builder = _empty_builder()
         builder.replicate(world, sim.num_envs)
         model = builder.finalize(device=sim.device)
         model.soft_contact_ke, model.soft_contact_kd, model.soft_contact_mu = contact.stiffness, 0.0, contact.friction
@@ -155,6 +155,12 @@ class NewtonCoupling:
         """Clear what the coupled solvers keep between steps in the masked worlds; states are copied in anyway."""
         self._copy_in()
         self.solver.reset(self.now, world_mask)
+
+
+def _empty_builder() -> newton.ModelBuilder:
+    builder = model_building.empty_builder()
+    SolverMuJoCo.register_custom_attributes(builder)
+    return builder
 
 
 def _hold(builder: newton.ModelBuilder, particle: int) -> None:
