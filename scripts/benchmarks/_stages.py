@@ -13,6 +13,7 @@ import torch
 import warp as wp
 from _common import Action, median_ms
 
+from arcgym.envs.mdp import lumen_scores
 from arcgym.utils.threads import one_thread
 
 RESET_SHARE = 0.05
@@ -134,7 +135,8 @@ def manager_stages(env: Any, actions: torch.Tensor) -> dict[str, Action]:
     """What is left of ``env.step`` without physics, camera and resets, and each manager alone."""
 
     def rest() -> None:
-        with silenced((env.sim, "step"), (env.sim, "forward"), (env.scene, "update"), (env, "_reset_idx")):
+        silent = silenced((env.sim, "step"), (env.sim, "forward"), (env, "_reset_idx"))
+        with silent, patch.object(env.scene, "update", lambda *args, **kwargs: new_frame(env)):
             env.step(actions)
 
     def act() -> None:
@@ -154,8 +156,14 @@ def manager_stages(env: Any, actions: torch.Tensor) -> dict[str, Action]:
     }
 
 
+def new_frame(env: Any) -> None:
+    """Makes the terms score the camera's images as if they were new."""
+    if "camera" in env.scene.sensors:
+        env.scene["camera"].data.frame += 1
+
+
 def reset_stages(env: Any) -> dict[str, Action]:
-    """Reset of a share of the worlds with the redraw of their pictures, and without."""
+    """Reset of a share of the worlds with the redraw and scoring of their pictures, and without."""
     count = max(1, round(RESET_SHARE * env.num_envs))
     env_ids = torch.randperm(env.num_envs, device=env.device)[:count]
     mask = torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
@@ -165,6 +173,8 @@ def reset_stages(env: Any) -> dict[str, Action]:
         env._reset_idx(env_ids)
         env.sim.forward()
         env.scene.update(0.0, env_mask=mask)
+        if hasattr(env.cfg, "lumen"):
+            lumen_scores(env)
 
     return {"reset": reset, "reset_events": lambda: env._reset_idx(env_ids)}
 

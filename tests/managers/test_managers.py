@@ -52,6 +52,15 @@ class TestRewards:
         env.value = torch.tensor([float("inf"), float("nan")])
         assert manager.compute(1.0).tolist() == [0.0, 0.0]
 
+    def test_values_that_were_handed_out_stay(self, env) -> None:
+        manager = RewardManager({"a": RewardTermCfg(func=value), "off": RewardTermCfg(func=value, weight=0.0)}, env)
+        manager.compute(1.0)
+        before = manager.step_values
+        env.value = torch.tensor([7.0, 7.0])
+        manager.compute(1.0)
+        assert before["a"].tolist() == [1.0, 3.0] and before["off"].tolist() == [0.0, 0.0]
+        assert manager.episode_sums["a"].tolist() == [8.0, 10.0]
+
     def test_weight_can_be_changed_while_running(self, env) -> None:
         manager = RewardManager({"a": RewardTermCfg(func=value, weight=0.0)}, env)
         assert manager.compute(1.0).tolist() == [0.0, 0.0]
@@ -73,7 +82,7 @@ class TestTerminations:
             "lost": TerminationTermCfg(func=above, params={"limit": 2.0}),
             "time": TerminationTermCfg(func=above, params={"limit": 0.0}, time_out=True),
         }
-        manager = TerminationManager(cfg, env)
+        manager = TerminationManager(dict(reversed(cfg.items())), env)
         assert manager.compute().tolist() == [True, True]
         assert manager.terminated.tolist() == [False, True]
         assert manager.time_outs.tolist() == [True, True]
@@ -93,6 +102,20 @@ def test_metrics_reduce_over_the_episode(env, reduce, expected) -> None:
         env.value = torch.tensor([first, 100.0])
         manager.compute()
     assert manager.reset(torch.tensor([0]))["Episode_Metrics/a"].item() == expected
+
+
+def test_metrics_of_all_reductions_side_by_side(env) -> None:
+    reductions = ("mean", "max", "sum", "last", "mean")
+    cfg = {f"{reduce}_{k}": MetricsTermCfg(func=value, reduce=reduce) for k, reduce in enumerate(reductions)}
+    manager = MetricsManager(cfg, env)
+    for first in (-2.0, -5.0, -5.0):
+        env.value = torch.tensor([first, 1.0])
+        manager.compute()
+    expected = {"mean_0": -4.0, "max_1": -2.0, "sum_2": -12.0, "last_3": -5.0, "mean_4": -4.0}
+    assert {name: manager.get_value(name)[0].item() for name in cfg} == expected
+    logs = manager.reset(torch.tensor([0]))
+    assert logs == {f"Episode_Metrics/{name}": figure for name, figure in expected.items()}
+    assert [manager.get_value(name).tolist() for name in ("max_1", "sum_2")] == [[0.0, 1.0], [0.0, 3.0]]
 
 
 def test_metrics_leave_out_worlds_without_a_step(env) -> None:

@@ -89,7 +89,7 @@ class FakeCamera:
 
     def __init__(self, num_envs: int) -> None:
         image = torch.arange(num_envs * 4 * 6 * 3).reshape(num_envs, 4, 6, 3).to(torch.uint8)
-        self.data = SimpleNamespace(output={"rgb": image, "depth": torch.full((num_envs, 4, 6), 0.05)})
+        self.data = SimpleNamespace(output={"rgb": image, "depth": torch.full((num_envs, 4, 6), 0.05)}, frame=1)
         self.commands: dict[str, Any] = {}
 
     def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor) -> None:

@@ -15,12 +15,11 @@ from arcgym.envs.mdp.lumen import METRIC, PAPER, LumenCfg, lumen_scores, resolve
 
 
 class FakeEnv:
-    """An environment with nothing but a camera, a step counter and a preset."""
+    """An environment with nothing but a camera and a preset."""
 
     def __init__(self, depth: torch.Tensor, lumen: str = "paper"):
-        self.output = {"depth": depth}
-        self.scene = {"camera": SimpleNamespace(data=SimpleNamespace(output=self.output))}
-        self.common_step_counter = 0
+        self.images = SimpleNamespace(output={"depth": depth}, frame=1)
+        self.scene = {"camera": SimpleNamespace(data=self.images)}
         self.cfg = SimpleNamespace(lumen=lumen)
 
 
@@ -90,20 +89,12 @@ def test_worlds_are_scored_independently() -> None:
     assert torch.equal(both, alone)
 
 
-def test_scores_are_computed_once_a_step() -> None:
+def test_scores_are_computed_once_an_image() -> None:
     env = FakeEnv(one_deep_pixel(1, 2, 0.01, 0.1))
     first = lumen_scores(env)
-    env.output["depth"] = torch.full((1, 3, 5), 0.003)
+    env.images.output["depth"] = torch.full((1, 3, 5), 0.003)
     assert lumen_scores(env) is first
-    env.common_step_counter += 1
-    assert lumen_scores(env).s_o.item() == -1.0
-
-
-def test_refresh_sees_the_image_after_a_reset() -> None:
-    env = FakeEnv(one_deep_pixel(1, 2, 0.01, 0.1))
-    before = lumen_scores(env)
-    env.output["depth"] = torch.full((1, 3, 5), 0.003)
-    assert lumen_scores(env, refresh=True) is not before
+    env.images.frame += 1
     assert lumen_scores(env).s_o.item() == -1.0
 
 

@@ -79,5 +79,7 @@ def test_forces_are_logarithmic(env) -> None:
 
 def test_lumen_state_sees_the_image_after_a_reset(env) -> None:
     mdp.lumen_reward(env)
-    env.scene["camera"].data.output["depth"][0] = 0.003
+    images = env.scene["camera"].data
+    images.output["depth"][0] = 0.003
+    images.frame += 1
     assert mdp.lumen_state(env)[0, 4] == -1.0

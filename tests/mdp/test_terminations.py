@@ -65,16 +65,17 @@ def test_stuck_forgets_at_reset(env) -> None:
 
 def test_lumen_lost_after_steps_in_a_row(env) -> None:
     term = mdp.lumen_lost(TerminationTermCfg(func=mdp.lumen_lost), env)
-    depth = env.scene["camera"].data.output["depth"]
+    images = env.scene["camera"].data
+    depth = images.output["depth"]
     results = []
     for blocked in (True, True, False, True, True):
         depth[:] = 0.003 if blocked else 0.05
         depth[:, 1, 1] += 0.02 * (not blocked)
-        env.common_step_counter += 1
+        images.frame += 1
         results.append(term(env, threshold=-0.4, steps=2).tolist()[0])
     assert results == [False, True, False, False, True]
     term.reset(None)
-    env.common_step_counter += 1
+    images.frame += 1
     assert not term(env, threshold=-0.4, steps=2).any()
 
 

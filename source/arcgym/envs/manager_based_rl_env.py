@@ -15,6 +15,7 @@ from arcgym.managers import CostManager, CurriculumManager, MetricsManager, Rewa
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.registry import load_cfg
 from arcgym.utils.threads import one_thread
+from arcgym.utils.worlds import fill_worlds
 
 StepReturn = tuple[dict[str, Observation], torch.Tensor, torch.Tensor, torch.Tensor, dict[str, Any]]
 """Observations, reward (N,), terminated (N,), truncated (N,), extras."""
@@ -150,7 +151,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
     def _reset_idx(self, env_ids: torch.Tensor) -> None:
         self.curriculum_manager.compute(env_ids)
         super()._reset_idx(env_ids)
-        self.episode_length_buf[env_ids] = 0
+        fill_worlds(self.episode_length_buf, env_ids, 0)
         self.extras["log"]["Episode_Termination/non_finite"] = self._failed[env_ids].sum().float()
 
 

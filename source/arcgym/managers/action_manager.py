@@ -13,6 +13,7 @@ from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ActionTermCfg
 from arcgym.utils.string import did_you_mean, resolve_callable
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -117,9 +118,8 @@ class ActionManager(ManagerBase):
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
         """Sets the actions of some worlds to zero and resets the terms."""
-        selected = slice(None) if env_ids is None else env_ids
-        self._action[selected] = 0.0
-        self._prev_action[selected] = 0.0
+        fill_worlds(self._action, env_ids, 0.0)
+        fill_worlds(self._prev_action, env_ids, 0.0)
         for term in self._terms.values():
             term.reset(env_ids)
         return {}

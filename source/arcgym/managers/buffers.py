@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import torch
 
+from arcgym.utils.worlds import fill_worlds
+
 
 class FrameBuffer:
     """Keeps the last frames of every world; the first frame after a reset fills them all.
@@ -49,7 +51,7 @@ class FrameBuffer:
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
         """Empties the buffers of some worlds."""
-        self._is_empty[env_ids] = True
+        fill_worlds(self._is_empty, env_ids, True)
 
 
 class DelayBuffer:
@@ -109,7 +111,7 @@ class DelayBuffer:
     def reset(self, env_ids: torch.Tensor | slice) -> None:
         """Forgets the past of some worlds; those with lags of their own draw new ones."""
         self._frames.reset(env_ids)
-        self._age[env_ids] = 0
+        fill_worlds(self._age, env_ids, 0)
         if self._per_env:
             self._lag[env_ids] = self._draw()[env_ids]
 

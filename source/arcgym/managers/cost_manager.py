@@ -4,17 +4,15 @@
 
 from __future__ import annotations
 
-import torch
-
 from arcgym.managers.term_cfg import CostTermCfg
 from arcgym.managers.weighted_sum_manager import WeightedSumManager
 
 
 class CostManager(WeightedSumManager):
-    """Computes the cost as the weighted sum of its terms, apart from the reward."""
+    """Computes the cost as the weighted sum of its terms, apart from the reward.
+
+    It logs mean episode sums: what a limit on the cost of an episode bounds.
+    """
 
     term_cfg_type = CostTermCfg
-
-    def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
-        """Returns each term's mean episode sum: what a limit on the cost of an episode bounds."""
-        return {f"Episode_Cost/{name}": mean for name, mean in super().reset(env_ids).items()}
+    log_name = "Episode_Cost"

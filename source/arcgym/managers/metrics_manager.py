@@ -10,13 +10,21 @@ import torch
 
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.term_cfg import MetricsTermCfg
+from arcgym.utils.worlds import fill_worlds, finite_rows
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
 
+REDUCTIONS = ("last", "max", "sum", "mean")
+"""How a term is reduced over the episode, in the order of the rows."""
+
+
 class MetricsManager(ManagerBase):
-    """Reduces each term over the episode and logs the mean over the worlds that end."""
+    """Reduces each term over the episode and logs the mean over the worlds that end.
+
+    Values stand in one row a term, sorted by reduction, so that each reduction is one operation on all its terms.
+    """
 
     term_cfg_type = MetricsTermCfg
 
@@ -24,40 +32,51 @@ class MetricsManager(ManagerBase):
         """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values()
-        self._values = {name: torch.zeros(self.num_envs, device=self.device) for name in self._terms}
+        self._order = sorted(self._terms, key=lambda name: REDUCTIONS.index(self._terms[name].reduce))
+        self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
         self._num_steps = torch.zeros(self.num_envs, device=self.device)
 
     def compute(self) -> None:
         """Takes the values of this control step in; one that is not finite counts as zero."""
+        if not self._terms:
+            return
         is_first = self._num_steps == 0
         self._num_steps += 1
-        for name, term in self._terms.items():
-            value = torch.nan_to_num(self._evaluate(name).float(), nan=0.0, posinf=0.0, neginf=0.0)
-            past = self._values[name]
-            if term.reduce == "last":
-                past.copy_(value)
-            elif term.reduce == "max":
-                past.copy_(torch.where(is_first, value, torch.maximum(past, value)))
-            else:
-                past.add_(value)
+        by_name = {name: self._evaluate(name) for name in self._terms}
+        values = finite_rows([by_name[name] for name in self._order])
+        last, largest, added = self._part("last"), self._part("max"), self._part("sum", "mean")
+        self._values[last] = values[last]
+        past = self._values[largest]
+        self._values[largest] = torch.where(is_first, values[largest], torch.maximum(past, values[largest]))
+        self._values[added] += values[added]
 
     def get_value(self, name: str) -> torch.Tensor:
         """Returns a term reduced over the episode so far, shape (N,)."""
         is_mean = self.get_term_cfg(name).reduce == "mean"
-        return self._values[name] / self._num_steps.clamp(min=1) if is_mean else self._values[name]
+        value = self._values[self._order.index(name)]
+        return value / self._num_steps.clamp(min=1) if is_mean else value
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
         """Returns the mean of each term over those of some worlds that made a step, and starts them again."""
         super().reset(env_ids)
         selected = slice(None) if env_ids is None else env_ids
-        has_run = (self._num_steps[selected] > 0).float()
-        count = has_run.sum().clamp(min=1)
-        logs = {
-            f"Episode_Metrics/{name}": (self.get_value(name)[selected] * has_run).sum() / count for name in self._terms
-        }
-        for value in (*self._values.values(), self._num_steps):
-            value[selected] = 0.0
-        return logs
+        steps, values = self._num_steps[selected], self._values[:, selected]
+        has_run = (steps > 0).float()
+        mean = self._part("mean")
+        reduced = torch.cat((values[: mean.start], values[mean] / steps.clamp(min=1)))
+        means = (reduced * has_run).sum(dim=1) / has_run.sum().clamp(min=1)
+        fill_worlds(self._values, env_ids, 0.0, dim=1)
+        fill_worlds(self._num_steps, env_ids, 0.0)
+        by_name = dict(zip(self._order, means, strict=True))
+        return {f"Episode_Metrics/{name}": by_name[name] for name in self._terms}
+
+    def _part(self, *reductions: str) -> slice:
+        """Rows of the terms with reductions that follow one another."""
+        first, end = (
+            sum(REDUCTIONS.index(self._terms[name].reduce) < bound for name in self._order)
+            for bound in (REDUCTIONS.index(reductions[0]), REDUCTIONS.index(reductions[-1]) + 1)
+        )
+        return slice(first, end)
 
     def _columns(self) -> list[str]:
         return ["index", "name", "reduce"]

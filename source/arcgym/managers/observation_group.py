@@ -58,9 +58,8 @@ class ObservationPipeline:
         Args:
             store: Whether delay and history take the value in; otherwise they stay as they were.
         """
-        value = self.cfg.func(self._env, **self.cfg.params).clone()
-        if value.is_floating_point():
-            value = self._finite(value)
+        value = self.cfg.func(self._env, **self.cfg.params)
+        value = self._finite(value) if value.is_floating_point() else value.clone()
         if self._noise is not None:
             value = self._noise.apply(value)
         if self.cfg.clip is not None:
@@ -104,7 +103,7 @@ class ObservationPipeline:
             raise TypeError(f"{self._label} returned {value.dtype}: noise and scale need floating point values.")
 
     def _finite(self, value: torch.Tensor) -> torch.Tensor:
-        """Applies the group's policy to values that are not finite."""
+        """Applies the group's policy to values that are not finite, in new memory."""
         if self._nan_policy == "sanitize":
             return torch.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)
         if self._nan_policy in ("warn", "error") and not bool(torch.isfinite(value).all()):
@@ -112,7 +111,7 @@ class ObservationPipeline:
             if self._nan_policy == "error":
                 raise ValueError(message)
             logger.warning(message)
-        return value
+        return value.clone()
 
 
 class ObservationGroup:

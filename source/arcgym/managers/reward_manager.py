@@ -6,8 +6,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import torch
-
 from arcgym.managers.term_cfg import RewardTermCfg
 from arcgym.managers.weighted_sum_manager import WeightedSumManager
 
@@ -16,12 +14,12 @@ if TYPE_CHECKING:
 
 
 class RewardManager(WeightedSumManager):
-    """Computes the reward as the weighted sum of its terms."""
+    """Computes the reward as the weighted sum of its terms; logs mean episode sums over the longest episode [1/s]."""
 
     term_cfg_type = RewardTermCfg
+    log_name = "Episode_Reward"
     _env: ManagerBasedRLEnv
 
-    def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
-        """Returns each term's mean episode sum over the longest episode [1/s], as Isaac Lab logs it."""
-        means = super().reset(env_ids)
-        return {f"Episode_Reward/{name}": mean / self._env.max_episode_length_s for name, mean in means.items()}
+    def _log_divisor(self) -> float:
+        """Longest episode [s]: Isaac Lab logs sums over it."""
+        return self._env.max_episode_length_s

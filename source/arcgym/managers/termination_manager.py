@@ -24,7 +24,8 @@ class TerminationManager(ManagerBase):
         """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values(torch.bool)
-        self._term_dones = {name: self._none() for name in self._terms}
+        self._dones = torch.zeros(len(self._terms), self.num_envs, dtype=torch.bool, device=self.device)
+        self._order = self._sorted_names()
         self._terminated = self._none()
         self._time_outs = self._none()
 
@@ -45,27 +46,29 @@ class TerminationManager(ManagerBase):
 
     def compute(self) -> torch.Tensor:
         """Evaluates all terms and returns :attr:`dones`."""
-        self._terminated = self._none()
-        self._time_outs = self._none()
-        for name, term in self._terms.items():
-            value = self._evaluate(name)
-            self._term_dones[name] = value.clone()
-            if term.time_out:
-                self._time_outs = self._time_outs | value
-            else:
-                self._terminated = self._terminated | value
+        if self._terms:
+            self._order = self._sorted_names()
+            values = {name: self._evaluate(name) for name in self._terms}
+            self._dones = torch.stack([values[name] for name in self._order])
+            first = sum(not term.time_out for term in self._terms.values())
+            self._terminated, self._time_outs = self._dones[:first].any(dim=0), self._dones[first:].any(dim=0)
         return self.dones
 
     def get_term(self, name: str) -> torch.Tensor:
         """Returns which worlds a term ended in the last step, bool, shape (N,)."""
         self.get_term_cfg(name)
-        return self._term_dones[name]
+        return self._dones[self._order.index(name)]
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
         """Returns how many of some worlds each term ended."""
         super().reset(env_ids)
-        selected = slice(None) if env_ids is None else env_ids
-        return {f"Episode_Termination/{name}": done[selected].sum().float() for name, done in self._term_dones.items()}
+        counts = (self._dones if env_ids is None else self._dones[:, env_ids]).sum(dim=1, dtype=torch.float32)
+        by_name = dict(zip(self._order, counts, strict=True))
+        return {f"Episode_Termination/{name}": by_name[name] for name in self._terms}
+
+    def _sorted_names(self) -> list[str]:
+        """Names of the terms, those that are no time-outs first: the rows of the flags."""
+        return sorted(self._terms, key=lambda name: self._terms[name].time_out)
 
     def _none(self) -> torch.Tensor:
         return torch.zeros(self.num_envs, dtype=torch.bool, device=self.device)

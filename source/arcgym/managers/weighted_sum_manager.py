@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import torch
 
 from arcgym.managers.manager_base import ManagerBase
+from arcgym.utils.worlds import fill_worlds, finite_rows
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -20,22 +21,28 @@ class WeightedSumManager(ManagerBase):
     A value that is not finite counts as zero: the world it comes from is being reset.
     """
 
+    log_name: ClassVar[str]
+    """First part of the names that :meth:`reset` logs."""
+
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
         """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values()
-        self._step_values = {name: torch.zeros(self.num_envs, device=self.device) for name in self._terms}
-        self._episode_sums = {name: torch.zeros(self.num_envs, device=self.device) for name in self._terms}
+        self._zero = torch.zeros(self.num_envs, device=self.device)
+        self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
+        self._sums = torch.zeros_like(self._values)
+        self._scales: list[float] = []
+        self._scales_on_device = torch.zeros(0, 1, device=self.device)
 
     @property
     def step_values(self) -> dict[str, torch.Tensor]:
         """What each term added in the last step, shape (N,); they add up to the sum."""
-        return self._step_values
+        return dict(zip(self._terms, self._values, strict=True))
 
     @property
     def episode_sums(self) -> dict[str, torch.Tensor]:
         """What each term added since the last reset of each world, shape (N,)."""
-        return self._episode_sums
+        return dict(zip(self._terms, self._sums, strict=True))
 
     def compute(self, dt: float) -> torch.Tensor:
         """Returns the sum over all terms.
@@ -46,26 +53,31 @@ class WeightedSumManager(ManagerBase):
         Returns:
             Sum of each world, shape (N,).
         """
-        total = torch.zeros(self.num_envs, device=self.device)
-        for name, term in self._terms.items():
-            if term.weight == 0.0:
-                self._step_values[name] = torch.zeros_like(total)
-                continue
-            value = torch.nan_to_num(self._evaluate(name).float(), nan=0.0, posinf=0.0, neginf=0.0)
-            value = value * (term.weight * dt)
-            self._step_values[name] = value
-            self._episode_sums[name] += value
-            total += value
-        return total
+        if not self._terms:
+            return torch.zeros_like(self._zero)
+        values = [self._evaluate(name) if term.weight else self._zero for name, term in self._terms.items()]
+        self._values = finite_rows(values) * self._scale(dt)
+        self._sums += self._values
+        return self._values.sum(dim=0)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
-        """Returns the mean episode sum of each term over some worlds, and starts them again from zero."""
+        """Returns what to log, each term's mean episode sum over some worlds, and starts them again from zero."""
         super().reset(env_ids)
-        selected = slice(None) if env_ids is None else env_ids
-        means = {name: total[selected].mean() for name, total in self._episode_sums.items()}
-        for total in self._episode_sums.values():
-            total[selected] = 0.0
-        return means
+        sums = self._sums if env_ids is None else self._sums[:, env_ids]
+        means = sums.mean(dim=1) / self._log_divisor()
+        fill_worlds(self._sums, env_ids, 0.0, dim=1)
+        return {f"{self.log_name}/{name}": mean for name, mean in zip(self._terms, means, strict=True)}
+
+    def _log_divisor(self) -> float:
+        """What logged sums are divided by."""
+        return 1.0
+
+    def _scale(self, dt: float) -> torch.Tensor:
+        """Weight of each term times ``dt``, shape (T, 1), sent to the device when it changes."""
+        scales = [term.weight * dt for term in self._terms.values()]
+        if scales != self._scales:
+            self._scales, self._scales_on_device = scales, torch.tensor(scales, device=self.device).unsqueeze(1)
+        return self._scales_on_device
 
     def _columns(self) -> list[str]:
         return ["index", "name", "weight"]

@@ -13,6 +13,7 @@ import torch
 import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.worlds import fill_worlds
 
 from .mucosa_textures import MucosaTextures
 from .sensor_base import SensorBase
@@ -43,6 +44,8 @@ class EndoscopeCameraData:
     camera's near clipping distance: an unlit void behind the wall would look like open lumen."""
     output: dict[str, torch.Tensor] = field(default_factory=dict)
     """``rgb``: uint8, shape (N, H, W, 3). ``depth``: distance along the ray [m], float32, shape (N, H, W)."""
+    frame: int = 0
+    """How often some world was drawn so far: what is computed from the output holds until it changes."""
 
 
 class EndoscopeCamera(SensorBase):
@@ -121,11 +124,11 @@ class EndoscopeCamera(SensorBase):
     def draw(self) -> None:
         """Draws the worlds of the last update again from the present camera poses, without moving the wall."""
         self._renderer.draw(self._endoscope.camera_pose_wp, self._looks, self._drawn)
+        self._data.frame += 1
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Lets the exposure of the worlds start anew with their next picture."""
-        gain = wp.to_torch(self._renderer.gain)
-        gain[slice(None) if env_ids is None else env_ids] = 0.0
+        fill_worlds(wp.to_torch(self._renderer.gain), env_ids, 0.0)
 
     def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
         """Sets the brightness of the picture relative to the exposure's aim, shape (n,); 1 is neutral."""

@@ -24,6 +24,7 @@ from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet
 from arcgym.sim.wall_readout import WallReadout
 from arcgym.sim.wall_solver import WallSolver
+from arcgym.utils.worlds import fill_worlds
 
 logger = logging.getLogger(__name__)
 
@@ -289,7 +290,7 @@ class Simulation:
         per_world += [actuation.tip_lin_command, actuation.tip_ang_command, actuation.base_force, actuation.tip_force]
         per_world.append(self._pierced)
         for array in (*per_world, self.step_force, self.wall_force, self.wall_force_peak):
-            wp.to_torch(array).view(self.num_envs, -1)[ids] = 0.0
+            fill_worlds(wp.to_torch(array).view(self.num_envs, -1), ids, 0.0)
         self.wall_readout.reset(ids)
         bending = wp.to_torch(actuation.bending)
         wp.to_torch(actuation.bending_command)[ids] = bending[ids]

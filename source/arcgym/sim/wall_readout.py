@@ -12,6 +12,7 @@ from arcgym.assets.anchors import AnchorSprings
 from arcgym.sim.strain_kernels import RestRings, measure_rings
 from arcgym.sim.wall_parameters import wall_anchors
 from arcgym.sim.wall_topology import LumenTopology
+from arcgym.utils.worlds import fill_worlds
 
 
 class WallReadout:
@@ -71,7 +72,7 @@ class WallReadout:
     def reset(self, ids: torch.Tensor) -> None:
         """Forget the control step of the worlds ``ids``, shape (n,), int64."""
         for array in (self.strain, self.strain_peak, self.tension, self.tension_peak):
-            wp.to_torch(array)[:, ids] = 0.0
+            fill_worlds(wp.to_torch(array), ids, 0.0, dim=1)
 
 
 def _rest_rings(

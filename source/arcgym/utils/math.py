@@ -31,12 +31,14 @@ def quat_apply(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:
     """Rotate `vectors`, shape (..., 3), by unit quaternions, shape (..., 4)."""
     xyz, vectors = torch.broadcast_tensors(quat[..., :3], vectors)
     across = 2.0 * torch.linalg.cross(xyz, vectors)
-    return vectors + quat[..., 3:] * across + torch.linalg.cross(xyz, across)
+    return torch.addcmul(vectors, quat[..., 3:], across) + torch.linalg.cross(xyz, across)
 
 
 def quat_apply_inverse(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:
     """Rotate `vectors`, shape (..., 3), by the inverse of unit quaternions, shape (..., 4)."""
-    return quat_apply(quat_conjugate(quat), vectors)
+    xyz, vectors = torch.broadcast_tensors(quat[..., :3], vectors)
+    across = 2.0 * torch.linalg.cross(xyz, vectors)
+    return torch.addcmul(vectors, quat[..., 3:], across, value=-1.0) + torch.linalg.cross(xyz, across)
 
 
 def quat_from_axis_angle(axis: torch.Tensor, angle: torch.Tensor) -> torch.Tensor:

@@ -12,6 +12,7 @@ import torch
 
 from arcgym.managers import ActionTerm, ActionTermCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -65,9 +66,8 @@ class VelocityAction(ActionTerm):
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Set the actions of the given worlds to zero."""
-        worlds = slice(None) if env_ids is None else env_ids
-        self._raw[worlds] = 0.0
-        self._processed[worlds] = 0.0
+        fill_worlds(self._raw, env_ids, 0.0)
+        fill_worlds(self._processed, env_ids, 0.0)
 
 
 class TipVelocityAction(VelocityAction):

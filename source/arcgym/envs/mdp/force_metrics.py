@@ -14,6 +14,7 @@ import torch
 
 from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.managers import ManagerTermBase, MetricsTermCfg, SceneEntityCfg
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
@@ -79,7 +80,7 @@ class tip_force_percentile(ManagerTermBase):
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Empty the histograms of the given worlds."""
-        self._counts[slice(None) if env_ids is None else env_ids] = 0.0
+        fill_worlds(self._counts, env_ids, 0.0)
 
     def __call__(self, env: ManagerBasedRLEnv, percentile: float = 95.0) -> torch.Tensor:
         """Take this step's force in and return the percentile; below 0.01 N it is zero."""

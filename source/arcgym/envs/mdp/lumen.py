@@ -174,25 +174,21 @@ def score_depth(depth: torch.Tensor, cfg: LumenCfg) -> LumenScores:
     return LumenScores(s_c, s_1, s_2, s_3, s_o, reward, center, depth_min, depth_max)
 
 
-def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None, refresh: bool = False) -> LumenScores:
-    """Scores of the current images of ``scene["camera"]``, computed once a control step and shared by all terms.
-
-    Terminations, rewards, costs and metrics run between the step and the reset and share one result. Observations run
-    after the reset, when some worlds have a new image at the same step count; they pass ``refresh``.
+def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> LumenScores:
+    """Scores of the current images of ``scene["camera"]``, computed once for each and shared by all terms.
 
     Args:
         env: The environment; ``env.scene["camera"]`` must give ``depth``.
         lumen: A preset's name or the constants. None takes the task's, ``env.cfg.lumen``.
-        refresh: Compute again even when this step has a result.
     """
     cfg = resolve_lumen(task_setting(env, "lumen", lumen))
-    step = env.common_step_counter
-    cached_step, scores = _CACHE.get(env, (None, {}))
-    if refresh or cached_step != step:
+    images = env.scene["camera"].data
+    frame, scores = _CACHE.get(env, (None, {}))
+    if frame != images.frame:
         scores = {}
-        _CACHE[env] = (step, scores)
+        _CACHE[env] = (images.frame, scores)
     if cfg not in scores:
-        scores[cfg] = score_depth(env.scene["camera"].data.output["depth"], cfg)
+        scores[cfg] = score_depth(images.output["depth"], cfg)
     return scores[cfg]
 
 

@@ -79,9 +79,8 @@ def tip_axis_distance(env: ManagerBasedEnv, scale: float = 0.02) -> torch.Tensor
 def tip_velocity(env: ManagerBasedEnv, linear_scale: float = 0.05, angular_scale: float = 2.0) -> torch.Tensor:
     """Linear and angular velocity of the tip in its frame, over the scales [m/s] and [rad/s], shape (N, 6)."""
     data = env.scene["endoscope"].data
-    linear = quat_apply_inverse(data.tip_quat_w, data.tip_lin_vel_w) / linear_scale
-    angular = quat_apply_inverse(data.tip_quat_w, data.tip_ang_vel_w) / angular_scale
-    return torch.cat((linear, angular), dim=1)
+    velocity = torch.stack((data.tip_lin_vel_w / linear_scale, data.tip_ang_vel_w / angular_scale), dim=1)
+    return quat_apply_inverse(data.tip_quat_w.unsqueeze(1), velocity).flatten(1)
 
 
 def tip_bending(env: ManagerBasedEnv) -> torch.Tensor:
@@ -145,7 +144,7 @@ def last_action(env: ManagerBasedEnv) -> torch.Tensor:
 
 def lumen_state(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
     """Parts of the lumen reward ``s_c, s_1, s_2, s_3, s_o``, of order one as they are, shape (N, 5)."""
-    scores = lumen_scores(env, lumen, refresh=True)
+    scores = lumen_scores(env, lumen)
     return torch.stack((scores.s_c, scores.s_1, scores.s_2, scores.s_3, scores.s_o), dim=1)
 
 

@@ -13,6 +13,7 @@ from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, RewardTermCfg, SceneEntityCfg
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
@@ -48,7 +49,7 @@ class progress(ManagerTermBase):
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Forget the previous position of the given worlds."""
-        self._previous[slice(None) if env_ids is None else env_ids] = torch.nan
+        fill_worlds(self._previous, env_ids, torch.nan)
 
     def __call__(self, env: ManagerBasedRLEnv) -> torch.Tensor:
         """Return the change of the tip's arc length since the last call [m]."""

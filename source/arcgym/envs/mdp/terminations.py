@@ -13,6 +13,7 @@ from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, SceneEntityCfg, TerminationTermCfg
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
@@ -72,7 +73,7 @@ class lumen_lost(ManagerTermBase):
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Start the count of the given worlds again."""
-        self._count[slice(None) if env_ids is None else env_ids] = 0
+        fill_worlds(self._count, env_ids, 0)
 
     def __call__(
         self, env: ManagerBasedRLEnv, threshold: float = -0.4, steps: int = 5, lumen: str | LumenCfg | None = None
@@ -99,7 +100,7 @@ class stuck(ManagerTermBase):
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Forget the past of the given worlds; they cannot be stuck before a whole window has passed."""
-        self._arc[:, slice(None) if env_ids is None else env_ids] = -torch.inf
+        fill_worlds(self._arc, env_ids, -torch.inf, dim=1)
 
     def __call__(self, env: ManagerBasedRLEnv, window_s: float, min_progress: float) -> torch.Tensor:
         """Compare the tip's arc length with the one of a window ago."""

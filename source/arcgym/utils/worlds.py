@@ -1,0 +1,33 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tensors with one entry a world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import torch
+
+
+def fill_worlds(tensor: torch.Tensor, env_ids: torch.Tensor | slice | None, value: float, dim: int = 0) -> None:
+    """Sets the entries of some worlds in place, in one operation where ``tensor[env_ids] = value`` makes two.
+
+    Args:
+        tensor: Values, worlds along ``dim``.
+        env_ids: World indices, int64, shape (n,); None for all.
+        value: What they become.
+        dim: Dimension of the worlds.
+    """
+    if isinstance(env_ids, torch.Tensor):
+        tensor.index_fill_(dim, env_ids, value)
+    else:
+        tensor.fill_(value)
+
+
+def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:
+    """Puts the values of T terms, shape (N,) each, into rows of new memory, float32, shape (T, N).
+
+    What is not finite becomes zero.
+    """
+    rows = torch.stack([value.float() for value in values])
+    return torch.nan_to_num(rows, nan=0.0, posinf=0.0, neginf=0.0)
