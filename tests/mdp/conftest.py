@@ -15,6 +15,14 @@ IDENTITY = [0.0, 0.0, 0.0, 1.0]
 RING_READOUTS = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
 
 
+class FakeEndoscopeData(SimpleNamespace):
+    """Readings that a test sets."""
+
+    @property
+    def wall_force_norm(self) -> torch.Tensor:
+        return self.wall_force_w.norm(dim=-1)
+
+
 class FakeEndoscope:
     """Records commands; its data are plain tensors of two worlds with three links."""
 
@@ -22,7 +30,7 @@ class FakeEndoscope:
         zeros = torch.zeros
         self.kind = "proximal"
         self.commands: dict[str, Any] = {}
-        self.data = SimpleNamespace(
+        self.data = FakeEndoscopeData(
             tip_arc_length=zeros(num_envs),
             tip_centerline_distance=zeros(num_envs),
             tip_pos_w=zeros(num_envs, 3),

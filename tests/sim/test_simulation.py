@@ -141,7 +141,9 @@ def test_reset_clears_commands_and_forces(narrow: TinySim) -> None:
     drive(sim, [144])
     reset_world_1(sim)
     data, actuation = sim.endoscope.data, sim.actuation
-    assert not data.wall_force_w[1].any() and not data.wall_force_peak[1].any() and not data.base_force[1].any()
+    for force in (data.wall_force_w, data.wall_force_norm, data.wall_force_peak, data.base_force):
+        assert force[0].any() and not force[1].any()
+    torch.testing.assert_close(data.wall_force_norm, data.wall_force_w.norm(dim=-1))
     assert actuation.insertion_velocity.numpy()[1] == 0.0
     assert actuation.insertion_velocity.numpy()[0] == pytest.approx(0.1)
 

@@ -64,6 +64,8 @@ class EndoscopeData:
         """Direction of the deformed centreline beside the tip, away from the anus, shape (N, 3)."""
         self.wall_force_w: torch.Tensor = wp.to_torch(sim.wall_force).view(n, links, 3)
         """Force of the wall on each link, mean over the control step [N], shape (N, L, 3)."""
+        self.wall_force_norm: torch.Tensor = wp.to_torch(sim.wall_force_norm).view(n, links)
+        """Magnitude of that force [N], shape (N, L)."""
         self.wall_force_peak: torch.Tensor = wp.to_torch(sim.wall_force_peak).view(n, links)
         """Largest force of the wall on each link within the control step (mean over one physics step) [N], (N, L)."""
         self.base_force: torch.Tensor = wp.to_torch(actuation.base_force)
@@ -81,7 +83,7 @@ class EndoscopeData:
     @property
     def tip_force(self) -> torch.Tensor:
         """Force of the wall on the tip, the last link, mean over the control step [N], shape (N,)."""
-        return self.wall_force_w[:, -1].norm(dim=-1)
+        return self.wall_force_norm[:, -1]
 
     @property
     def tip_force_peak(self) -> torch.Tensor:

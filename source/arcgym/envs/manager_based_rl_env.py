@@ -15,7 +15,7 @@ from arcgym.managers import CostManager, CurriculumManager, MetricsManager, Rewa
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.registry import load_cfg
 from arcgym.utils.threads import one_thread
-from arcgym.utils.worlds import fill_worlds
+from arcgym.utils.worlds import fill_worlds, finite
 
 StepReturn = tuple[dict[str, Observation], torch.Tensor, torch.Tensor, torch.Tensor, dict[str, Any]]
 """Observations, reward (N,), terminated (N,), truncated (N,), extras."""
@@ -158,6 +158,6 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
 def _finite(obs: dict[str, Any]) -> dict[str, Any]:
     """Replaces what is not finite by zero, whatever the groups' policies: the observed world has failed."""
     return {
-        name: _finite(value) if isinstance(value, dict) else torch.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)
+        name: _finite(value) if isinstance(value, dict) else finite(value)
         for name, value in obs.items()
     }

@@ -12,6 +12,7 @@ import torch
 from arcgym.managers.buffers import DelayBuffer, FrameBuffer
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ObservationGroupCfg, ObservationTermCfg
+from arcgym.utils.worlds import finite
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -52,13 +53,23 @@ class ObservationPipeline:
         self.dtype = sample.dtype
         self.reset(slice(None))
 
+    @property
+    def is_plain(self) -> bool:
+        """Whether nothing but the group's policy for values that are not finite lies between function and learner."""
+        steps = (self._noise, self.cfg.clip, self._scale, self._delay, self._history)
+        return self._nan_policy == "sanitize" and self.dtype.is_floating_point and all(step is None for step in steps)
+
+    def read(self) -> torch.Tensor:
+        """Returns what the term's function returns, shape (N, ...)."""
+        return self.cfg.func(self._env, **self.cfg.params)
+
     def compute(self, store: bool = True) -> torch.Tensor:
         """Returns the observation in memory of its own, shape (N, ...).
 
         Args:
             store: Whether delay and history take the value in; otherwise they stay as they were.
         """
-        value = self.cfg.func(self._env, **self.cfg.params)
+        value = self.read()
         value = self._finite(value) if value.is_floating_point() else value.clone()
         if self._noise is not None:
             value = self._noise.apply(value)
@@ -105,7 +116,7 @@ class ObservationPipeline:
     def _finite(self, value: torch.Tensor) -> torch.Tensor:
         """Applies the group's policy to values that are not finite, in new memory."""
         if self._nan_policy == "sanitize":
-            return torch.nan_to_num(value, nan=0.0, posinf=0.0, neginf=0.0)
+            return finite(value)
         if self._nan_policy in ("warn", "error") and not bool(torch.isfinite(value).all()):
             message = f"{self._label} returned values that are not finite."
             if self._nan_policy == "error":
@@ -156,6 +167,9 @@ class ObservationGroup:
 
     def compute(self, store: bool = True) -> torch.Tensor | dict[str, torch.Tensor]:
         """Returns the group: one tensor, shape (N, ...), or a dict of them."""
+        pipelines = self.pipelines.values()
+        if self.cfg.concatenate_terms and all(pipeline.is_plain for pipeline in pipelines):
+            return finite(torch.cat([pipeline.read() for pipeline in pipelines], dim=self._dim))
         values = {name: pipeline.compute(store) for name, pipeline in self.pipelines.items()}
         if not self.cfg.concatenate_terms:
             return values

@@ -22,6 +22,13 @@ def collect_forces(step_force: wp.array(dtype=wp.vec3), total: wp.array(dtype=wp
 
 
 @wp.kernel
+def measure_forces(force: wp.array(dtype=wp.vec3), magnitude: wp.array(dtype=float)):
+    """Magnitude of each link's force [N]. Launch (W*L,)."""
+    i = wp.tid()
+    magnitude[i] = wp.length(force[i])
+
+
+@wp.kernel
 def read_tip(
     body_q: wp.array(dtype=wp.transform),
     body_qd: wp.array(dtype=wp.spatial_vector),

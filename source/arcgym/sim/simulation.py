@@ -123,6 +123,7 @@ class Simulation:
         n, rows, device = self.num_envs, self.num_envs * self.endoscope.num_bodies, self.device
         self.step_force = wp.zeros(rows, dtype=wp.vec3, device=device)
         self.wall_force = wp.zeros(rows, dtype=wp.vec3, device=device)
+        self.wall_force_norm = wp.zeros(rows, dtype=float, device=device)
         self.wall_force_peak = wp.zeros(rows, dtype=float, device=device)
         self.tip_pose = wp.zeros(n, dtype=wp.transform, device=device)
         self.tip_velocity = wp.zeros(n, dtype=wp.spatial_vector, device=device)
@@ -206,6 +207,8 @@ class Simulation:
         links = self.endoscope.num_bodies
         self.contact.update_centres(self.nodal_pos)
         self.contact.track(self.state.body_q)
+        args = [self.wall_force, self.wall_force_norm]
+        wp.launch(readout_kernels.measure_forces, self.wall_force.shape, args, device=self.device)
         args = [self.state.body_q, self.state.body_qd, links, self._tip_offset, self._camera_offset]
         args += [self.tip_pose, self.tip_velocity, self.camera_pose]
         wp.launch(readout_kernels.read_tip, self.num_envs, args, device=self.device)

@@ -29,5 +29,9 @@ def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:
 
     What is not finite becomes zero.
     """
-    rows = torch.stack([value.float() for value in values])
-    return torch.nan_to_num(rows, nan=0.0, posinf=0.0, neginf=0.0)
+    return finite(torch.stack([value.float() for value in values]))
+
+
+def finite(values: torch.Tensor) -> torch.Tensor:
+    """Returns a copy in which what is not finite is zero."""
+    return torch.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)

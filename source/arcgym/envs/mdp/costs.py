@@ -29,7 +29,7 @@ def wall_force_above(
     env: ManagerBasedRLEnv, limit: float | str = "unsafe", asset_cfg: SceneEntityCfg = _ENDOSCOPE
 ) -> torch.Tensor:
     """1 when some link presses on the wall with more than ``limit`` ([N] or a tier), mean over the control step."""
-    force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+    force = env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
     return (force.amax(dim=1) > force_limit(env, limit)).float()
 
 

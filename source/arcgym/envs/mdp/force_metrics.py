@@ -24,17 +24,17 @@ _ENDOSCOPE = SceneEntityCfg("endoscope")
 
 def mean_tip_force(env: ManagerBasedRLEnv) -> torch.Tensor:
     """Force of the tip [N] (reduce: mean, or max for the largest that lasted a control step)."""
-    return env.scene["endoscope"].data.tip_force.clone()
+    return env.scene["endoscope"].data.tip_force
 
 
 def peak_tip_force(env: ManagerBasedRLEnv) -> torch.Tensor:
     """Largest force of the tip in a physics step of the control step [N] (reduce: max)."""
-    return env.scene["endoscope"].data.tip_force_peak.clone()
+    return env.scene["endoscope"].data.tip_force_peak
 
 
 def max_wall_force(env: ManagerBasedRLEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
     """Largest force of a link [N], mean over the control step (reduce: max)."""
-    return env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1).amax(dim=1)
+    return env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids].amax(dim=1)
 
 
 def peak_base_force(env: ManagerBasedRLEnv) -> torch.Tensor:

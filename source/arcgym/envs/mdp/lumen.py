@@ -34,13 +34,16 @@ leaves open, and how it is read here:
 
 from __future__ import annotations
 
-import math
+import dataclasses
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import torch
+import warp as wp
 
+from arcgym.envs.mdp import lumen_kernels
 from arcgym.envs.mdp.settings import task_setting
 
 if TYPE_CHECKING:
@@ -157,21 +160,25 @@ class LumenScores:
 
 
 def score_depth(depth: torch.Tensor, cfg: LumenCfg) -> LumenScores:
-    """Score depth images ``depth`` [m], shape (N, H, W), float32, with the equations at the head of this module."""
-    height, width = depth.shape[1:]
-    depth = depth.clamp(max=cfg.far)
-    depth_min, depth_max = torch.aminmax(depth.flatten(1), dim=1)
-    center, area = _deep_region(depth, cfg.depth_threshold * depth_max)
+    """Score depth images ``depth`` [m], shape (N, H, W), float32, with the equations at the head of this module.
 
-    half_height, half_width = (height - 1) / 2, (width - 1) / 2
-    radius = torch.hypot(center[:, 0] - half_height, center[:, 1] - half_width)
-    s_c = 1.0 - radius / math.hypot(half_height, half_width)
-    s_1 = _ramp(depth_max, cfg.tau_wall, cfg.tau_lumen)
-    s_2 = _ramp(area / (height * width), cfg.rho_min, 1.0)
-    s_3 = _ramp(depth_max - depth_min, cfg.delta_min, cfg.delta_good)
-    s_o = 2.0 * (cfg.mix * s_1 + (1.0 - cfg.mix) * s_2) * s_3 - 1.0
-    reward = cfg.weight_centering * s_c + cfg.weight_visibility * s_o
-    return LumenScores(s_c, s_1, s_2, s_3, s_o, reward, center, depth_min, depth_max)
+    One kernel: in torch they would be forty operations, each of them launched.
+    """
+    wp.init()
+    scores = torch.empty(10, len(depth), device=depth.device)
+    images = wp.from_torch(depth.contiguous())
+    args = [images, _constants(cfg), wp.from_torch(scores)]
+    wp.launch(lumen_kernels.score_images, len(depth), args, device=images.device)
+    s_c, s_1, s_2, s_3, s_o, reward, row, column, smallest, largest = scores
+    return LumenScores(s_c, s_1, s_2, s_3, s_o, reward, torch.stack((row, column), dim=1), smallest, largest)
+
+
+@cache
+def _constants(cfg: LumenCfg) -> lumen_kernels.LumenConstants:
+    constants = lumen_kernels.LumenConstants()
+    for name, value in dataclasses.asdict(cfg).items():
+        setattr(constants, name, value)
+    return constants
 
 
 def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> LumenScores:
@@ -202,17 +209,3 @@ def resolve_lumen(lumen: str | LumenCfg) -> LumenCfg:
 
 
 _CACHE: WeakKeyDictionary[ManagerBasedEnv, tuple[int, dict[LumenCfg, LumenScores]]] = WeakKeyDictionary()
-
-
-def _deep_region(depth: torch.Tensor, threshold: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-    """Mean row and column (N, 2) and number of pixels (N,) of the pixels of at least ``threshold`` (N,)."""
-    deep = depth >= threshold[:, None, None]
-    rows, columns = deep.sum(2).to(depth.dtype), deep.sum(1).to(depth.dtype)
-    area = rows.sum(1).clamp(min=1.0)
-    sums = [(count * torch.arange(count.shape[1], device=count.device)).sum(1) for count in (rows, columns)]
-    return torch.stack(sums, dim=1) / area[:, None], area
-
-
-def _ramp(value: torch.Tensor, low: float, high: float) -> torch.Tensor:
-    """0 up to ``low``, 1 from ``high`` on, linear between."""
-    return ((value - low) / (high - low)).clamp(0.0, 1.0)

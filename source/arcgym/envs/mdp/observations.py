@@ -96,7 +96,7 @@ def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
 
 def wall_forces(env: ManagerBasedEnv) -> torch.Tensor:
     """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing link, by all, shape (N, 3)."""
-    force = env.scene["endoscope"].data.wall_force_w.norm(dim=-1)
+    force = env.scene["endoscope"].data.wall_force_norm
     return torch.log1p(torch.stack((force[:, -1], force.amax(dim=1), force.sum(dim=1)), dim=1))
 
 
@@ -119,7 +119,7 @@ def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
 
 def link_forces(env: ManagerBasedEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
     """Force between each link and the wall [N], mean over the control step, shape (N, L)."""
-    return env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+    return env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
 
 
 def base_force(env: ManagerBasedEnv) -> torch.Tensor:

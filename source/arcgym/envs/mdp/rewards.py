@@ -11,7 +11,7 @@ import torch
 
 from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
-from arcgym.envs.mdp.segments import segment_progress
+from arcgym.envs.mdp.segments import segment_passed
 from arcgym.managers import ManagerTermBase, RewardTermCfg, SceneEntityCfg
 from arcgym.utils.worlds import fill_worlds
 
@@ -61,7 +61,7 @@ class progress(ManagerTermBase):
 
 def success(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
     """1 when the tip has passed the end of the segment."""
-    return (segment_progress(env, segment) >= 1.0).float()
+    return segment_passed(env, segment).float()
 
 
 def tip_force_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
@@ -78,7 +78,7 @@ def excess_wall_force(
     env: ManagerBasedRLEnv, limit: float | str = "comfort", asset_cfg: SceneEntityCfg = _ENDOSCOPE
 ) -> torch.Tensor:
     """Largest force between a link and the wall above ``limit`` ([N] or a tier) [N], mean over the control step."""
-    force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+    force = env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
     return (force.amax(dim=1) - force_limit(env, limit)).clamp(min=0.0)
 
 

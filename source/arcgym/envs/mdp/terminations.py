@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.envs.mdp import segments
 from arcgym.envs.mdp.force_tiers import force_limit
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
-from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, SceneEntityCfg, TerminationTermCfg
 from arcgym.utils.worlds import fill_worlds
 
@@ -28,7 +28,7 @@ def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
 
 def segment_passed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
     """Success: the tip has passed the end of the segment, by arc length along the lumen."""
-    return segment_progress(env, segment) >= 1.0
+    return segments.segment_passed(env, segment)
 
 
 def withdrawn(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
@@ -59,7 +59,7 @@ def excess_force(
 
     Choose links by ``asset_cfg.body_names``. A bent shaft spreads its force and perforates later than a straight tip.
     """
-    force = env.scene[asset_cfg.name].data.wall_force_w[:, asset_cfg.body_ids].norm(dim=-1)
+    force = env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
     return force.amax(dim=1) > force_limit(env, limit)
 
 
