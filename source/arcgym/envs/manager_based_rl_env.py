@@ -157,7 +157,4 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
 
 def _finite(obs: dict[str, Any]) -> dict[str, Any]:
     """Replaces what is not finite by zero, whatever the groups' policies: the observed world has failed."""
-    return {
-        name: _finite(value) if isinstance(value, dict) else finite(value)
-        for name, value in obs.items()
-    }
+    return {name: _finite(value) if isinstance(value, dict) else finite(value) for name, value in obs.items()}
