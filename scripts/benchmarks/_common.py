@@ -52,6 +52,13 @@ def best_device() -> str:
     return "cuda:0" if torch.cuda.is_available() else "cpu"
 
 
+def full_name(device: str) -> str:
+    """Device with the hardware's name, e.g. ``cuda:0 (NVIDIA H100)``."""
+    import warp as wp
+
+    return f"{device} ({wp.get_device(device).name})"
+
+
 def device_mib(device: str) -> float | None:
     """Memory in use on a GPU, by whatever program [MiB]; None on the CPU."""
     import warp as wp

@@ -15,7 +15,7 @@ import json
 from typing import Any
 
 import numpy as np
-from _common import median_ms
+from _common import full_name, median_ms
 
 
 def parse_args() -> argparse.Namespace:
@@ -105,7 +105,11 @@ def main() -> None:
             results.append(time_updates(stage, num_envs, size, args))
             print("  ".join(f"{key} {value}" for key, value in results[-1].items()))
     if args.json:
-        print(json.dumps({"benchmark": "camera", "colon": args.colon, "device": args.device, "results": results}))
+        print(
+            json.dumps(
+                {"benchmark": "camera", "colon": args.colon, "device": full_name(args.device), "results": results}
+            )
+        )
 
 
 if __name__ == "__main__":

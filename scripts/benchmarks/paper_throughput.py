@@ -18,7 +18,7 @@ import math
 import time
 from typing import Any
 
-from _common import best_device, counts, positive
+from _common import best_device, counts, full_name, positive
 
 from arcgym.rl import cli
 
@@ -77,7 +77,9 @@ def main() -> None:
     for row in rows:
         print(describe(row))
     if args.json:
-        print(json.dumps({"device": args.device, "task": args.task, "settings": settings(args), "rows": rows}))
+        print(
+            json.dumps({"device": full_name(args.device), "task": args.task, "settings": settings(args), "rows": rows})
+        )
 
 
 def settings(args: argparse.Namespace) -> dict[str, float]:

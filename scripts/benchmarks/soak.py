@@ -25,7 +25,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from _common import best_device, device_mib, forward_axis, host_mib, positive
+from _common import best_device, device_mib, full_name, forward_axis, host_mib, positive
 from soak_checks.journal import Journal, Tally
 
 from arcgym.rl import cli
@@ -238,7 +238,7 @@ def report(tasks: list[str], journal: Journal, args: argparse.Namespace) -> int:
     ok = not any(row["violations"] for row in rows)
     if args.json:
         sessions = [line for line in journal.lines if line["kind"] == "start"]
-        print(json.dumps({"device": args.device, "ok": ok, "sessions": sessions, "rows": rows}))
+        print(json.dumps({"device": full_name(args.device), "ok": ok, "sessions": sessions, "rows": rows}))
     return 0 if ok else 1
 
 

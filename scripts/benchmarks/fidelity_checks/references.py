@@ -133,9 +133,15 @@ class TubeModel:
         moved[free] = splu(matrix[free][:, free]).solve(force.ravel()[free])
         return moved.reshape(-1, 3)
 
-    def compliance(self, traction: Traction) -> float:
-        """Displacement under the load, weighted by it, for a load of one newton [m/N]."""
-        return float((self.loads(traction) * self.displacements(traction)).sum())
+    def compliance(self, traction: Traction, moved: np.ndarray | None = None) -> float:
+        """Displacement under the load, weighted by it, for a load of one newton [m/N].
+
+        Args:
+            traction: The load.
+            moved: :meth:`displacements` under it, if they are known.
+        """
+        moved = self.displacements(traction) if moved is None else moved
+        return float((self.loads(traction) * moved).sum())
 
 
 def brick_rule() -> list[tuple[float, np.ndarray]]:

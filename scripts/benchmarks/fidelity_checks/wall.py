@@ -110,7 +110,7 @@ def stiffness_row(run: Run, name: str, tube: Tube, load: Any, mesh: dict[str, in
     force, moved = shipped_displacements(sim, traction)
     ours, tube_model = float((force * moved).sum()), reference_tube(sim, **mesh)
     nodes, limit = tube_model.points(), tube_model.displacements(traction)
-    exact = float((tube_model.loads(traction) * limit).sum())
+    exact = tube_model.compliance(traction, limit)
     plot = Plot(name, "place along the tube [m]", "displacement of the pulled line [mm/N]")
     points = sim.colon.wall.points.astype(float)
     line, own = seam(nodes), seam(points)
