@@ -25,7 +25,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from _common import best_device, device_mib, full_name, forward_axis, host_mib, positive
+from _common import best_device, device_mib, forward_axis, full_name, host_mib, positive
 from soak_checks.journal import Journal, Tally
 
 from arcgym.rl import cli
