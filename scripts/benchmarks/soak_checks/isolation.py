@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 from unittest.mock import patch
@@ -24,6 +24,8 @@ class ResetGuard:
         """Worlds that were reset."""
         self.disturbed = torch.zeros((), dtype=torch.long, device=env.device)
         """Worlds that another world's reset changed."""
+        self.before: Callable[[], None] = lambda: None
+        """Called before every reset."""
 
     @contextmanager
     def watch(self) -> Iterator[None]:
@@ -31,6 +33,7 @@ class ResetGuard:
         reset = self._env._reset_idx
 
         def watched(env_ids: torch.Tensor) -> None:
+            self.before()
             before = copied(self._env.sim)
             reset(env_ids)
             changed = different(before, self._env.sim.world_arrays())

@@ -24,6 +24,8 @@ class Tally:
     """Worlds reset because their state was not finite."""
     disturbed_worlds: int = 0
     """Worlds whose state another world's reset changed."""
+    pierced: int = 0
+    """Episodes that ended because a link was going through the wall."""
     outside_links: int = 0
     """Links found outside the lumen."""
     examined_links: int = 0
@@ -41,7 +43,7 @@ class Tally:
 
     def add(self, other: Tally) -> None:
         """Take in what a later part of the soak found."""
-        for name in ("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds"):
+        for name in ("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds", "pierced"):
             setattr(self, name, getattr(self, name) + getattr(other, name))
         self.outside_links += other.outside_links
         self.examined_links += other.examined_links

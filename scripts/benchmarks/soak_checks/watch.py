@@ -32,6 +32,7 @@ class Watch:
             kind: Kind of each world's actions, index into ``KINDS``, shape (N,).
         """
         self.guard = ResetGuard(env)
+        self.guard.before = self._note_largest
         self._env, self._kind = env, kind
         self._lumen = LumenCheck(env)
         self._step = 0
@@ -45,7 +46,7 @@ class Watch:
         self._since = self._step
         self._not_finite: dict[str, torch.Tensor] = {}
         self._largest: dict[str, torch.Tensor] = {}
-        self._outside, self._examined = zero(), zero()
+        self._outside, self._examined, self._pierced = zero(), zero(), zero()
         never = torch.full((self._env.num_envs,), -1, dtype=torch.long, device=self._env.device)
         self._last = {what: never.clone() for what in ("recovered", "outside")}
         self.guard.resets, self.guard.disturbed = zero(), zero()
@@ -54,6 +55,8 @@ class Watch:
         """Take in what ``env.step`` returned, and the state that it left."""
         self._step += 1
         self._last["recovered"][terminated & ~self._env.termination_manager.terminated] = self._step
+        if "pierced" in self._env.termination_manager.active_terms:
+            self._pierced += self._env.termination_manager.get_term("pierced").sum()
         self._count_not_finite(obs, reward, extras)
         self._note_largest()
         if self._step % LUMEN_EVERY == 0:
@@ -99,6 +102,7 @@ class Watch:
             resets=int(self.guard.resets),
             recovered_worlds=failures - self._failures_read,
             disturbed_worlds=int(self.guard.disturbed),
+            pierced=int(self._pierced),
             outside_links=int(self._outside),
             examined_links=int(self._examined),
             not_finite={name: int(count) for name, count in self._not_finite.items() if int(count)},
