@@ -173,7 +173,7 @@ def reset_stages(env: Any) -> dict[str, Action]:
         env._reset_idx(env_ids)
         env.sim.forward()
         env.scene.update(0.0, env_mask=mask)
-        if hasattr(env.cfg, "lumen"):
+        if hasattr(env.cfg, "lumen") and "camera" in env.scene.sensors:
             lumen_scores(env)
 
     return {"reset": reset, "reset_events": lambda: env._reset_idx(env_ids)}

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import torch
 
@@ -66,6 +67,8 @@ class TestRewards:
         assert manager.compute(1.0).tolist() == [0.0, 0.0]
         manager.get_term_cfg("a").weight = 1.0
         assert manager.compute(1.0).tolist() == [1.0, 3.0]
+        manager.get_term_cfg("a").weight = np.float64(2.0)
+        assert manager.compute(1.0).dtype == torch.float32
         with pytest.raises(ValueError, match="RewardManager has no term 'b'.*Available: a"):
             manager.get_term_cfg("b")
 
@@ -89,6 +92,12 @@ class TestTerminations:
         assert manager.get_term("lost").tolist() == [False, True]
         logs = manager.reset(torch.tensor([0]))
         assert logs["Episode_Termination/lost"].item() == 0.0 and logs["Episode_Termination/time"].item() == 1.0
+
+    def test_value_must_stay_bool(self, env) -> None:
+        manager = TerminationManager({"a": TerminationTermCfg(func=above, params={"limit": 2.0})}, env)
+        manager.set_term_cfg("a", TerminationTermCfg(func=value))
+        with pytest.raises(TypeError, match="Term 'a' of TerminationManager returned torch.float32"):
+            manager.compute()
 
     def test_value_must_be_bool(self, env) -> None:
         with pytest.raises(TypeError, match="returned torch.float32, expected torch.bool"):
@@ -116,6 +125,22 @@ def test_metrics_of_all_reductions_side_by_side(env) -> None:
     logs = manager.reset(torch.tensor([0]))
     assert logs == {f"Episode_Metrics/{name}": figure for name, figure in expected.items()}
     assert [manager.get_value(name).tolist() for name in ("max_1", "sum_2")] == [[0.0, 1.0], [0.0, 3.0]]
+
+
+def test_metric_reduced_otherwise_from_now_on_leaves_the_others_alone(env) -> None:
+    cfg = {name: MetricsTermCfg(func=value, reduce=name) for name in ("last", "sum", "mean")}
+    manager = MetricsManager(cfg, env)
+    manager.compute()
+    manager.reset()
+    manager.set_term_cfg("last", MetricsTermCfg(func=value, reduce="mean"))
+    manager.compute()
+    manager.compute()
+    assert {name: manager.get_value(name)[1].item() for name in cfg} == {"last": 3.0, "sum": 6.0, "mean": 3.0}
+
+
+def test_unknown_reduction_is_named(env) -> None:
+    with pytest.raises(ValueError, match="Term 'a' of MetricsManager: no reduction 'maxx'. Did you mean 'max'"):
+        MetricsManager({"a": MetricsTermCfg(func=value, reduce="maxx")}, env)
 
 
 def test_metrics_leave_out_worlds_without_a_step(env) -> None:

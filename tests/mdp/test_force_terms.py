@@ -23,6 +23,7 @@ def loaded(env):
     env.scope.tip_force_peak[:] = torch.tensor([5.5, 25.0])
     env.scene["colon"].data.wall_strain[:, 2] = torch.tensor([0.3, 0.7])
     env.scene["colon"].data.wall_strain_peak[:, 2] = torch.tensor([0.4, 0.8])
+    env.scene["colon"].data.anchor_tension[0, 4] = 1.0
     env.scene["colon"].data.anchor_tension_peak[0, 4] = 1.5
     return env
 
@@ -53,6 +54,24 @@ def test_costs_count_tiers(loaded) -> None:
     assert mdp.tip_force_above(loaded, limit="comfort").tolist() == [1.0, 1.0]
     assert mdp.wall_force_above(loaded, limit=3.5).tolist() == [1.0, 1.0]
     assert mdp.wall_strain_above(loaded).tolist() == [0.0, 1.0]
+    assert mdp.wall_strain_above(loaded, limit=0.75, peak=True).tolist() == [0.0, 1.0]
+
+
+def test_pull_on_the_anchors(loaded) -> None:
+    torch.testing.assert_close(mdp.excess_anchor_tension(loaded, limit=0.4), torch.tensor([0.6, 0.0]))
+    assert mdp.anchor_tension_above(loaded, limit=1.2).tolist() == [0.0, 0.0]
+    assert mdp.anchor_tension_above(loaded, limit=1.2, peak=True).tolist() == [1.0, 0.0]
+    assert mdp.anchors_overloaded(loaded, limit=0.4).tolist() == [True, False]
+    assert mdp.overstrained(loaded, limit=0.5).tolist() == [False, True]
+
+
+def test_peaks_on_request(loaded) -> None:
+    loaded.scope.wall_force_peak[0, 1] = 7.0
+    torch.testing.assert_close(mdp.tip_force(loaded, peak=True), torch.tensor([[5.5], [25.0]]))
+    assert mdp.excess_tip_force(loaded, limit=5.0, peak=True).tolist() == [0.5, 20.0]
+    assert mdp.excess_wall_force(loaded, limit=5.0, peak=True).tolist() == [2.0, 0.0]
+    assert mdp.perforation(loaded, limit=22.0, peak=True).tolist() == [False, True]
+    assert mdp.excess_force(loaded, limit=6.0, peak=True).tolist() == [True, False]
 
 
 def test_perforation_is_by_the_tip_alone(loaded) -> None:

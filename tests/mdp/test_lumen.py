@@ -82,6 +82,18 @@ def test_flat_wall_gives_the_lowest_visibility() -> None:
     assert scores.reward.item() == pytest.approx(0.5 * 1.0 - 0.5)
 
 
+def test_image_with_a_nan_has_no_score() -> None:
+    image = torch.full((2, 3, 5), 0.03)
+    image[0, 1, 1] = torch.nan
+    scores = score_depth(image, METRIC)
+    assert scores.reward.isnan().tolist() == [True, False] and scores.depth_max.isnan().tolist() == [True, False]
+
+
+def test_large_and_double_images_are_scored() -> None:
+    scores = score_depth(torch.full((1, 2000, 2000), 0.03, dtype=torch.float64), PAPER)
+    assert scores.center.tolist() == [pytest.approx([999.5, 999.5])] and scores.s_c.item() == pytest.approx(1.0)
+
+
 def test_worlds_are_scored_independently() -> None:
     images = torch.cat([one_deep_pixel(1, 2, 0.01, 0.1), torch.full((1, 3, 5), 0.003)])
     both = score_depth(images, PAPER).reward

@@ -114,11 +114,14 @@ def test_guard_finds_worlds_that_another_reset_changed(leaks):
 
     sim = LeakySim(leaks)
     env = SimpleNamespace(device="cpu", sim=sim, _reset_idx=sim.reset)
-    guard = ResetGuard(env)
+    before = float(sim.q[0].sum())
+    guard, calls = ResetGuard(env), []
+    guard.before = lambda: calls.append(float(sim.q[0].sum()))
     with guard.watch():
         env._reset_idx(torch.tensor([0]))
     assert (int(guard.resets), int(guard.disturbed)) == (1, int(leaks))
     assert env._reset_idx == sim.reset
+    assert calls == [before]
 
 
 def test_link_outside_a_box_is_found():

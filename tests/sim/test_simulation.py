@@ -139,10 +139,11 @@ def test_after_a_reset_both_worlds_go_on_as_if_alone(narrow: TinySim) -> None:
 def test_reset_clears_commands_and_forces(narrow: TinySim) -> None:
     sim = build(narrow)
     drive(sim, [144])
-    reset_world_1(sim)
+    sim.write_snapshot(-1, [1])
     data, actuation = sim.endoscope.data, sim.actuation
     for force in (data.wall_force_w, data.wall_force_norm, data.wall_force_peak, data.base_force):
         assert force[0].any() and not force[1].any()
+    sim.forward()
     torch.testing.assert_close(data.wall_force_norm, data.wall_force_w.norm(dim=-1))
     assert actuation.insertion_velocity.numpy()[1] == 0.0
     assert actuation.insertion_velocity.numpy()[0] == pytest.approx(0.1)

@@ -21,6 +21,15 @@ def test_some_worlds_are_filled(dtype: torch.dtype) -> None:
     assert not values.any()
 
 
+@pytest.mark.parametrize(
+    "worlds", [[1], slice(1, 2), torch.tensor([1], dtype=torch.int32), torch.tensor([False, True, False])]
+)
+def test_worlds_are_named_in_other_ways(worlds) -> None:
+    values = torch.zeros(3, 2)
+    fill_worlds(values, worlds, 1.0)
+    assert values.tolist() == [[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]]
+
+
 def test_worlds_along_another_dimension() -> None:
     values = torch.zeros(2, 3)
     fill_worlds(values, torch.tensor([1]), -torch.inf, dim=1)

@@ -82,7 +82,7 @@ class EndoscopeData:
 
     @property
     def tip_force(self) -> torch.Tensor:
-        """Force of the wall on the tip, the last link, mean over the control step [N], shape (N,)."""
+        """Force of the wall on the tip, the last link, mean over the control step [N], shape (N,); a view."""
         return self.wall_force_norm[:, -1]
 
     @property

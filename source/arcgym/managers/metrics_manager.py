@@ -10,6 +10,7 @@ import torch
 
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.term_cfg import MetricsTermCfg
+from arcgym.utils.string import did_you_mean
 from arcgym.utils.worlds import fill_worlds, finite_rows
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 
 REDUCTIONS = ("last", "max", "sum", "mean")
-"""How a term is reduced over the episode, in the order of the rows."""
+"""How a term may be reduced over the episode, in the order of the rows."""
 
 
 class MetricsManager(ManagerBase):
@@ -32,19 +33,21 @@ class MetricsManager(ManagerBase):
         """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values()
-        self._order = sorted(self._terms, key=lambda name: REDUCTIONS.index(self._terms[name].reduce))
+        self._order: list[str] = list(self._terms)
         self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
         self._num_steps = torch.zeros(self.num_envs, device=self.device)
+        self._sort_rows()
 
     def compute(self) -> None:
         """Takes the values of this control step in; one that is not finite counts as zero."""
         if not self._terms:
             return
+        self._sort_rows()
         is_first = self._num_steps == 0
         self._num_steps += 1
         by_name = {name: self._evaluate(name) for name in self._terms}
         values = finite_rows([by_name[name] for name in self._order])
-        last, largest, added = self._part("last"), self._part("max"), self._part("sum", "mean")
+        last, largest, added = self._rows_of("last"), self._rows_of("max"), self._rows_of("sum", "mean")
         self._values[last] = values[last]
         past = self._values[largest]
         self._values[largest] = torch.where(is_first, values[largest], torch.maximum(past, values[largest]))
@@ -53,16 +56,18 @@ class MetricsManager(ManagerBase):
     def get_value(self, name: str) -> torch.Tensor:
         """Returns a term reduced over the episode so far, shape (N,)."""
         is_mean = self.get_term_cfg(name).reduce == "mean"
+        self._sort_rows()
         value = self._values[self._order.index(name)]
         return value / self._num_steps.clamp(min=1) if is_mean else value
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
         """Returns the mean of each term over those of some worlds that made a step, and starts them again."""
         super().reset(env_ids)
+        self._sort_rows()
         selected = slice(None) if env_ids is None else env_ids
         steps, values = self._num_steps[selected], self._values[:, selected]
         has_run = (steps > 0).float()
-        mean = self._part("mean")
+        mean = self._rows_of("mean")
         reduced = torch.cat((values[: mean.start], values[mean] / steps.clamp(min=1)))
         means = (reduced * has_run).sum(dim=1) / has_run.sum().clamp(min=1)
         fill_worlds(self._values, env_ids, 0.0, dim=1)
@@ -70,13 +75,26 @@ class MetricsManager(ManagerBase):
         by_name = dict(zip(self._order, means, strict=True))
         return {f"Episode_Metrics/{name}": by_name[name] for name in self._terms}
 
-    def _part(self, *reductions: str) -> slice:
-        """Rows of the terms with reductions that follow one another."""
-        first, end = (
-            sum(REDUCTIONS.index(self._terms[name].reduce) < bound for name in self._order)
-            for bound in (REDUCTIONS.index(reductions[0]), REDUCTIONS.index(reductions[-1]) + 1)
-        )
-        return slice(first, end)
+    def _sort_rows(self) -> None:
+        """Sorts the rows by reduction again if one was changed."""
+        order = sorted(self._terms, key=self._place)
+        if order != self._order:
+            self._values = self._values[[self._order.index(name) for name in order]]
+            self._order = order
+
+    def _place(self, name: str) -> int:
+        reduce = self._terms[name].reduce
+        if reduce not in REDUCTIONS:
+            raise ValueError(
+                f"Term '{name}' of MetricsManager: no reduction '{reduce}'. {did_you_mean(reduce, REDUCTIONS)}"
+            )
+        return REDUCTIONS.index(reduce)
+
+    def _rows_of(self, *reductions: str) -> slice:
+        """Rows of the terms with reductions that stand side by side in :data:`REDUCTIONS`."""
+        places = [self._place(name) for name in self._order]
+        first = sum(place < REDUCTIONS.index(reductions[0]) for place in places)
+        return slice(first, first + sum(REDUCTIONS[place] in reductions for place in places))
 
     def _columns(self) -> list[str]:
         return ["index", "name", "reduce"]

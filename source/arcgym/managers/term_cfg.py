@@ -23,7 +23,8 @@ class ManagerTermBaseCfg:
 
     func: Callable[..., Any] = MISSING
     """Function, class derived from :class:`ManagerTermBase`, or the text ``"module:name"`` of either. Functions are
-    called as ``func(env, **params)``; those of events and curricula as ``func(env, env_ids, **params)``."""
+    called as ``func(env, **params)``; those of events and curricula as ``func(env, env_ids, **params)``. Values are
+    copied when all terms of the manager were called: two terms must not return the same buffer."""
 
     params: dict[str, Any] = {}
     """Keyword arguments of the function. A :class:`SceneEntityCfg` among them is resolved once, at construction."""

@@ -49,6 +49,7 @@ class TerminationManager(ManagerBase):
         if self._terms:
             self._order = self._sorted_names()
             values = {name: self._evaluate(name) for name in self._terms}
+            self._check_bool(values)
             self._dones = torch.stack([values[name] for name in self._order])
             first = sum(not term.time_out for term in self._terms.values())
             self._terminated, self._time_outs = self._dones[:first].any(dim=0), self._dones[first:].any(dim=0)
@@ -65,6 +66,11 @@ class TerminationManager(ManagerBase):
         counts = (self._dones if env_ids is None else self._dones[:, env_ids]).sum(dim=1, dtype=torch.float32)
         by_name = dict(zip(self._order, counts, strict=True))
         return {f"Episode_Termination/{name}": by_name[name] for name in self._terms}
+
+    def _check_bool(self, values: dict[str, torch.Tensor]) -> None:
+        for name, value in values.items():
+            if value.dtype != torch.bool:
+                raise TypeError(f"Term '{name}' of TerminationManager returned {value.dtype}, expected torch.bool.")
 
     def _sorted_names(self) -> list[str]:
         """Names of the terms, those that are no time-outs first: the rows of the flags."""

@@ -54,7 +54,7 @@ class WeightedSumManager(ManagerBase):
             Sum of each world, shape (N,).
         """
         if not self._terms:
-            return torch.zeros_like(self._zero)
+            return torch.zeros(self.num_envs, device=self.device)
         values = [self._evaluate(name) if term.weight else self._zero for name, term in self._terms.items()]
         self._values = finite_rows(values) * self._scale(dt)
         self._sums += self._values
@@ -76,7 +76,10 @@ class WeightedSumManager(ManagerBase):
         """Weight of each term times ``dt``, shape (T, 1), sent to the device when it changes."""
         scales = [term.weight * dt for term in self._terms.values()]
         if scales != self._scales:
-            self._scales, self._scales_on_device = scales, torch.tensor(scales, device=self.device).unsqueeze(1)
+            self._scales, self._scales_on_device = (
+                scales,
+                torch.tensor(scales, dtype=torch.float32, device=self.device).unsqueeze(1),
+            )
         return self._scales_on_device
 
     def _columns(self) -> list[str]:

@@ -292,7 +292,8 @@ class Simulation:
         per_world = [actuation.insertion_velocity, actuation.roll_rate, actuation.bending_command]
         per_world += [actuation.tip_lin_command, actuation.tip_ang_command, actuation.base_force, actuation.tip_force]
         per_world.append(self._pierced)
-        for array in (*per_world, self.step_force, self.wall_force, self.wall_force_peak):
+        per_link = [self.step_force, self.wall_force, self.wall_force_norm, self.wall_force_peak]
+        for array in (*per_world, *per_link):
             fill_worlds(wp.to_torch(array).view(self.num_envs, -1), ids, 0.0)
         self.wall_readout.reset(ids)
         bending = wp.to_torch(actuation.bending)

@@ -9,19 +9,23 @@ from collections.abc import Sequence
 import torch
 
 
-def fill_worlds(tensor: torch.Tensor, env_ids: torch.Tensor | slice | None, value: float, dim: int = 0) -> None:
+def fill_worlds(
+    tensor: torch.Tensor, env_ids: torch.Tensor | Sequence[int] | slice | None, value: float, dim: int = 0
+) -> None:
     """Sets the entries of some worlds in place, in one operation where ``tensor[env_ids] = value`` makes two.
 
     Args:
         tensor: Values, worlds along ``dim``.
-        env_ids: World indices, int64, shape (n,); None for all.
+        env_ids: World indices, shape (n,), int64 for the one operation; None for all.
         value: What they become.
         dim: Dimension of the worlds.
     """
-    if isinstance(env_ids, torch.Tensor):
+    if env_ids is None:
+        tensor.fill_(value)
+    elif isinstance(env_ids, torch.Tensor) and env_ids.dtype == torch.long:
         tensor.index_fill_(dim, env_ids, value)
     else:
-        tensor.fill_(value)
+        tensor[(slice(None),) * dim + (env_ids,)] = value
 
 
 def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:

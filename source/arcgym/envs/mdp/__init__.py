@@ -6,7 +6,13 @@
 from __future__ import annotations
 
 from arcgym.envs.mdp.actions import InsertionAction, InsertionActionCfg, TipVelocityAction, TipVelocityActionCfg
-from arcgym.envs.mdp.costs import tip_force_above, view_blocked, wall_force_above, wall_strain_above
+from arcgym.envs.mdp.costs import (
+    anchor_tension_above,
+    tip_force_above,
+    view_blocked,
+    wall_force_above,
+    wall_strain_above,
+)
 from arcgym.envs.mdp.curriculums import widen_reset
 from arcgym.envs.mdp.events import (
     perturb_tip,
@@ -89,6 +95,7 @@ from arcgym.envs.mdp.recorders import (
 from arcgym.envs.mdp.rewards import (
     action_l2,
     action_rate_l2,
+    excess_anchor_tension,
     excess_tip_force,
     excess_wall_force,
     excess_wall_strain,
@@ -102,8 +109,10 @@ from arcgym.envs.mdp.rewards import (
 )
 from arcgym.envs.mdp.segments import segment_progress, segment_span
 from arcgym.envs.mdp.terminations import (
+    anchors_overloaded,
     excess_force,
     lumen_lost,
+    overstrained,
     perforation,
     pierced,
     segment_passed,
@@ -114,15 +123,15 @@ from arcgym.envs.mdp.terminations import (
 
 __all__ = [
     "FORCE_TIERS",
+    "LUMEN_PRESETS",
+    "METRIC",
+    "PAPER",
     "ForceTiersCfg",
     "InitialStateRecorder",
     "InsertionAction",
     "InsertionActionCfg",
-    "LUMEN_PRESETS",
     "LumenCfg",
     "LumenScores",
-    "METRIC",
-    "PAPER",
     "PostStepCostsRecorder",
     "PostStepForcesRecorder",
     "PostStepPosesRecorder",
@@ -138,12 +147,15 @@ __all__ = [
     "action_l2",
     "action_rate_l2",
     "anchor_tension",
+    "anchor_tension_above",
+    "anchors_overloaded",
     "base_force",
     "centered_rate",
     "centerline_ahead",
     "centerline_distance",
     "depth",
     "drive_forces",
+    "excess_anchor_tension",
     "excess_force",
     "excess_tip_force",
     "excess_wall_force",
@@ -166,6 +178,7 @@ __all__ = [
     "max_wall_strain",
     "mean_speed",
     "mean_tip_force",
+    "overstrained",
     "peak_base_force",
     "peak_tip_force",
     "perforation",

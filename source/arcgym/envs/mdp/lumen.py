@@ -164,11 +164,11 @@ def score_depth(depth: torch.Tensor, cfg: LumenCfg) -> LumenScores:
 
     One kernel: in torch they would be forty operations, each of them launched.
     """
-    wp.init()
-    scores = torch.empty(10, len(depth), device=depth.device)
-    images = wp.from_torch(depth.contiguous())
+    wp.init()  # for images without a simulation
+    scores = torch.empty(10, len(depth), dtype=torch.float32, device=depth.device)
+    images = wp.from_torch(depth.float().contiguous())
     args = [images, _constants(cfg), wp.from_torch(scores)]
-    wp.launch(lumen_kernels.score_images, len(depth), args, device=images.device)
+    wp.launch(lumen_kernels.score_images, len(depth), args, device=images.device, block_dim=32)
     s_c, s_1, s_2, s_3, s_o, reward, row, column, smallest, largest = scores
     return LumenScores(s_c, s_1, s_2, s_3, s_o, reward, torch.stack((row, column), dim=1), smallest, largest)
 
@@ -184,16 +184,18 @@ def _constants(cfg: LumenCfg) -> lumen_kernels.LumenConstants:
 def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> LumenScores:
     """Scores of the current images of ``scene["camera"]``, computed once for each and shared by all terms.
 
+    New images are told by the camera's ``data.frame``: raise it after writing into them or replaying an update.
+
     Args:
         env: The environment; ``env.scene["camera"]`` must give ``depth``.
         lumen: A preset's name or the constants. None takes the task's, ``env.cfg.lumen``.
     """
     cfg = resolve_lumen(task_setting(env, "lumen", lumen))
     images = env.scene["camera"].data
-    frame, scores = _CACHE.get(env, (None, {}))
-    if frame != images.frame:
+    scored, scores = _CACHE.get(env, (None, {}))
+    if scored != (id(images), images.frame):
         scores = {}
-        _CACHE[env] = (images.frame, scores)
+        _CACHE[env] = ((id(images), images.frame), scores)
     if cfg not in scores:
         scores[cfg] = score_depth(images.output["depth"], cfg)
     return scores[cfg]
@@ -208,4 +210,4 @@ def resolve_lumen(lumen: str | LumenCfg) -> LumenCfg:
     return LUMEN_PRESETS[lumen]
 
 
-_CACHE: WeakKeyDictionary[ManagerBasedEnv, tuple[int, dict[LumenCfg, LumenScores]]] = WeakKeyDictionary()
+_CACHE: WeakKeyDictionary[ManagerBasedEnv, tuple[tuple[int, int], dict[LumenCfg, LumenScores]]] = WeakKeyDictionary()

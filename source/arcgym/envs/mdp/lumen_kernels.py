@@ -46,11 +46,13 @@ def ramp(value: float, low: float, high: float) -> float:
 
 @wp.func
 def depth_range(depth: wp.array3d(dtype=float), world: int, far: float) -> wp.vec2:
-    """Smallest and largest depth of an image [m], clipped at ``far``."""
+    """Smallest and largest depth of an image [m], clipped at ``far``; NaN if a depth is."""
     smallest = float(wp.inf)
     largest = float(-wp.inf)
     for i in range(depth.shape[1]):
         for j in range(depth.shape[2]):
+            if wp.isnan(depth[world, i, j]):
+                return wp.vec2(wp.nan, wp.nan)
             d = wp.min(depth[world, i, j], far)
             smallest = wp.min(smallest, d)
             largest = wp.max(largest, d)
@@ -61,14 +63,14 @@ def depth_range(depth: wp.array3d(dtype=float), world: int, far: float) -> wp.ve
 def deep_region(depth: wp.array3d(dtype=float), world: int, threshold: float, far: float) -> DeepRegion:
     """Number and mean place of the pixels of at least ``threshold`` [m]."""
     pixels = int(0)
-    rows = int(0)
-    columns = int(0)
+    rows = wp.int64(0)
+    columns = wp.int64(0)
     for i in range(depth.shape[1]):
         for j in range(depth.shape[2]):
             if wp.min(depth[world, i, j], far) >= threshold:
                 pixels += 1
-                rows += i
-                columns += j
+                rows += wp.int64(i)
+                columns += wp.int64(j)
     region = DeepRegion()
     region.pixels = wp.max(float(pixels), 1.0)
     region.row = float(rows) / region.pixels
@@ -80,11 +82,15 @@ def deep_region(depth: wp.array3d(dtype=float), world: int, threshold: float, fa
 def score_images(depth: wp.array3d(dtype=float), constants: LumenConstants, scores: wp.array2d(dtype=float)):
     """Write ``s_c, s_1, s_2, s_3, s_o``, the reward, row and column of the deep region, smallest and largest depth.
 
-    ``depth`` (N, H, W) [m], ``scores`` (10, N). Launch (N,).
+    All are NaN for an image with a NaN. ``depth`` (N, H, W) [m], ``scores`` (10, N). Launch (N,).
     """
     w = wp.tid()
     k = constants
     span = depth_range(depth, w, k.far)
+    if wp.isnan(span[0]):
+        for i in range(scores.shape[0]):
+            scores[i, w] = wp.nan
+        return
     region = deep_region(depth, w, k.depth_threshold * span[1], k.far)
     middle = 0.5 * wp.vec2(float(depth.shape[1] - 1), float(depth.shape[2] - 1))
     s_c = 1.0 - wp.length(wp.vec2(region.row, region.column) - middle) / wp.length(middle)

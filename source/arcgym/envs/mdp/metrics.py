@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
-from arcgym.envs.mdp.segments import segment_passed, segment_progress, segment_span
+from arcgym.envs.mdp.segments import has_passed, segment_progress, segment_span
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def time_to_success(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
     """Episode time [s]; the time limit counts for an episode that has not succeeded (reduce: last)."""
-    passed = segment_passed(env, segment)
+    passed = has_passed(env, segment)
     return torch.where(passed, env.episode_length_buf, env.max_episode_length) * env.step_dt
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.envs.mdp.loads import anchor_load, link_load, strain_load, tip_load
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
@@ -106,9 +107,9 @@ def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
     return torch.log1p(torch.stack((data.base_force.abs(), data.tip_pull_force_w.norm(dim=-1)), dim=1))
 
 
-def tip_force(env: ManagerBasedEnv) -> torch.Tensor:
-    """Force between tip and wall [N], mean over the control step, shape (N, 1)."""
-    return env.scene["endoscope"].data.tip_force.unsqueeze(1)
+def tip_force(env: ManagerBasedEnv, peak: bool = False) -> torch.Tensor:
+    """Force between tip and wall [N], mean over the control step or its peak, shape (N, 1)."""
+    return tip_load(env, peak).unsqueeze(1)
 
 
 def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
@@ -117,9 +118,9 @@ def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
     return quat_apply_inverse(data.tip_quat_w, data.wall_force_w[:, -1])
 
 
-def link_forces(env: ManagerBasedEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE) -> torch.Tensor:
-    """Force between each link and the wall [N], mean over the control step, shape (N, L)."""
-    return env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
+def link_forces(env: ManagerBasedEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE, peak: bool = False) -> torch.Tensor:
+    """Force between each link and the wall [N], mean over the control step or its peak, shape (N, L)."""
+    return link_load(env, asset_cfg, peak)
 
 
 def base_force(env: ManagerBasedEnv) -> torch.Tensor:
@@ -127,14 +128,14 @@ def base_force(env: ManagerBasedEnv) -> torch.Tensor:
     return env.scene["endoscope"].data.base_force.unsqueeze(1)
 
 
-def wall_strain(env: ManagerBasedEnv) -> torch.Tensor:
-    """Largest principal strain of each ring of the wall, mean over the control step, shape (N, R)."""
-    return env.scene["colon"].data.wall_strain.clone()
+def wall_strain(env: ManagerBasedEnv, peak: bool = False) -> torch.Tensor:
+    """Largest principal strain of each ring of the wall, mean over the control step or its peak, shape (N, R)."""
+    return strain_load(env, peak)
 
 
-def anchor_tension(env: ManagerBasedEnv) -> torch.Tensor:
-    """Pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
-    return env.scene["colon"].data.anchor_tension.clone()
+def anchor_tension(env: ManagerBasedEnv, peak: bool = False) -> torch.Tensor:
+    """Pull of each ring on its anchors [N], mean over the control step or its peak, shape (N, R)."""
+    return anchor_load(env, peak)
 
 
 def last_action(env: ManagerBasedEnv) -> torch.Tensor:

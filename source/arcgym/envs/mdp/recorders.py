@@ -47,7 +47,7 @@ class PostStepCostsRecorder(RecorderTerm):
     def record_post_step(self) -> Record:
         """Return what each term added to the cost."""
         env: Any = self._env
-        return "costs", dict(env.cost_manager.step_values)
+        return "costs", env.cost_manager.step_values
 
 
 class PostStepForcesRecorder(RecorderTerm):

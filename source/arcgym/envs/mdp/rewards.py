@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.envs.mdp.force_tiers import force_limit
+from arcgym.envs.mdp.loads import anchor_load, link_load, strain_load, tip_load
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
-from arcgym.envs.mdp.segments import segment_passed
+from arcgym.envs.mdp.segments import has_passed
 from arcgym.managers import ManagerTermBase, RewardTermCfg, SceneEntityCfg
 from arcgym.utils.worlds import fill_worlds
 
@@ -61,7 +62,7 @@ class progress(ManagerTermBase):
 
 def success(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
     """1 when the tip has passed the end of the segment."""
-    return segment_passed(env, segment).float()
+    return has_passed(env, segment).float()
 
 
 def tip_force_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
@@ -69,22 +70,29 @@ def tip_force_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
     return env.scene["endoscope"].data.tip_force.square()
 
 
-def excess_tip_force(env: ManagerBasedRLEnv, limit: float | str = "comfort") -> torch.Tensor:
-    """Force between tip and wall above ``limit`` ([N] or a tier) [N], mean over the control step."""
-    return (env.scene["endoscope"].data.tip_force - force_limit(env, limit)).clamp(min=0.0)
+def excess_tip_force(env: ManagerBasedRLEnv, limit: float | str = "comfort", peak: bool = False) -> torch.Tensor:
+    """Force between tip and wall above ``limit`` ([N] or a tier) [N], mean over the control step or its peak."""
+    return (tip_load(env, peak) - force_limit(env, limit)).clamp(min=0.0)
 
 
 def excess_wall_force(
-    env: ManagerBasedRLEnv, limit: float | str = "comfort", asset_cfg: SceneEntityCfg = _ENDOSCOPE
+    env: ManagerBasedRLEnv,
+    limit: float | str = "comfort",
+    asset_cfg: SceneEntityCfg = _ENDOSCOPE,
+    peak: bool = False,
 ) -> torch.Tensor:
-    """Largest force between a link and the wall above ``limit`` ([N] or a tier) [N], mean over the control step."""
-    force = env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
-    return (force.amax(dim=1) - force_limit(env, limit)).clamp(min=0.0)
+    """Largest force between a link and the wall above ``limit`` ([N] or a tier) [N], mean over the step or its peak."""
+    return (link_load(env, asset_cfg, peak).amax(dim=1) - force_limit(env, limit)).clamp(min=0.0)
 
 
-def excess_wall_strain(env: ManagerBasedRLEnv, limit: float = 0.2) -> torch.Tensor:
-    """Largest strain of the wall above ``limit``, mean over the control step."""
-    return (env.scene["colon"].data.wall_strain.amax(dim=1) - limit).clamp(min=0.0)
+def excess_wall_strain(env: ManagerBasedRLEnv, limit: float = 0.2, peak: bool = False) -> torch.Tensor:
+    """Largest strain of the wall above ``limit``, mean over the control step or its peak."""
+    return (strain_load(env, peak).amax(dim=1) - limit).clamp(min=0.0)
+
+
+def excess_anchor_tension(env: ManagerBasedRLEnv, limit: float, peak: bool = False) -> torch.Tensor:
+    """Largest pull of a ring on its anchors, the mesentery, above ``limit`` [N], mean over the step or its peak."""
+    return (anchor_load(env, peak).amax(dim=1) - limit).clamp(min=0.0)
 
 
 def action_rate_l2(env: ManagerBasedRLEnv) -> torch.Tensor:

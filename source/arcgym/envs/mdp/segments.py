@@ -41,7 +41,7 @@ def segment_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.
     return (env.scene["endoscope"].data.tip_arc_length - start) / (end - start)
 
 
-def segment_passed(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
+def has_passed(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
     """Whether the tip has reached the end of the segment, by arc length along the lumen, bool, shape (N,)."""
     _, end = segment_span(env, segment)
     return env.scene["endoscope"].data.tip_arc_length >= end

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.envs.mdp import segments
 from arcgym.envs.mdp.force_tiers import force_limit
+from arcgym.envs.mdp.loads import anchor_load, link_load, strain_load, tip_load
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
+from arcgym.envs.mdp.segments import has_passed
 from arcgym.managers import ManagerTermBase, SceneEntityCfg, TerminationTermCfg
 from arcgym.utils.worlds import fill_worlds
 
@@ -28,7 +29,7 @@ def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
 
 def segment_passed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tensor:
     """Success: the tip has passed the end of the segment, by arc length along the lumen."""
-    return segments.segment_passed(env, segment)
+    return has_passed(env, segment)
 
 
 def withdrawn(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
@@ -44,23 +45,38 @@ def pierced(env: ManagerBasedRLEnv) -> torch.Tensor:
     return env.sim.pierced
 
 
-def perforation(env: ManagerBasedRLEnv, limit: float | str = "perforation") -> torch.Tensor:
+def perforation(env: ManagerBasedRLEnv, limit: float | str = "perforation", peak: bool = False) -> torch.Tensor:
     """The tip presses on the wall with a force that may perforate it (``limit``: [N] or a tier).
 
-    Mean over the control step: the limit was measured in slow pushes, and a peak of 2 ms is contact noise as well.
+    Mean over the control step: the limit was measured in slow pushes, and a ``peak`` of 2 ms is contact noise as well.
     """
-    return env.scene["endoscope"].data.tip_force > force_limit(env, limit)
+    return tip_load(env, peak) > force_limit(env, limit)
 
 
 def excess_force(
-    env: ManagerBasedRLEnv, limit: float | str = "perforation", asset_cfg: SceneEntityCfg = _ENDOSCOPE
+    env: ManagerBasedRLEnv,
+    limit: float | str = "perforation",
+    asset_cfg: SceneEntityCfg = _ENDOSCOPE,
+    peak: bool = False,
 ) -> torch.Tensor:
-    """Some link presses on the wall with more than ``limit`` ([N] or a tier), mean over the control step.
+    """Some link presses on the wall with more than ``limit`` ([N] or a tier), mean over the control step or its peak.
 
     Choose links by ``asset_cfg.body_names``. A bent shaft spreads its force and perforates later than a straight tip.
     """
-    force = env.scene[asset_cfg.name].data.wall_force_norm[:, asset_cfg.body_ids]
-    return force.amax(dim=1) > force_limit(env, limit)
+    return link_load(env, asset_cfg, peak).amax(dim=1) > force_limit(env, limit)
+
+
+def overstrained(env: ManagerBasedRLEnv, limit: float, peak: bool = False) -> torch.Tensor:
+    """The wall is stretched by more than ``limit`` somewhere, mean over the control step or its peak.
+
+    Colon tore at strains near 1.8 (Egorov et al. 2002, transverse strips); no safe limit in vivo is published.
+    """
+    return strain_load(env, peak).amax(dim=1) > limit
+
+
+def anchors_overloaded(env: ManagerBasedRLEnv, limit: float, peak: bool = False) -> torch.Tensor:
+    """Some ring pulls on its anchors, the mesentery, with more than ``limit`` [N]; no safe limit is published."""
+    return anchor_load(env, peak).amax(dim=1) > limit
 
 
 class lumen_lost(ManagerTermBase):
