@@ -8,22 +8,26 @@ from typing import Any
 
 import pytest
 
-QUICK = ["cantilever_small", "torsion", "buckling", "wall_beam", "wall_ring", "straight_advance", "bend_loss", "energy"]
+QUICK = [
+    "cantilever_small,cantilever_large",
+    "torsion",
+    "buckling",
+    "wall_beam",
+    "wall_ring",
+    "straight_advance",
+    "capstan",
+    "bend_loss",
+    "energy",
+]
+"""Rows that the fast tests measure, those of one check together."""
 SLOW = [
     "indentation_paper",
     "indentation_in_situ",
-    "cantilever_large",
-    "volume_stiff",
-    "volume_soft",
-    "bend_force",
-    "bend_tip",
-    "sigmoid_force",
-    "sigmoid_tip",
-    "wall_motion_stiff",
-    "wall_motion_soft",
-    "action_reaction",
-    "base_force",
-    "capstan",
+    "volume_stiff,volume_soft",
+    "bend_force,bend_tip",
+    "sigmoid_force,sigmoid_tip",
+    "wall_motion_stiff,wall_motion_soft",
+    "action_reaction,base_force",
     "tunnelling",
     "speed_capsule",
     "speed_magnetic",
@@ -31,21 +35,32 @@ SLOW = [
     "random_capsule",
     "parked_drift",
 ]
+"""Rows that ``make test-all`` measures as well."""
+LONG = ["sigmoid_deep_force,sigmoid_deep_tip", "random_magnetic", "random_proximal"]
+"""Rows that take minutes each and are left to the script."""
 
 
-def row(fidelity: Any, run: Any, name: str) -> Any:
-    (check,) = fidelity.choose(name, quick=False)
-    return next(row for row in check.measure(run) if row.name == name)
+def check_rows(fidelity: Any, run: Any, names: str) -> None:
+    """Measure the one check that gives the rows, and look at each."""
+    (check,) = fidelity.choose(names, quick=False)
+    rows = check.measure(run)
+    assert [row.name for row in rows] == names.split(",")
+    assert all(row.ok for row in rows), "\n".join(fidelity.describe(row) for row in rows)
 
 
-@pytest.mark.parametrize("name", QUICK)
-def test_quick_row_is_within_its_bound(fidelity: Any, run: Any, name: str) -> None:
-    measured = row(fidelity, run, name)
-    assert measured.ok, fidelity.describe(measured)
+@pytest.mark.parametrize("names", QUICK)
+def test_quick_rows_are_within_their_bounds(fidelity: Any, run: Any, names: str) -> None:
+    check_rows(fidelity, run, names)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SLOW)
-def test_row_is_within_its_bound(fidelity: Any, run: Any, name: str) -> None:
-    measured = row(fidelity, run, name)
-    assert measured.ok, fidelity.describe(measured)
+@pytest.mark.parametrize("names", SLOW)
+def test_rows_are_within_their_bounds(fidelity: Any, run: Any, names: str) -> None:
+    check_rows(fidelity, run, names)
+
+
+def test_no_row_is_left_out(fidelity: Any) -> None:
+    quick = [name for check in fidelity.choose(None, quick=True) for name in check.rows]
+    every = [name for check in fidelity.choose(None, quick=False) for name in check.rows]
+    assert sorted(quick) == sorted(",".join(QUICK).split(","))
+    assert sorted(every) == sorted(",".join(QUICK + SLOW + LONG).split(","))

@@ -24,7 +24,11 @@ PULL = 3.0
 FRICTION = (0.0, 0.05, 0.1, 0.15, 0.2)
 """Friction coefficients of the worlds."""
 SHOVE = 20.0
-"""Sideways force on a link [N]."""
+"""Force on a link [N]."""
+SHOVED = 16
+"""Links that are shoved, from the tip backwards: those beyond the held end of the tube."""
+SIDES = ((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0))
+"""Directions of the force, in the link's frame."""
 
 
 @check("action_reaction", "base_force")
@@ -72,7 +76,7 @@ def contact_force_on_wall(sim: Any) -> np.ndarray:
 
 @check("capstan", quick=True)
 def capstan(run: Run) -> list[Row]:
-    """Pull a limp shaft around a bend; its tension grows as e^(mu theta)."""
+    """Pull a limp shaft around a bend; the pull over that without friction is e^(mu theta)."""
     sim, loads = rope(run)
     tension, angle = pull_rope(sim, loads)
     gain = np.log(tension / tension[0])
@@ -82,10 +86,11 @@ def capstan(run: Run) -> list[Row]:
     plot.lines.append(("exp(μθ)", product, np.exp(product)))
     plot.points.append(("shipped settings", product, tension / tension[0]))
     run.plots.append(plot)
-    thin = math.log(capstan_ratio(FRICTION[k], float(angle[k])))
-    exact = thin * surface_lever(sim)
-    note = f"ln of the ratio; the ratio itself {math.exp(gain[k]) / math.exp(exact) - 1.0:+.1%}; without friction "
-    return [relative("capstan", float(gain[k]), exact, 0.10, "", note + f"{tension[0] / PULL - 1.0:+.1%}")]
+    exact = capstan_ratio(FRICTION[k], float(angle[k]))
+    lever = surface_lever(sim)
+    note = f"exponent {gain[k] / math.log(exact) - 1.0:+.1%}, with the lever of the shaft's surface, {lever:.3f}, "
+    note += f"{gain[k] / (lever * math.log(exact)) - 1.0:+.1%}; without friction {tension[0] / PULL - 1.0:+.1%}"
+    return [relative("capstan", float(tension[k] / tension[0]), exact, 0.10, "", note)]
 
 
 def surface_lever(sim: Any) -> float:
@@ -154,35 +159,37 @@ def pull_rope(sim: Any, loads: LinkLoads, speed: float = 0.05) -> tuple[np.ndarr
 
 @check("tunnelling")
 def tunnelling(run: Run) -> list[Row]:
-    """Links outside the lumen while 20 N push one of them sideways against the softest preset, for a second.
+    """Links outside the lumen while 20 N push one of them against the softest preset, for a second.
 
     The worlds differ in the link pushed, from the tip backwards, and in the side: to either side of the bend's plane,
-    out of the bend and into it. Links of a world that is not finite count as outside.
+    out of the bend and into it; the tip is pushed forwards and backwards, too. Links of a world that is not finite
+    count as outside.
     """
     import torch
 
     from arcgym.assets import PROXIMAL_CFG
     from arcgym.utils.math import quat_apply
 
-    links, sides = range(1, 20, 6), [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]
-    sim = build(run, PROXIMAL_CFG, BEND, len(links) * len(sides), {"material": "in_situ"})
+    shoves = [(-1 - link, side) for link in range(SHOVED) for side in SIDES]
+    shoves += [(-1, (0.0, 0.0, along)) for along in (1.0, -1.0)]
+    sim = build(run, PROXIMAL_CFG, BEND, len(shoves), {"material": "in_situ"})
     loads = LinkLoads(sim)
     follow(sim, BEND, DEPTH)
     sim.step(24)
-    for world in range(sim.num_envs):
-        link, side = -1 - links[world // len(sides)], world % len(sides)
-        across = quat_apply(sim.endoscope.data.body_quat_w[world, link], torch.tensor(sides[side], device=sim.device))
-        loads.force[world, link] = SHOVE * across
+    for world, (link, side) in enumerate(shoves):
+        quat = sim.endoscope.data.body_quat_w[world, link]
+        loads.force[world, link] = SHOVE * quat_apply(quat, torch.tensor(side, device=sim.device))
     events, moved, times = np.zeros(sim.num_envs), [], []
     for _ in range(20):
         sim.step(24)
         events += [links_outside(sim, world) for world in range(sim.num_envs)]
         moved.append(sim.colon.data.nodal_displacement.nan_to_num(0.0).amax(dim=1).cpu().numpy())
         times.append(24 * len(moved) * sim.physics_dt)
-    deepest = float(np.max(moved))
+    deepest, displacement = float(np.max(moved)), 1.0e3 * np.array(moved)
     plot = Plot("tunnelling", "time [s]", "largest displacement of the wall [mm]")
     names = ("+X", "-X", "+Y", "-Y")
-    plot.points += [(f"tip to {name}", times, 1.0e3 * np.array(moved)[:, k]) for k, name in enumerate(names)]
+    plot.points += [(f"tip to {name}", times, displacement[:, k]) for k, name in enumerate(names)]
+    plot.lines.append(("any link, largest", times, displacement.max(axis=1)))
     run.plots.append(plot)
     note = f"in {np.count_nonzero(events)} of {sim.num_envs} worlds, {int(sim.non_finite.sum())} not finite; "
     note += f"the wall moved by up to {1e3 * deepest:.0f} mm"

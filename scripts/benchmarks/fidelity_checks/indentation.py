@@ -58,6 +58,10 @@ class Curve:
         """Depth under a load at each place [m], shape (P,)."""
         return np.array([_crossing(x, f, load) for x, f in zip(self.depth, self.force, strict=True)])
 
+    def force_at(self, depth: float) -> float:
+        """Force at a depth, mean of the places [N]."""
+        return float(np.mean([np.interp(depth, x, f) for x, f in zip(self.depth, self.force, strict=True)]))
+
 
 def _crossing(depth: np.ndarray, force: np.ndarray, load: float) -> float:
     """Depth at which the force first reaches the load; not a number if it never does."""
@@ -150,7 +154,9 @@ def indentation(run: Run, material: str) -> list[Row]:
     errors = ", ".join(f"{row.error:+.1%} at {load:g} N" for row, load in zip(rows, LOADS[material], strict=True))
     stiffness = 1.0e-3 * top / float(ours.depth_at(top).mean())
     worst = max(rows, key=lambda row: abs(row.error) if math.isfinite(row.error) else math.inf)
-    note = f"{errors}; {stiffness:.2f} N/mm at {top:g} N, porcine {PORCINE[0]} to {PORCINE[1]}"
+    deep = float(limit.depth_at(top).mean())
+    note = f"{errors}; force at the reference's depth under {top:g} N {ours.force_at(deep) / top - 1.0:+.1%}; "
+    note += f"{stiffness:.2f} N/mm at {top:g} N, porcine {PORCINE[0]} to {PORCINE[1]}"
     return [relative(name, worst.value, worst.reference, 0.10, "m", note)]
 
 
