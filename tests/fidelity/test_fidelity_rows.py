@@ -36,7 +36,7 @@ SLOW = [
     "parked_drift",
 ]
 """Rows that ``make test-all`` measures as well."""
-LONG = ["sigmoid_deep_force,sigmoid_deep_tip", "random_magnetic", "random_proximal"]
+LONG = ["sigmoid_deep_force,sigmoid_deep_tip", "newton_force,newton_tip", "random_magnetic", "random_proximal"]
 """Rows that take minutes each and are left to the script."""
 
 

@@ -53,6 +53,14 @@ def test_two_level_agrees_with_plain_newton(narrow: TinySim) -> None:
     assert moved[0] > 0.001
 
 
+def test_plain_newton_refuses_what_differs_between_worlds(narrow: TinySim) -> None:
+    sim = narrow(links=6, colon=SOLID, solver="newton")
+    with pytest.raises(ValueError, match="one tissue for all worlds.*env.events.stiffness=null"):
+        sim.colon.write_stiffness_scale_to_sim(torch.ones(1))
+    with pytest.raises(ValueError, match="one friction coefficient for all worlds"):
+        sim.endoscope.write_friction_to_sim(torch.ones(1))
+
+
 def force_on_wall(sim: Simulation, with_contact: bool) -> np.ndarray:
     """Force on each vertex that moves [N], shape (V, 3)."""
     if not with_contact:

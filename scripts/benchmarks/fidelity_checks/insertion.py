@@ -69,15 +69,23 @@ def tightest() -> dict[str, Any]:
     return {"wall": WallSolverCfg(repeats=6)}
 
 
-def push(run: Run, tube: Tube | None, depth: float, material: str = "paper", rest: float = 0.0, **cfg: Any) -> Trace:
+def push(
+    run: Run,
+    tube: Tube | None,
+    depth: float,
+    material: str = "paper",
+    rest: float = 0.0,
+    wall: str = "shell",
+    **cfg: Any,
+) -> Trace:
     """Push to a depth [m] and wait [s]. The same push is made only once a run; ``tube`` None is the shipped colon."""
-    key = ("push", tube, depth, material, rest, str(cfg))
+    key = ("push", tube, depth, material, rest, wall, str(cfg))
     if key not in run.shared:
-        run.shared[key] = _push(run, tube, depth, material, rest, **cfg)
+        run.shared[key] = _push(run, tube, depth, {"material": material, "wall_model": wall}, rest, **cfg)
     return run.shared[key]
 
 
-def _push(run: Run, tube: Tube | None, depth: float, material: str, rest: float, **cfg: Any) -> Trace:
+def _push(run: Run, tube: Tube | None, depth: float, colon: dict[str, Any], rest: float, **cfg: Any) -> Trace:
     import torch
 
     from arcgym.assets import PROXIMAL_CFG
@@ -85,7 +93,7 @@ def _push(run: Run, tube: Tube | None, depth: float, material: str, rest: float,
     mobile = None
     if tube is None:
         mobile = DEEP_MOBILE if depth >= DEEP else SIGMOID_MOBILE
-    sim = build(run, PROXIMAL_CFG, tube, colon={"material": material, "mobile_until": mobile}, **cfg)
+    sim = build(run, PROXIMAL_CFG, tube, colon={**colon, "mobile_until": mobile}, **cfg)
     steps, trace, scope = round(CONTROL_STEP / sim.physics_dt), Trace(sim), sim.endoscope
     still = torch.zeros(1, device=sim.device)
     scope.set_insertion_command(still + SPEED, still)
@@ -214,6 +222,28 @@ def compare_pushes(run: Run, name: str, tube: Tube | None, depth: float) -> list
         absolute(
             f"{name}_tip", float(late.max()), 0.0, 0.002, "m", f"largest; {1.0e3 * late.mean():.2f} mm on average"
         ),
+    ]
+
+
+@check("newton_force", "newton_tip")
+def plain_newton(run: Run) -> list[Row]:
+    """Push through the bend against plain Newton, on the solid wall that it can simulate.
+
+    Newton steps at 1/960 s and needs a scope three times as heavy.
+    """
+    ours = push(run, BEND, DEPTH, wall="solid")
+    newton = push(run, BEND, DEPTH, wall="solid", solver="newton", dt=1.0 / 960.0, mass_scaling=3.0)
+    apart = np.linalg.norm(np.array(ours.tip) - np.array(newton.tip), axis=1)
+    plot = Plot("newton_force", "inserted length [m]", "push on the base [N]")
+    plot.lines.append(("plain Newton", newton.inserted, newton.force))
+    plot.points.append(("shipped solver", ours.inserted, ours.force))
+    run.plots.append(plot)
+    moved = ours.late(ours.moved) / newton.late(newton.moved) - 1.0
+    return [
+        relative(
+            "newton_force", ours.late(ours.force), newton.late(newton.force), 0.10, "N", f"wall motion {moved:+.1%}"
+        ),
+        absolute("newton_tip", float(apart.max()), 0.0, 0.002, "m", "largest"),
     ]
 
 

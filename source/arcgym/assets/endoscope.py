@@ -131,7 +131,7 @@ class Endoscope:
         self._roll = wp.to_torch(actuation.roll_rate)
         self._bending = wp.to_torch(actuation.bending_command)
         self._turn = wp.to_torch(actuation.turn)
-        self._friction = sim.friction
+        self._sim = sim
 
     def set_tip_velocity_command(self, lin_vel: torch.Tensor, ang_vel: torch.Tensor) -> None:
         """Velocity for the tip to follow, in its own frame (+Z forward, +Y up), kept until changed.
@@ -203,7 +203,8 @@ class Endoscope:
 
     def write_friction_to_sim(self, mu: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Set the friction coefficient between scope and wall, shape (n,), in the worlds ``env_ids``."""
-        self._friction[slice(None) if env_ids is None else env_ids] = mu
+        self._sim.require_two_level("friction coefficient")
+        self._sim.friction[slice(None) if env_ids is None else env_ids] = mu
 
 
 def _scale_turn(builder: newton.ModelBuilder, dof: int, factor: float) -> None:

@@ -157,6 +157,18 @@ class Simulation:
         """
         return wp.to_torch(self._pierced) > 0
 
+    def require_two_level(self, what: str) -> None:
+        """Refuse what plain Newton cannot give each world for itself.
+
+        Raises:
+            ValueError: If ``cfg.solver`` is not ``two_level``.
+        """
+        if self.cfg.solver != "two_level":
+            raise ValueError(
+                f"SimulationCfg.solver={self.cfg.solver!r} has one {what} for all worlds: set it in the configuration, and "
+                "switch off the events that change it, such as env.events.stiffness=null env.events.friction=null."
+            )
+
     def step(self, n: int = 1) -> None:
         """Advance all worlds by ``n`` physics steps; forces are averaged over them.
 
