@@ -165,8 +165,8 @@ class Simulation:
         """
         if self.cfg.solver != "two_level":
             raise ValueError(
-                f"SimulationCfg.solver={self.cfg.solver!r} has one {what} for all worlds: set it in the configuration, and "
-                "switch off the events that change it, such as env.events.stiffness=null env.events.friction=null."
+                f"SimulationCfg.solver={self.cfg.solver!r} has one {what} for all worlds: set it in the configuration, "
+                "and switch off the events that change it, such as env.events.stiffness=null env.events.friction=null."
             )
 
     def step(self, n: int = 1) -> None:
