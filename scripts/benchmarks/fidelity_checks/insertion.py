@@ -75,13 +75,13 @@ def push(
     depth: float,
     material: str = "paper",
     rest: float = 0.0,
-    wall: str = "shell",
+    wall_model: str = "shell",
     **cfg: Any,
 ) -> Trace:
     """Push to a depth [m] and wait [s]. The same push is made only once a run; ``tube`` None is the shipped colon."""
-    key = ("push", tube, depth, material, rest, wall, str(cfg))
+    key = ("push", tube, depth, material, rest, wall_model, str(cfg))
     if key not in run.shared:
-        run.shared[key] = _push(run, tube, depth, {"material": material, "wall_model": wall}, rest, **cfg)
+        run.shared[key] = _push(run, tube, depth, {"material": material, "wall_model": wall_model}, rest, **cfg)
     return run.shared[key]
 
 
@@ -231,8 +231,8 @@ def plain_newton(run: Run) -> list[Row]:
 
     Newton steps at 1/960 s and needs a scope three times as heavy.
     """
-    ours = push(run, BEND, DEPTH, wall="solid")
-    newton = push(run, BEND, DEPTH, wall="solid", solver="newton", dt=1.0 / 960.0, mass_scaling=3.0)
+    ours = push(run, BEND, DEPTH, wall_model="solid")
+    newton = push(run, BEND, DEPTH, wall_model="solid", solver="newton", dt=1.0 / 960.0, mass_scaling=3.0)
     apart = np.linalg.norm(np.array(ours.tip) - np.array(newton.tip), axis=1)
     plot = Plot("newton_force", "inserted length [m]", "push on the base [N]")
     plot.lines.append(("plain Newton", newton.inserted, newton.force))
