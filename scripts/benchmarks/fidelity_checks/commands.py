@@ -102,7 +102,7 @@ class Watch:
         self.outside += int(outside.sum())
         self.broken = int(lost.sum())
         self.worlds |= (outside.any(dim=1) | lost).cpu().numpy()
-        self.force.append(self._sim.endoscope.data.wall_force_w.norm(dim=-1).amax(dim=1).cpu().numpy())
+        self.force.append(self._sim.endoscope.data.wall_force_norm.amax(dim=1).cpu().numpy())
 
     def plot(self, name: str) -> Plot:
         """Largest force on a link over time, in the worst of the worlds and in the median one."""

@@ -76,10 +76,8 @@ class WeightedSumManager(ManagerBase):
         """Weight of each term times ``dt``, shape (T, 1), sent to the device when it changes."""
         scales = [term.weight * dt for term in self._terms.values()]
         if scales != self._scales:
-            self._scales, self._scales_on_device = (
-                scales,
-                torch.tensor(scales, dtype=torch.float32, device=self.device).unsqueeze(1),
-            )
+            self._scales = scales
+            self._scales_on_device = torch.tensor(scales, dtype=torch.float32, device=self.device).unsqueeze(1)
         return self._scales_on_device
 
     def _columns(self) -> list[str]:
