@@ -20,8 +20,8 @@ DEFAULT_OUT = Path(__file__).resolve().parents[2] / "assets" / "usd"
 def author_colon(name: str, out: Path) -> None:
     """Generates one patient's colon into ``out/<name>/colon.usda``."""
     from arcgym.anatomy import write_colon
-    from arcgym.anatomy.generate import make_colon
-    from arcgym.anatomy.patients import PATIENTS
+    from arcgym.anatomy.generator.generate import make_colon
+    from arcgym.anatomy.generator.patients import PATIENTS
 
     folder = out / name
     stage = make_colon(PATIENTS[name](), folder)
@@ -32,7 +32,7 @@ def author_colon(name: str, out: Path) -> None:
 
 def asset_authors() -> dict[str, Callable[[Path], object]]:
     """Returns the function that writes each asset below a folder, by asset name."""
-    from arcgym.anatomy.patients import PATIENTS
+    from arcgym.anatomy.generator.patients import PATIENTS
     from arcgym.assets.endoscope_spec import endoscope_specs
     from arcgym.assets.endoscope_stage import write_endoscope
 

@@ -46,8 +46,8 @@ def choose_spec(path: list[Path], seed: int | None) -> ColonSpec:
     """Returns the spec from the file, if there is one, else a random patient's."""
     from dataclasses import replace
 
-    from arcgym.anatomy.population import draw_spec
-    from arcgym.anatomy.spec_file import read_spec
+    from arcgym.anatomy.generator.population import draw_spec
+    from arcgym.anatomy.generator.spec_file import read_spec
 
     if not path:
         assert seed is not None

@@ -24,7 +24,7 @@ def main() -> None:
     from preview_colon import draw_page
 
     from arcgym.anatomy import read_colon
-    from arcgym.anatomy.patients import PATIENTS
+    from arcgym.anatomy.generator.patients import PATIENTS
 
     cards = []
     for name in PATIENTS:
@@ -68,9 +68,9 @@ def diameters(stage: ColonStage, start: float, end: float) -> str:
 def features(name: str, stage: ColonStage) -> str:
     """Returns a sentence with the number of bends, folds and lesions, and the least bend radius."""
     from arcgym.anatomy.bends import acute_bends
-    from arcgym.anatomy.generate import draw_surface
-    from arcgym.anatomy.lesions import WIDE_NECK
-    from arcgym.anatomy.patients import PATIENTS
+    from arcgym.anatomy.generator.generate import draw_surface
+    from arcgym.anatomy.generator.lesions import WIDE_NECK
+    from arcgym.anatomy.generator.patients import PATIENTS
 
     surface, lesions = draw_surface(PATIENTS[name](), int(stage.metadata["seed"]))
     bends = len(acute_bends(stage.centerline.points.astype(float), stage.centerline.arc.astype(float)))

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from arcgym.anatomy import ColonStage
-    from arcgym.anatomy.validate import Check
+    from arcgym.anatomy.validation.validate import Check
 
 SKIN_TOLERANCE = 1e-5
 """Largest distance between the skinned surface at rest and the stage's [m]; single precision leaves about 1e-7."""
@@ -63,7 +63,7 @@ def finite(value: float) -> float | None:
 
 def all_checks(path: Path, physics: bool) -> Iterator[Check]:
     """Yields the checks of one stage; those that need a readable stage only if it is."""
-    from arcgym.anatomy.stage_checks import inspect_file
+    from arcgym.anatomy.validation.stage_checks import inspect_file
 
     stage, checks = inspect_file(str(path))
     yield from checks
@@ -78,7 +78,7 @@ def skinning_checks(stage: ColonStage) -> Iterator[Check]:
     """Compares both visual surfaces, skinned to the wall at rest, with the stage's own points."""
     import numpy as np
 
-    from arcgym.anatomy.validate import Check
+    from arcgym.anatomy.validation.validate import Check
     from arcgym.sensors import SkinnedSurface
 
     for name, visual in (("render", stage.visual), ("proxy", stage.visual_proxy)):
@@ -91,7 +91,7 @@ def physics_checks(path: Path) -> Iterator[Check]:
     """Loads the stage into Newton and watches the wall for one simulated second, the scope far outside."""
     import torch
 
-    from arcgym.anatomy.validate import Check
+    from arcgym.anatomy.validation.validate import Check
     from arcgym.assets import CAPSULE_CFG, ColonCfg
     from arcgym.scene import InteractiveScene, InteractiveSceneCfg
     from arcgym.sim import SimulationCfg

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from arcgym.anatomy.bends import WINDOW, acute_bends, turning
-from arcgym.anatomy.centerline import make_centerline
-from arcgym.anatomy.knees import WIDEST
-from arcgym.anatomy.spec import ColonSpec
+from arcgym.anatomy.generator.acute_bends import WIDEST
+from arcgym.anatomy.generator.centerline import make_centerline
+from arcgym.anatomy.generator.spec import ColonSpec
 
 
 def hairpins(radius: float, turns: list[float], leg: float = 0.1) -> tuple[np.ndarray, np.ndarray]:

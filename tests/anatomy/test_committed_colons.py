@@ -15,9 +15,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from arcgym.anatomy import ColonStage, inner_faces, read_colon, write_colon
-from arcgym.anatomy.generate import make_colon
-from arcgym.anatomy.patients import PATIENTS
-from arcgym.anatomy.validate import failed, validate_stage
+from arcgym.anatomy.generator.generate import make_colon
+from arcgym.anatomy.generator.patients import PATIENTS
+from arcgym.anatomy.validation.validate import failed, validate_stage
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 

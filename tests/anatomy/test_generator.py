@@ -12,14 +12,14 @@ import pytest
 from tiny import tiny_colon_stage
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.generate import AnatomyError, make_colon
+from arcgym.anatomy.generator.generate import AnatomyError, make_colon
+from arcgym.anatomy.generator.refine import refine
+from arcgym.anatomy.generator.spec import ColonSpec, default_segments
+from arcgym.anatomy.generator.texture import make_textures
+from arcgym.anatomy.generator.visual import skin_to_rings
+from arcgym.anatomy.generator.wall import polygon_triangles
 from arcgym.anatomy.measures import tet_quality
-from arcgym.anatomy.refine import refine
-from arcgym.anatomy.spec import ColonSpec, default_segments
-from arcgym.anatomy.texture import make_textures
-from arcgym.anatomy.validate import Check, loop_gap, ring_radii
-from arcgym.anatomy.visual import skin_to_rings
-from arcgym.anatomy.wall import polygon_triangles
+from arcgym.anatomy.validation.validate import Check, loop_gap, ring_radii
 
 
 def test_spec_names_the_value_out_of_range() -> None:

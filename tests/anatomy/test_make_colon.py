@@ -14,13 +14,13 @@ from scipy.stats import kstest, truncnorm
 
 from arcgym.anatomy import ColonSpec
 from arcgym.anatomy.bends import acute_bends
-from arcgym.anatomy.generate import AnatomyError, draw_surface
-from arcgym.anatomy.population import LENGTH_RANGE, draw_spec, segment_lengths
-from arcgym.anatomy.spec import FoldSpec, PolypSpec
-from arcgym.anatomy.spec_file import SpecError, read_spec
-from arcgym.anatomy.surface import Surface
-from arcgym.anatomy.validate import failed, validate_curve, validate_wall
-from arcgym.anatomy.wall import sample_wall
+from arcgym.anatomy.generator.generate import AnatomyError, draw_surface
+from arcgym.anatomy.generator.population import LENGTH_RANGE, draw_spec, segment_lengths
+from arcgym.anatomy.generator.spec import FoldSpec, PolypSpec
+from arcgym.anatomy.generator.spec_file import SpecError, read_spec
+from arcgym.anatomy.generator.surface import Surface
+from arcgym.anatomy.generator.wall import sample_wall
+from arcgym.anatomy.validation.validate import failed, validate_curve, validate_wall
 
 ROOT = Path(__file__).resolve().parents[2]
 

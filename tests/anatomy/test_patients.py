@@ -14,12 +14,12 @@ from scipy.sparse.csgraph import connected_components
 
 from arcgym.anatomy import SEGMENTS, ColonStage, read_colon
 from arcgym.anatomy.bends import acute_bends
-from arcgym.anatomy.generate import draw_surface
-from arcgym.anatomy.patients import COLON_5_POLYPS, PATIENTS
+from arcgym.anatomy.generator.generate import draw_surface
+from arcgym.anatomy.generator.patients import COLON_5_POLYPS, PATIENTS
+from arcgym.anatomy.generator.spec import ColonSpec, PolypSpec
 from arcgym.anatomy.segments import RETROPERITONEAL
-from arcgym.anatomy.spec import ColonSpec, PolypSpec
-from arcgym.anatomy.stage_checks import inspect_stage
-from arcgym.anatomy.validate import failed, ring_distance
+from arcgym.anatomy.validation.stage_checks import inspect_stage
+from arcgym.anatomy.validation.validate import failed, ring_distance
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 
@@ -105,7 +105,7 @@ def test_caecum_has_valve_and_appendix(stages: dict[str, ColonStage], name: str)
 
 def test_wide_diverticula_are_in_the_wall() -> None:
     """A wall vertex within a wide diverticulum's patch stands further out than without it."""
-    from arcgym.anatomy.wall import sample_wall
+    from arcgym.anatomy.generator.wall import sample_wall
 
     surface, lesions = draw_surface(PATIENTS["colon_5"](), PATIENTS["colon_5"]().seed)
     shift = np.linalg.norm(sample_wall(surface, lesions).points - sample_wall(surface).points, axis=1)
@@ -115,7 +115,7 @@ def test_wide_diverticula_are_in_the_wall() -> None:
 
 def test_wide_sacs_let_the_tip_in() -> None:
     """Four of 25 (15 %): the neck is wider than the 13 mm tip, and the wall behind it stands back over 8 mm."""
-    from arcgym.anatomy.wall import sample_wall
+    from arcgym.anatomy.generator.wall import sample_wall
 
     surface, lesions = draw_surface(PATIENTS["colon_5"](), PATIENTS["colon_5"]().seed)
     wide = [lesion for lesion in lesions if lesion.kind == "diverticulum" and 2 * lesion.size >= 0.014]

@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from arcgym.anatomy.centerline import make_centerline
-from arcgym.anatomy.population import ASCENDING_LENGTH, DESCENDING_LENGTH, ILIAC_FOSSA, draw_spec
-from arcgym.anatomy.routes import control_points
-from arcgym.anatomy.spec import ColonSpec
+from arcgym.anatomy.generator.centerline import make_centerline
+from arcgym.anatomy.generator.population import ASCENDING_LENGTH, DESCENDING_LENGTH, ILIAC_FOSSA, draw_spec
+from arcgym.anatomy.generator.routes import control_points
+from arcgym.anatomy.generator.spec import ColonSpec
 
 
 def points(**changes: float | bool) -> dict[str, np.ndarray]:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from tiny import write_tiny_colon
 
-from arcgym.anatomy.patients import PATIENTS
+from arcgym.anatomy.generator.patients import PATIENTS
 
 ROOT = Path(__file__).resolve().parents[2]
 

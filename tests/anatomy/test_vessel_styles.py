@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from arcgym.anatomy.generator.vessel_styles import STYLES, texture_rows
+from arcgym.anatomy.generator.vessels import draw_vessels
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.anatomy.vessel_styles import STYLES, texture_rows
-from arcgym.anatomy.vessels import draw_vessels
 
 
 def test_styles_cover_segments_and_texture_in_order() -> None:

@@ -13,13 +13,13 @@ from label_volumes import DIRECTIONS, RADIUS, course, write_volume
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy import read_colon
+from arcgym.anatomy.generator.vessel_styles import STYLES
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.volumes import read_volume
-from arcgym.anatomy.stage_checks import inspect_file
-from arcgym.anatomy.validate import failed
-from arcgym.anatomy.vessel_styles import STYLES
-from arcgym.sim.wall_topology import lumen_topology
+from arcgym.anatomy.validation.stage_checks import inspect_file
+from arcgym.anatomy.validation.validate import failed
+from arcgym.sim.wall.wall_topology import lumen_topology
 
 COARSE = ImportSettings(voxel=0.0025, visual_spacing=0.006, visual_columns=32, proxy_spacing=0.01, proxy_columns=16)
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from arcgym.anatomy.centerline import make_centerline
+from arcgym.anatomy.generator.centerline import make_centerline
+from arcgym.anatomy.generator.population import draw_spec
 from arcgym.anatomy.importing.landmarks import BORDERS, find_segment_ends
-from arcgym.anatomy.population import draw_spec
 
 
 @pytest.mark.parametrize("seed", [10, 25, 33, 50, 74, 76])

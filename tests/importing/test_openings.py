@@ -14,8 +14,8 @@ from test_surfaces import LENGTH, cylinder
 from test_surfaces import RADIUS as WIDE
 
 from arcgym.anatomy.importing.centerline import find_path
-from arcgym.anatomy.importing.course import centred
 from arcgym.anatomy.importing.openings import Opening, find_openings, to_opening
+from arcgym.anatomy.importing.smooth_centerline import centred
 from arcgym.anatomy.importing.surfaces import fill_surface
 from arcgym.anatomy.importing.volumes import read_volume
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.course import resample
+from arcgym.anatomy.importing.cecum_fit import to_fitted_pole
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.pouch import to_fitted_pole
+from arcgym.anatomy.importing.smooth_centerline import resample
 
 RADIUS, LENGTH, BEND = 0.030, 0.25, 4.0
 

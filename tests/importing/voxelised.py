@@ -13,8 +13,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy import ColonStage
-from arcgym.anatomy.importing.course import resample, smooth
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.smooth_centerline import resample, smooth
 from arcgym.anatomy.importing.surfaces import read_surface
 
 SPACING = np.array([0.75, 0.75, 1.0])

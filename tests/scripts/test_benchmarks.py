@@ -88,10 +88,10 @@ def test_row_is_the_last_line_of_the_worker(throughput, monkeypatch, tmp_path):
 
 def test_time_of_kernels_is_read_from_what_warp_prints(throughput):
     output = (
-        "Module arcgym.sim.contact_kernels 0a1b2c3 load on device 'cuda:0' took 1500.00 ms  (compiled)\n"
+        "Module arcgym.sim.contact.contact_kernels 0a1b2c3 load on device 'cuda:0' took 1500.00 ms  (compiled)\n"
         "    Module torch_like load on device 'cuda:0' took 250.00 ms  (cached)\n{}"
     )
-    expected = {"compile_s": 1.75, "compiled_modules": ["arcgym.sim.contact_kernels"]}
+    expected = {"compile_s": 1.75, "compiled_modules": ["arcgym.sim.contact.contact_kernels"]}
     assert throughput.module_loads(output) == expected
 
 

@@ -13,7 +13,7 @@ import torch
 import warp as wp
 from PIL import Image
 
-from arcgym.anatomy.stage_types import VisualMesh, WallMesh
+from arcgym.anatomy.stage.types import VisualMesh, WallMesh
 from arcgym.assets.endoscope_spec import CameraSpec
 
 RADIUS = 0.02

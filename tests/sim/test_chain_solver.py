@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from arcgym.sim.chain_solver import ChainSolver
-from arcgym.sim.ring_modes import MODES
+from arcgym.sim.wall.block_tridiagonal import ChainSolver
+from arcgym.sim.wall.ring_modes import MODES
 
 
 def random_system(rng: np.random.Generator, rows: int) -> tuple[np.ndarray, np.ndarray]:

@@ -14,7 +14,7 @@ from tiny_sim import TinySim
 
 from arcgym.assets import TipPullCfg
 from arcgym.sim import ContactCfg, Simulation
-from arcgym.sim.link_load_kernels import load_contacts
+from arcgym.sim.contact.link_load_kernels import load_contacts
 
 APOTHEM = 0.020 * math.cos(math.pi / 8)
 """Distance of the tube's flat sides from its axis [m]."""

@@ -1,5 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Closest points against drawings on squared paper: the triangle has corners (0,0,0), (4,0,0), (0,4,0)."""
 
 import numpy as np

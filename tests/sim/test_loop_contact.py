@@ -17,7 +17,7 @@ from tiny_sim import TinySim
 
 from arcgym.anatomy import write_colon
 from arcgym.sim import Simulation, WallSolverCfg
-from arcgym.sim.loop_contact import LoopContact
+from arcgym.sim.contact.self_contact import LoopContact
 
 LIMB, WIDTH, RADIUS = 0.09, 0.04, 0.012
 """Length of each limb, their distance and the radius of the lumen [m]."""

@@ -11,9 +11,9 @@ from tiny import tiny_colon_stage
 from arcgym.anatomy.shell import ShellMesh, mid_surface
 from arcgym.assets.materials import shell_moduli
 from arcgym.assets.shell_geometry import shell_geometry
-from arcgym.sim.ring_modes import MODES, ElasticPart, RingModes, ring_modes
-from arcgym.sim.shell_elements import bending_stiffness, stretching_stiffness
-from arcgym.sim.solid_elements import tet_stiffness
+from arcgym.sim.wall.ring_modes import MODES, ElasticPart, RingModes, ring_modes
+from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.wall.solid_elements import tet_stiffness
 
 TISSUE = 1.0e6, 4.0e6
 """Shear modulus and second Lamé parameter [Pa]."""

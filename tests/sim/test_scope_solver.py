@@ -13,7 +13,7 @@ import warp as wp
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
 
-from arcgym.sim.scope_solver import SolverArticulatedChain
+from arcgym.sim.scope.scope_solver import SolverArticulatedChain
 
 DT = 0.001
 MASS, LENGTH, INERTIA = 0.1, 0.2, (3.0e-4, 4.0e-4, 1.0e-4)

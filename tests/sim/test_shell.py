@@ -14,7 +14,7 @@ from arcgym.anatomy.shell import mid_surface, wall_thickness
 from arcgym.assets.materials import shell_moduli
 from arcgym.assets.shell_geometry import fold_angles, fold_gradients, shell_geometry
 from arcgym.sim import Simulation
-from arcgym.sim.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
 
 SQUARE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
 TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])

@@ -13,8 +13,8 @@ from tiny_sim import TinySim
 
 from arcgym.anatomy.measures import inner_faces
 from arcgym.assets.anchors import AnchorSprings
-from arcgym.sim.wall_readout import WallReadout, inverse_rest
-from arcgym.sim.wall_topology import lumen_topology
+from arcgym.sim.wall.wall_readout import WallReadout, inverse_rest
+from arcgym.sim.wall.wall_topology import lumen_topology
 
 WALL = tiny_colon_stage().wall
 SPRING = 10.0

@@ -9,8 +9,8 @@ import pytest
 from tiny import tiny_colon_stage
 
 from arcgym.anatomy.measures import inner_faces
-from arcgym.anatomy.stage_types import WallMesh
-from arcgym.sim.wall_topology import LumenTopology, face_neighbors, lumen_topology, members, vertex_entries
+from arcgym.anatomy.stage.types import WallMesh
+from arcgym.sim.wall.wall_topology import LumenTopology, face_neighbors, lumen_topology, members, vertex_entries
 
 RINGS, SECTORS = 17, 8
 

@@ -64,7 +64,7 @@ def contact_force_on_wall(sim: Any) -> np.ndarray:
     """Sum of the contact forces on the wall of a single world as its last step saw them [N], shape (3,)."""
     import warp as wp
 
-    from arcgym.sim.wall_solver import wall_contacts
+    from arcgym.sim.wall.wall_solver import wall_contacts
     from fidelity_checks.load_kernels import contact_on_wall
 
     poses = (sim.state.body_q, sim.coupling.body_q_prev)

@@ -1,10 +1,11 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Forces that the checks put on links, launched every scope substep, and those of the contacts on the wall."""
 
 import warp as wp
 
-from arcgym.sim.wall_kernels import VertexBlock, WallContacts, add_contact
+from arcgym.sim.wall.wall_kernels import VertexBlock, WallContacts, add_contact
 from arcgym.utils import warp_setup  # noqa: F401
 
 

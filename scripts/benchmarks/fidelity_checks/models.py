@@ -22,9 +22,9 @@ from arcgym.anatomy import (
     segment_index,
     write_colon,
 )
-from arcgym.anatomy.stage_types import TEXTURE_LENGTH
-from arcgym.anatomy.visual import grid_triangles, skin_to_rings, smooth_normals
-from arcgym.anatomy.wall import build_wall
+from arcgym.anatomy.generator.visual import grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.generator.wall import build_wall
+from arcgym.anatomy.stage.types import TEXTURE_LENGTH
 from arcgym.assets import ColonCfg, EndoscopeCfg
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope

@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .measures import inner_faces
-from .segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS, segment_index
-from .spec import ColonSpec, FoldSpec, SegmentSpec
-from .stage import (
+from arcgym.anatomy.generator.spec import ColonSpec, FoldSpec, SegmentSpec
+from arcgym.anatomy.measures import inner_faces
+from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS, segment_index
+from arcgym.anatomy.stage import (
     Centerline,
     ColonStage,
     StageError,
@@ -21,7 +21,7 @@ from .stage import (
 )
 
 if TYPE_CHECKING:
-    from .generate import AnatomyError, make_colon
+    from arcgym.anatomy.generator.generate import AnatomyError, make_colon
 
 __all__ = [
     "ANCHOR_ELASTIC",
@@ -51,6 +51,6 @@ def __getattr__(name: str) -> Any:
     """Imports the generator when it is asked for: what reads stages alone starts 0.7 s earlier without SciPy."""
     if name not in ("AnatomyError", "make_colon"):
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    from . import generate
+    from arcgym.anatomy.generator import generate
 
     return getattr(generate, name)

@@ -9,7 +9,7 @@ from copy import copy
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from .segments import SEGMENTS
+from arcgym.anatomy.segments import SEGMENTS
 
 
 class Curve:

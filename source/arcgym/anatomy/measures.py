@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .stage_types import VisualMesh
+from arcgym.anatomy.stage.types import VisualMesh
 
 
 def tet_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .measures import inner_faces
-from .stage_types import WallMesh
+from arcgym.anatomy.measures import inner_faces
+from arcgym.anatomy.stage.types import WallMesh
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,8 @@ import newton
 from newton import JointType, ModelBuilder, ParticleFlags, ShapeFlags
 
 from arcgym.anatomy import ColonStage, StageError
-from arcgym.anatomy.layout import TISSUE_PATH, WALL_PATH
 from arcgym.anatomy.segments import ANCHOR_FIXED
+from arcgym.anatomy.stage.layout import TISSUE_PATH, WALL_PATH
 from arcgym.assets.endoscope_spec import capsule_half_height, hinge_axis
 from arcgym.assets.endoscope_stage import (
     ENDOSCOPE_PATH,

@@ -5,9 +5,8 @@
 
 import warp as wp
 
+from arcgym.sensors.shading_kernels import Lighting, SurfaceView, covered_radiance, shade, surface_hit
 from arcgym.utils import warp_setup  # noqa: F401
-
-from .shading_kernels import Lighting, SurfaceView, covered_radiance, shade, surface_hit
 
 PROBES = wp.constant(14)
 

@@ -12,20 +12,18 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sensors.mucosa_textures import MucosaTextures
+from arcgym.sensors.sensor_base import SensorBase
+from arcgym.sensors.skinned_surface import SkinnedSurface
+from arcgym.sensors.surface_renderer import Optics, SurfaceRenderer, WorldLooks
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.worlds import fill_worlds
-
-from .mucosa_textures import MucosaTextures
-from .sensor_base import SensorBase
-from .skinned_surface import SkinnedSurface
-from .surface_renderer import Optics, SurfaceRenderer, WorldLooks
 
 if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
     from arcgym.assets.endoscope_spec import CameraSpec
     from arcgym.scene.interactive_scene import InteractiveScene
-
-    from .endoscope_camera_cfg import EndoscopeCameraCfg
+    from arcgym.sensors.endoscope_camera_cfg import EndoscopeCameraCfg
 
 OUTPUTS = ("rgb", "depth")
 """Data types that the camera can give."""

@@ -6,10 +6,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
+from arcgym.sensors.sensor_base_cfg import SensorBaseCfg
 from arcgym.utils.configclass import configclass
-
-from .lighting_cfg import ExposureCfg, LightingCfg
-from .sensor_base_cfg import SensorBaseCfg
 
 
 @configclass

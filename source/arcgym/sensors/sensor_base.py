@@ -11,8 +11,7 @@ import torch
 
 if TYPE_CHECKING:
     from arcgym.scene.interactive_scene import InteractiveScene
-
-    from .sensor_base_cfg import SensorBaseCfg
+    from arcgym.sensors.sensor_base_cfg import SensorBaseCfg
 
 
 class SensorBase(ABC):

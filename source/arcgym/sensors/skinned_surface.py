@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import warp as wp
 
+from arcgym.sensors.skinning_kernels import group_roots, skin_vertices, wall_frames
 from arcgym.utils import warp_setup  # noqa: F401
-
-from .skinning_kernels import group_roots, skin_vertices, wall_frames
 
 if TYPE_CHECKING:
     from arcgym.anatomy.shell import ShellMesh

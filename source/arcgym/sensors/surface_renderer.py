@@ -10,20 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 import warp as wp
 
-from arcgym.anatomy.stage_types import TEXTURE_LENGTH
+from arcgym.anatomy.stage.types import TEXTURE_LENGTH
+from arcgym.sensors.camera_kernels import cast_rays, develop, expose, find_covered, row_brightness
+from arcgym.sensors.camera_rays import fisheye_rays, pixel_angle
+from arcgym.sensors.shading_kernels import Lighting, SurfaceView
+from arcgym.sensors.texture_density import texel_density
 from arcgym.utils import warp_setup  # noqa: F401
-
-from .camera_kernels import cast_rays, develop, expose, find_covered, row_brightness
-from .camera_rays import fisheye_rays, pixel_angle
-from .shading_kernels import Lighting, SurfaceView
-from .texture_density import texel_density
 
 if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
-
-    from .lighting_cfg import ExposureCfg, LightingCfg
-    from .mucosa_textures import MucosaTextures
-    from .skinned_surface import SkinnedSurface
+    from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
+    from arcgym.sensors.mucosa_textures import MucosaTextures
+    from arcgym.sensors.skinned_surface import SkinnedSurface
 
 
 @dataclass(frozen=True)

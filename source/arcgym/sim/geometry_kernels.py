@@ -1,5 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """Closest-point functions between points, segments and triangles (Ericson, Real-Time Collision Detection, ch. 5)."""
 
 import warp as wp

@@ -14,11 +14,11 @@ from arcgym.anatomy.shell import ShellMesh
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
-from arcgym.sim.ring_modes import ElasticPart, RingModes, ring_modes
-from arcgym.sim.shell_elements import bending_stiffness, stretching_stiffness
-from arcgym.sim.solid_elements import tet_stiffness
-from arcgym.sim.wall_parameters import ShellParameters, SolidParameters, WallParameters
-from arcgym.sim.wall_topology import LumenTopology, lumen_topology
+from arcgym.sim.wall.ring_modes import ElasticPart, RingModes, ring_modes
+from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.wall.solid_elements import tet_stiffness
+from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
+from arcgym.sim.wall.wall_topology import LumenTopology, lumen_topology
 
 
 def empty_builder() -> newton.ModelBuilder:

@@ -16,14 +16,15 @@ import newton
 
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
-from arcgym.sim import model_building, readout_kernels
-from arcgym.sim.actuation import Actuation
-from arcgym.sim.contact import ContactSearch
-from arcgym.sim.coupling import Coupling, TwoLevelCoupling
+from arcgym.sim import model_building
+from arcgym.sim.contact.contact import ContactSearch
+from arcgym.sim.coupling.two_level_coupling import Coupling, TwoLevelCoupling
+from arcgym.sim.scope import readout_kernels
+from arcgym.sim.scope.actuation import Actuation
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet
-from arcgym.sim.wall_readout import WallReadout
-from arcgym.sim.wall_solver import WallSolver
+from arcgym.sim.wall.wall_readout import WallReadout
+from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.utils.worlds import fill_worlds
 
 logger = logging.getLogger(__name__)
@@ -102,7 +103,7 @@ class Simulation:
 
     def _coupling(self) -> Coupling:
         if self.cfg.solver == "newton":
-            from arcgym.sim.newton_coupling import NewtonCoupling
+            from arcgym.sim.coupling.newton_coupling import NewtonCoupling
 
             return NewtonCoupling(self)
         return TwoLevelCoupling(

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures and videos of the environments for people to look at; nothing here is seen by a policy."""
 
-from .outside_view import OutsideView, OutsideViewCfg
-from .two_pane import TwoPaneCfg, TwoPaneView
-from .video import VideoRecorder
+from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
+from arcgym.viewers.two_pane import TwoPaneCfg, TwoPaneView
+from arcgym.viewers.video import VideoRecorder
 
 __all__ = ["OutsideView", "OutsideViewCfg", "TwoPaneCfg", "TwoPaneView", "VideoRecorder"]

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.ndimage import gaussian_filter, shift
 
-from .palette import to_display, to_linear
+from arcgym.viewers.palette import to_display, to_linear
 
 _BACKGROUND = (np.array([250, 251, 253]), np.array([214, 220, 229]))
 _SHADOW = to_linear(np.array([120, 132, 152]))

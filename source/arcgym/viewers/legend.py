@@ -7,10 +7,10 @@ from __future__ import annotations
 import numpy as np
 from PIL import ImageDraw
 
-from .drawing import Color, font
-from .palette import Tiers, to_display
-from .view_camera import ViewCamera
-from .wall_paint import WallScale
+from arcgym.viewers.drawing import Color, font
+from arcgym.viewers.palette import Tiers, to_display
+from arcgym.viewers.view_camera import ViewCamera
+from arcgym.viewers.wall_paint import WallScale
 
 _TEXT: Color = (62, 70, 84)
 _FAINT: Color = (128, 138, 154)

@@ -12,14 +12,13 @@ import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.configclass import configclass
-
-from . import outside_view_kernels as kernels
-from .compositing import compose
-from .palette import FORCE_TIERS, Tiers
-from .scope_colors import scope_color_table
-from .scope_tube import ScopeTube
-from .view_camera import ViewCamera, frame_points
-from .wall_paint import wall_scale
+from arcgym.viewers import outside_view_kernels as kernels
+from arcgym.viewers.compositing import compose
+from arcgym.viewers.palette import FORCE_TIERS, Tiers
+from arcgym.viewers.scope_colors import scope_color_table
+from arcgym.viewers.scope_tube import ScopeTube
+from arcgym.viewers.view_camera import ViewCamera, frame_points
+from arcgym.viewers.wall_paint import wall_scale
 
 _KEY_LIGHT = np.array([-0.5, 0.75, 0.75])
 _FILL_LIGHT = np.array([0.9, 0.1, 0.6])

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageDraw
 
-from .drawing import DARK, DIM_INK, INK, Box, Color, font, text_width
-from .frame_info import FrameInfo
-from .palette import FORCE_TIERS, Tiers, force_tier
-from .segment_bar import draw_segment_bar
-from .sparkline import draw_sparkline
-from .tier_bar import draw_tier_bar
+from arcgym.viewers.drawing import DARK, DIM_INK, INK, Box, Color, font, text_width
+from arcgym.viewers.frame_info import FrameInfo
+from arcgym.viewers.palette import FORCE_TIERS, Tiers, force_tier
+from arcgym.viewers.segment_bar import draw_segment_bar
+from arcgym.viewers.sparkline import draw_sparkline
+from arcgym.viewers.tier_bar import draw_tier_bar
 
 _LABEL_SIZE = 12
 _VALUE_SIZE = 18

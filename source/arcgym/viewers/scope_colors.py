@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .palette import FORCE_TIERS, VISIBLE_FORCE, Tiers, force_colors, to_linear
+from arcgym.viewers.palette import FORCE_TIERS, VISIBLE_FORCE, Tiers, force_colors, to_linear
 
 TABLE_STEP = 0.001
 """Wanted distance between two entries of the colour table [m]."""

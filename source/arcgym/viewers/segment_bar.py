@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from PIL import ImageDraw
 
-from .drawing import DARK, INK, Box, Color, first_fitting, font, mix
-from .palette import SEGMENT_COLORS
+from arcgym.viewers.drawing import DARK, INK, Box, Color, first_fitting, font, mix
+from arcgym.viewers.palette import SEGMENT_COLORS
 
 _TEXT_SIZES = (13, 11, 10)
 _GOAL: Color = (255, 255, 255)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from PIL import ImageDraw
 
-from .drawing import DIM_INK, PANEL, Box, Color, first_fitting, font, mix
+from arcgym.viewers.drawing import DIM_INK, PANEL, Box, Color, first_fitting, font, mix
 
 _TEXT_SIZE = 12
 _PAD = 5

@@ -8,8 +8,8 @@ import math
 
 from PIL import ImageDraw
 
-from .drawing import DARK, INK, Box, mix
-from .palette import Tiers
+from arcgym.viewers.drawing import DARK, INK, Box, mix
+from arcgym.viewers.palette import Tiers
 
 _BEYOND = 1.5
 """End of the bar over the start of the last tier."""

@@ -14,14 +14,13 @@ from PIL import Image, ImageDraw
 from arcgym.envs.mdp.force_tiers import tiers_of
 from arcgym.sensors import SkinnedSurface
 from arcgym.utils.configclass import configclass
-
-from .drawing import DARK, DIM_INK, font
-from .frame_info import FrameInfo, read_info
-from .legend import draw_legends
-from .outside_view import OutsideView, OutsideViewCfg
-from .overlay import draw_panel, octagon
-from .palette import shown_tiers
-from .wall_paint import WallPaint
+from arcgym.viewers.drawing import DARK, DIM_INK, font
+from arcgym.viewers.frame_info import FrameInfo, read_info
+from arcgym.viewers.legend import draw_legends
+from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
+from arcgym.viewers.overlay import draw_panel, octagon
+from arcgym.viewers.palette import shown_tiers
+from arcgym.viewers.wall_paint import WallPaint
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv

@@ -13,9 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 from arcgym.sim.model_building import wall_lumen
-from arcgym.sim.wall_readout import inverse_rest
-
-from .palette import FORCE_TIERS, Tiers, deformation_colors, force_colors
+from arcgym.sim.wall.wall_readout import inverse_rest
+from arcgym.viewers.palette import FORCE_TIERS, Tiers, deformation_colors, force_colors
 
 WALL_COLORS = ("displacement", "strain", "tension", "force")
 """What the wall's colour can show."""
@@ -142,11 +141,11 @@ class WallPaint:
 
 
 def face_strains(corners: np.ndarray, inverse: np.ndarray) -> np.ndarray:
-    """Largest principal stretch of triangles minus one, as :func:`arcgym.sim.strain_kernels.face_strain` has it.
+    """Largest principal stretch of triangles minus one, as :func:`arcgym.sim.wall.strain_kernels.face_strain` has it.
 
     Args:
         corners: Corners now [m], shape (F, 3, 3).
-        inverse: Of the rest shape, from :func:`arcgym.sim.wall_readout.inverse_rest`, shape (F, 3).
+        inverse: Of the rest shape, from :func:`arcgym.sim.wall.wall_readout.inverse_rest`, shape (F, 3).
 
     Returns:
         Strains, zero for faces that are compressed all over, shape (F,).

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from .clearance import coarse_clearance
-from .course import resample
-from .ends import Course, find_course
-from .errors import ColonImportError
-from .grid import Grid
-from .leaks import cut_off, fill_tube
-from .poles import off_the_wall, to_pole
-from .tree import LumenTree, lumen_tree
+from arcgym.anatomy.importing.clearance import coarse_clearance
+from arcgym.anatomy.importing.ends import Course, find_course
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.leaks import cut_off, fill_tube
+from arcgym.anatomy.importing.poles import off_the_wall, to_pole
+from arcgym.anatomy.importing.smooth_centerline import resample
+from arcgym.anatomy.importing.tree import LumenTree, lumen_tree
 
 _SHORTEST = 0.4
 _WIDEST = 0.065

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
-from .errors import ColonImportError
-from .grid import Grid
-from .joining import Bridge, Piece, join_pieces, make_piece
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.joining import Bridge, Piece, join_pieces, make_piece
 
 _SMALLEST_PIECE = 5e-7
 _SMALLEST_COLON = 8e-5

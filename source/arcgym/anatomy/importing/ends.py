@@ -10,8 +10,8 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
-from .orientation import FRAMES, likeness
-from .tree import LumenTree, calibre
+from arcgym.anatomy.importing.orientation import FRAMES, likeness
+from arcgym.anatomy.importing.tree import LumenTree, calibre
 
 _LEAST_LEAK = 0.035
 _LEAK_SHARE = 0.66

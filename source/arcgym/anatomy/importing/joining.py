@@ -9,9 +9,9 @@ from itertools import combinations
 
 import numpy as np
 
-from .clearance import coarse_clearance
-from .grid import Grid
-from .tree import LumenTree, lumen_tree
+from arcgym.anatomy.importing.clearance import coarse_clearance
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.tree import LumenTree, lumen_tree
 
 _WITH_TREE = 3e-6
 _LOOK_BACK = 0.030

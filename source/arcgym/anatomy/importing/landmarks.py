@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from .errors import ColonImportError
+from arcgym.anatomy.importing.errors import ColonImportError
 
 RECTUM = 0.150
 """Length of the rectum [m]: clinically the last 15 cm above the anal verge (D'Souza et al., Ann Surg 2019)."""

@@ -10,10 +10,10 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from .cleaning import in_millimetres
-from .ends import Attached
-from .grid import Grid
-from .tree import calibre
+from arcgym.anatomy.importing.cleaning import in_millimetres
+from arcgym.anatomy.importing.ends import Attached
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.tree import calibre
 
 _MARGIN = 0.006
 _FOLDS = 1.3

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import ColonImportError
+from arcgym.anatomy.importing.errors import ColonImportError
 
 _TYPICAL_COURSE = np.array(
     [

@@ -9,12 +9,11 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.pipeline import import_colon
+from arcgym.anatomy.importing.report import write_report
+from arcgym.anatomy.importing.settings import ImportSettings
 from arcgym.anatomy.stage import write_colon
-
-from .errors import ColonImportError
-from .pipeline import import_colon
-from .report import write_report
-from .settings import ImportSettings
 
 
 def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite: bool = False) -> dict[str, Any]:

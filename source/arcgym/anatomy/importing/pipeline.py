@@ -14,24 +14,23 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.landmarks import find_landmarks
-from arcgym.anatomy.stage_types import Centerline, ColonStage, TissueMaterial
-from arcgym.anatomy.texture import write_textures
-
-from .centerline import LEAST_HOLE, find_path
-from .cleaning import keep_colon
-from .course import centred, plain_curve, relaxed, with_upright_canal
-from .errors import ColonImportError
-from .grid import Grid
-from .landmarks import find_segment_ends
-from .openings import Opening, find_openings
-from .orientation import FRAMES, Orientation, orient
-from .polar import cast, cast_rings, own_loop
-from .settings import ImportSettings
-from .surfaces import SURFACE_SUFFIXES, fill_surface, load_surface
-from .visual_fitting import fit_visual
-from .volumes import VOLUME_SUFFIXES, read_volume
-from .wall_fitting import FittedWall, fit_wall
+from arcgym.anatomy.generator.landmarks import find_landmarks
+from arcgym.anatomy.generator.texture import write_textures
+from arcgym.anatomy.importing.centerline import LEAST_HOLE, find_path
+from arcgym.anatomy.importing.cleaning import keep_colon
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.landmarks import find_segment_ends
+from arcgym.anatomy.importing.openings import Opening, find_openings
+from arcgym.anatomy.importing.orientation import FRAMES, Orientation, orient
+from arcgym.anatomy.importing.polar import cast, cast_rings, own_loop
+from arcgym.anatomy.importing.settings import ImportSettings
+from arcgym.anatomy.importing.smooth_centerline import centred, plain_curve, relaxed, with_upright_canal
+from arcgym.anatomy.importing.surfaces import SURFACE_SUFFIXES, fill_surface, load_surface
+from arcgym.anatomy.importing.visual_fitting import fit_visual
+from arcgym.anatomy.importing.volumes import VOLUME_SUFFIXES, read_volume
+from arcgym.anatomy.importing.wall_fitting import FittedWall, fit_wall
+from arcgym.anatomy.stage.types import Centerline, ColonStage, TissueMaterial
 
 _LOGGER = logging.getLogger(__name__)
 _MEASURE_SPACING = 0.001

@@ -9,8 +9,7 @@ from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.curve import Curve
-
-from .grid import Grid
+from arcgym.anatomy.importing.grid import Grid
 
 REACH = 0.060
 """Length of the rays [m]."""

@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .course import resample
-from .grid import Grid
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.smooth_centerline import resample
 
 _BACK = 1.1
 _LEAST_BACK = 0.015

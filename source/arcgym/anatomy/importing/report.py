@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from arcgym.anatomy.importing.pipeline import ImportedColon
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.anatomy.stage_checks import inspect_stage
-from arcgym.anatomy.stage_types import ColonStage
-from arcgym.anatomy.validate import ring_radii
-
-from .pipeline import ImportedColon
+from arcgym.anatomy.stage.types import ColonStage
+from arcgym.anatomy.validation.stage_checks import inspect_stage
+from arcgym.anatomy.validation.validate import ring_radii
 
 REPORT_NAME = "report.json"
 PAGE_NAME = "report.png"

@@ -6,9 +6,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from arcgym.anatomy.spec import ColonSpec
-
-from .errors import ColonImportError
+from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.importing.errors import ColonImportError
 
 _RANGES = {
     "voxel": (0.0003, 0.01),

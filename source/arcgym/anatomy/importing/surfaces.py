@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .errors import ColonImportError
-from .grid import Grid
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.grid import Grid
 
 SURFACE_SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtp", ".glb")
 """File names that are read as surfaces."""

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.spatial import cKDTree
 
-from .clearance import passing_cost, widest_near
-from .grid import Grid
+from arcgym.anatomy.importing.clearance import passing_cost, widest_near
+from arcgym.anatomy.importing.grid import Grid
 
 _RIDGE = 0.45
 _COVER = 1.35

@@ -8,13 +8,12 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.generator.visual import dome_texture, grid_triangles, skin_to_rings, smooth_normals, tube_texture
+from arcgym.anatomy.importing.polar import bounded
+from arcgym.anatomy.importing.wall_fitting import FittedWall
 from arcgym.anatomy.measures import face_normals
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.anatomy.stage_types import VisualMesh
-from arcgym.anatomy.visual import dome_texture, grid_triangles, skin_to_rings, smooth_normals, tube_texture
-
-from .polar import bounded
-from .wall_fitting import FittedWall
+from arcgym.anatomy.stage.types import VisualMesh
 
 _LEAST_RADIUS = 0.005
 _DOME_STEPS = 10

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from .errors import ColonImportError
-from .grid import Grid
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.grid import Grid
 
 VOLUME_SUFFIXES = (".mha", ".mha.gz", ".nii", ".nii.gz", ".nrrd")
 """File names that are read as label volumes."""

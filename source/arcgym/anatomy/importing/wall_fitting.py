@@ -11,14 +11,13 @@ from scipy.ndimage import gaussian_filter
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.generator.wall import LAST_RING_GAP, build_wall
+from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.polar import bounded
+from arcgym.anatomy.importing.settings import ImportSettings
 from arcgym.anatomy.measures import tet_quality
-from arcgym.anatomy.mesh_checks import boundary_faces, find_crossings
-from arcgym.anatomy.stage_types import WallMesh
-from arcgym.anatomy.wall import LAST_RING_GAP, build_wall
-
-from .errors import ColonImportError
-from .polar import bounded
-from .settings import ImportSettings
+from arcgym.anatomy.stage.types import WallMesh
+from arcgym.anatomy.validation.mesh_checks import boundary_faces, find_crossings
 
 _LEAST_QUALITY = 0.06
 _ITERATIONS = 120

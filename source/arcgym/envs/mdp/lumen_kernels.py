@@ -1,5 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
 """The lumen reward of a depth image in one kernel; the equations are at the head of :mod:`arcgym.envs.mdp.lumen`.
 
 N worlds, images of H x W pixels.

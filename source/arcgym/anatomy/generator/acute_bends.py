@@ -1,0 +1,98 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Acute bends made while a course relaxes: where it turns most, it is drawn towards an arc with straight legs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from arcgym.anatomy.bends import WINDOW
+from arcgym.anatomy.generator.spec import ColonSpec
+
+SHARPEST = 0.78
+"""Largest curvature times lumen radius of a made bend."""
+
+WIDEST = 0.036
+"""Largest radius of an arc that turns 90 degrees within the window of :func:`arcgym.anatomy.bends.acute_bends` [m]."""
+
+_ANGLE = np.radians(118.0)
+_MARGIN = 1.08
+_REACH = 0.050
+_APART = 0.085
+_STIFFNESS = 0.4
+_FROM_END = 0.08
+_LEAST_TURN = np.radians(17.0)
+
+
+@dataclass(frozen=True)
+class Knees:
+    """Bends to make."""
+
+    index: np.ndarray
+    """Points that each bend shapes, shape (K, n), int."""
+    shape: np.ndarray
+    """Their wanted positions relative to their mean, up to a rotation [m], shape (K, n, 3)."""
+
+    def pull(self, points: np.ndarray) -> np.ndarray:
+        """Returns a shift of every point towards the shape of its bend (shape matching, Mueller et al., TOG 2005)."""
+        here = points[self.index]
+        middle = here.mean(1, keepdims=True)
+        left, _, right = np.linalg.svd(np.einsum("kni,knj->kij", self.shape, here - middle))
+        left[:, :, 2] *= np.sign(np.linalg.det(left) * np.linalg.det(right))[:, None]
+        target = np.einsum("kni,kij->knj", self.shape, left @ right) + middle
+        shift, uses = np.zeros_like(points), np.zeros(len(points))
+        np.add.at(shift, self.index, _STIFFNESS * (target - here))
+        np.add.at(uses, self.index, 1.0)
+        return shift / np.maximum(uses, 1.0)[:, None]
+
+
+def choose_knees(points: np.ndarray, spacing: float, radius: np.ndarray, spec: ColonSpec) -> list[int]:
+    """Returns the points that turn most, far enough from each other, where the lumen is narrow enough for a bend.
+
+    Args:
+        points: Course [m], shape (n, 3).
+        spacing: Distance of its points [m].
+        radius: Lumen radius at them [m], shape (n,).
+        spec: Asks for the number of bends and the least radius.
+    """
+    turn = gaussian_filter1d(_turn(points, round(0.5 * WINDOW / spacing)), 1.0)
+    ends, apart = round(_FROM_END / spacing), round(_APART / spacing)
+    turn[:ends] = turn[-ends:] = 0.0
+    turn[_arc_radius(radius, spec) > WIDEST] = 0.0
+    chosen: list[int] = []
+    while len(chosen) < (spec.acute_bends or 0) and turn.max() > _LEAST_TURN:
+        chosen.append(int(turn.argmax()))
+        turn[max(0, chosen[-1] - apart) : chosen[-1] + apart + 1] = 0.0
+    return chosen
+
+
+def make_knees(places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec) -> Knees:
+    """Returns the bends at the given points; arguments as for :func:`choose_knees`."""
+    reach = round(_REACH / spacing)
+    index = np.array(places, int)[:, None] + np.arange(-reach, reach + 1)
+    shapes = [_arc_with_legs(float(_arc_radius(radius[k], spec)), reach, spacing) for k in places]
+    return Knees(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
+
+
+def _arc_radius(radius: np.ndarray, spec: ColonSpec) -> np.ndarray:
+    return np.maximum(_MARGIN * spec.min_bend_radius, radius / SHARPEST)
+
+
+def _turn(points: np.ndarray, half: int) -> np.ndarray:
+    edge = np.diff(points, axis=0)
+    edge /= np.linalg.norm(edge, axis=1, keepdims=True)
+    turn = np.zeros(len(points))
+    turn[half:-half] = np.arccos(np.clip((edge[2 * half - 1 :] * edge[: len(edge) - 2 * half + 1]).sum(1), -1.0, 1.0))
+    return turn
+
+
+def _arc_with_legs(radius: float, reach: int, spacing: float) -> np.ndarray:
+    """Returns an arc with a straight leg at either end, about its mean [m], shape (2 reach + 1, 3)."""
+    step, fine = spacing / 20, np.arange(-20 * reach, 20 * reach + 1) * spacing / 20
+    curvature = np.where(np.abs(fine) < 0.5 * _ANGLE * radius, 1.0 / radius, 0.0)
+    angle = np.cumsum(gaussian_filter1d(curvature, 0.004 / step)) * step
+    points = np.cumsum(np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1), axis=0)[::20] * step
+    return points - points.mean(0)

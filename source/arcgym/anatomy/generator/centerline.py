@@ -1,0 +1,79 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The centreline of a spec: an anatomical course, relaxed until lengths, bends and gaps are right."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from arcgym.anatomy.bends import acute_bends
+from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.generator.relaxation import relax
+from arcgym.anatomy.generator.routes import control_points, sample_route
+from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.segments import RETROPERITONEAL, SEGMENTS
+
+SAMPLE_SPACING = 0.005
+"""Distance of the relaxed points [m]."""
+
+_SIGMOID = SEGMENTS.index("sigmoid")
+_HOLD_TIED, _HOLD_MOBILE, _HOLD_REPOSED = 0.0072, 0.003, 0.025
+
+
+def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve | None = None) -> Curve:
+    """Generates the centreline of a spec; the result still has to pass :mod:`arcgym.anatomy.validation.validate`.
+
+    Args:
+        spec: What the colon shall be like.
+        rng: Source of randomness.
+        reference: The same colon in another posture: it keeps the acute bends, and the tied segments their places.
+    """
+    lengths = {name: spec.segments[name].length for name in SEGMENTS}
+    route = sample_route(control_points(spec, rng), lengths, SAMPLE_SPACING)
+    counts = [round(lengths[name] / SAMPLE_SPACING) for name in SEGMENTS]
+    edge = np.repeat([lengths[name] / count for name, count in zip(SEGMENTS, counts, strict=True)], counts)
+    tied = np.repeat([name in RETROPERITONEAL for name in SEGMENTS], counts)
+    tied = np.r_[tied, tied[-1]]
+    arc = np.r_[0.0, np.cumsum(edge)]
+    hold, places = np.where(tied, _HOLD_TIED, _HOLD_MOBILE), None
+    if reference is not None:
+        share = np.interp(arc, np.r_[0.0, np.cumsum(list(lengths.values()))], np.r_[0.0, reference.ends])
+        hold = np.where(tied, _HOLD_REPOSED, _HOLD_MOBILE)
+        route = np.where(tied[:, None], reference.position(np.asarray(share)), route)
+        places = [int(np.abs(share - s).argmin()) for s in acute_bends(reference.points, reference.s)]
+    points = relax(route, edge, base_radius(spec, arc), hold, spec, places)
+    points = _smoothed(points)
+    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    ends = arc[np.cumsum(counts)]
+    if spec.iliac_fossa is not None:
+        ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])
+    return Curve(points, ends)
+
+
+def _height_crossing(height: np.ndarray, arc: np.ndarray, level: float, bounds: np.ndarray) -> float:
+    """Returns where the descending colon, followed down from its upper border, first is below a level [m]."""
+    below = np.flatnonzero((height < level) & (arc < bounds[1]))
+    if not len(below) or below[-1] + 1 == len(arc):
+        return float(bounds[0])
+    k = int(below[-1])
+    return float(np.interp(level, height[k : k + 2], arc[k : k + 2]))
+
+
+def _smoothed(points: np.ndarray) -> np.ndarray:
+    """Smooths the course over 6 mm, and over 15 mm where it leaves the straight anal canal."""
+    padded = np.pad(points, ((12, 12), (0, 0)), "reflect", reflect_type="odd")
+    fine, coarse = (gaussian_filter1d(padded, width, axis=0)[12:-12] for width in (1.2, 3.0))
+    blend = np.clip(2.0 - np.arange(len(points)) / 8.0, 0.0, 1.0)[:, None]
+    return fine + blend * (coarse - fine)
+
+
+def base_radius(spec: ColonSpec, s: np.ndarray) -> np.ndarray:
+    """Returns the lumen radius between folds [m] at the spec's nominal arc lengths, same shape as ``s``."""
+    knots, values, start = [], [], 0.0
+    for name in SEGMENTS:
+        segment = spec.segments[name]
+        knots += [start, start + 0.5 * segment.length]
+        values += [0.5 * segment.start_diameter, 0.5 * segment.middle_diameter]
+        start += segment.length
+    return np.interp(s, knots, values)

@@ -1,0 +1,129 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Position-based relaxation of a course: lengths, bends and gaps between loops."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from arcgym.anatomy.generator.acute_bends import choose_knees, make_knees
+from arcgym.anatomy.generator.spec import ColonSpec
+
+MAX_CURVATURE_RADIUS = 0.80
+"""Curvature times lumen radius that relaxation aims to stay below; at 1 the inside of a bend folds over."""
+
+HAUSTRAL_MARGIN = 1.14
+"""Largest wall radius between folds over the mean radius: haustra bulge, taeniae are drawn in."""
+
+_ITERATIONS = 900
+_CHOOSING = (200, 400, 600)
+_CANAL_POINTS = 5
+_STIFFER = 0.006
+_NEIGHBOR_AGE, _NEIGHBOR_REACH = 5, 0.02
+
+
+def relax(
+    route: np.ndarray,
+    edge: np.ndarray,
+    radius: np.ndarray,
+    hold: np.ndarray,
+    spec: ColonSpec,
+    bends: list[int] | None = None,
+) -> np.ndarray:
+    """Moves the points until edges have their lengths, bends are as wanted and loops are apart.
+
+    Every constraint moves points directly (Mueller et al., JVCIR 2007); the pull back to the course is strong on
+    retroperitoneal segments and weak on those that hang on a mesentery. Acute bends not given are chosen as they form.
+
+    Args:
+        route: Course [m], shape (n, 3).
+        edge: Wanted distances of its points [m], shape (n - 1,).
+        radius: Lumen radius [m], shape (n,).
+        hold: Share of the way back to the course in each iteration, shape (n,).
+        spec: What the colon shall be like.
+        bends: Points that shall become acute bends; None chooses those that turn most.
+    """
+    points, arc = route.copy(), np.r_[0.0, np.cumsum(edge)]
+    need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + 1.5 * spec.clearance
+    other_loop = np.abs(arc[:, None] - arc[None]) > 1.9 * need
+    sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
+    canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
+    knees = None
+    for k in range(_ITERATIONS):
+        if spec.acute_bends and k in _CHOOSING:
+            spacing = float(edge.mean())
+            places = choose_knees(points, spacing, radius, spec) if bends is None else bends
+            knees = make_knees(places, spacing, radius, spec)
+        if k % _NEIGHBOR_AGE == 0:
+            a, b = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
+        points += _push_apart(points, a, b, need[a, b])
+        points += hold[:, None] * (route - points)
+        if knees:
+            points += knees.pull(points)
+        points += _unbend(points, edge, sharpest)
+        for _ in range(6):
+            points[:_CANAL_POINTS] = canal
+            _restore_lengths(points, edge)
+    points[:_CANAL_POINTS] = canal
+    return points
+
+
+def _square_distances(points: np.ndarray) -> np.ndarray:
+    """Returns squared distances [m^2], shape (n, n); a matrix product is slow on busy cores."""
+    return sum((x[:, None] - x[None]) ** 2 for x in points.T)  # type: ignore[return-value]
+
+
+def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:
+    """Returns the shift of each point away from those of other loops that are nearer than ``need``, for pairs a, b."""
+    offset = points[a] - points[b]
+    close = (offset**2).sum(1) < need**2
+    a, offset, need = a[close], offset[close], need[close]
+    distance = np.linalg.norm(offset, axis=1) + 1e-9
+    overlap = need - distance
+    total = np.bincount(a, overlap, len(points)) + 1e-12
+    push = (overlap**2 / (total[a] * distance))[:, None] * offset
+    return 0.3 * np.stack([np.bincount(a, push[:, k], len(points)) for k in range(3)], 1)
+
+
+def _unbend(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray) -> np.ndarray:
+    """Returns a shift that opens bends: a little everywhere, strongly where the curvature is above ``sharpest``.
+
+    Over 10, 20 and 40 mm; over the longer ones neighbours move the other way, so that the course does not shrink.
+    """
+    shift = np.zeros_like(points)
+    shift[1:-1] = _sag(points, 1) * (_STIFFER + np.maximum(_excess(points, edge, sharpest, 1), 0.0))[:, None]
+    for reach in (2, 4):
+        part = 0.2 * _sag(points, reach) * _relative_excess(points, edge, sharpest, reach)[:, None]
+        shift[reach:-reach] += part
+        shift[2 * reach :] -= 0.5 * part
+        shift[: -2 * reach] -= 0.5 * part
+    return shift
+
+
+def _sag(points: np.ndarray, reach: int) -> np.ndarray:
+    """Returns the way from each point to the middle of those ``reach`` before and after it [m]."""
+    return 0.5 * (points[: -2 * reach] + points[2 * reach :]) - points[reach:-reach]
+
+
+def _curvature(points: np.ndarray, edge: np.ndarray, reach: int) -> np.ndarray:
+    span = reach * edge[reach : len(edge) - reach + 1]
+    return 2.0 * np.linalg.norm(_sag(points, reach), axis=1) / span**2
+
+
+def _excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: int) -> np.ndarray:
+    return np.clip(_curvature(points, edge, reach) / sharpest[reach:-reach] - 1.0, 0.0, 0.9)
+
+
+def _relative_excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: int) -> np.ndarray:
+    return np.clip(1.0 - sharpest[reach:-reach] / np.maximum(_curvature(points, edge, reach), 1e-9), 0.0, 0.9)
+
+
+def _restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
+    """Moves both ends of every edge so that it gets its length; even edges first, then odd ones."""
+    for first in (0, 1):
+        a, b = points[first:-1:2], points[first + 1 :: 2]
+        offset = b - a
+        length = np.linalg.norm(offset, axis=1, keepdims=True)
+        half = 0.5 * offset * (1.0 - edge[first::2, None] / length)
+        a += half
+        b -= half

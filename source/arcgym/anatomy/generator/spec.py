@@ -1,0 +1,181 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a generated colon shall be like: the generator's only input."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from arcgym.anatomy.generator.spec_checks import check_spec
+from arcgym.anatomy.stage.types import TissueMaterial
+
+
+@dataclass(frozen=True)
+class FoldSpec:
+    """Semilunar folds of one segment: crescents between two taeniae."""
+
+    spacing: float = 0.026
+    """Distance from fold to fold along one of the three rows [m]; 20-60 mm on CT colonography, 25-40 mm on average."""
+    depth: float = 0.6
+    """Depth as a share of the way from the wall to the chord between two taeniae (1: triangular lumen)."""
+    width: float = 0.0024
+    """Half thickness of the crest [m]; a fold is two walls thick."""
+    stagger: float = 0.6
+    """Offset between the three rows as a share of a third of the spacing: 0 closes rings, 1 spreads them evenly."""
+
+
+@dataclass(frozen=True)
+class SegmentSpec:
+    """Size and features of one segment."""
+
+    length: float
+    """Length along the centreline [m]."""
+    start_diameter: float
+    """Inner diameter between folds where the segment begins [m]."""
+    middle_diameter: float
+    """Inner diameter between folds in the middle of the segment [m]."""
+    folds: FoldSpec | None = None
+    """Semilunar folds; None for the rectum, which has none."""
+    diverticula: int = 0
+    """Number of diverticula. None occur in the rectum, which has no gaps in its muscle coat."""
+    polyps: int = 0
+    """Number of polyps of random size and shape; for given ones see :attr:`ColonSpec.polyps`."""
+    wide_diverticula: int = 0
+    """How many of the diverticula are wide enough to pass for the lumen; the wall that the scope touches has them."""
+
+
+@dataclass(frozen=True)
+class PolypSpec:
+    """One polyp to place."""
+
+    segment: str
+    """Segment that it grows in."""
+    diameter: float
+    """Diameter [m]; up to 5 mm is diminutive, 10 mm and more large."""
+    paris: str = "Is"
+    """Shape by the Paris classification: Ip (stalked), Is (sessile) or IIa (flat elevated)."""
+
+
+@dataclass(frozen=True)
+class MucosaSpec:
+    """Look of the mucosa."""
+
+    width: int = 1024
+    """Pixels of the textures around the lumen; they are twice as long. Halve it for files a quarter the size."""
+    paleness: float = 0.45
+    """Share of paler mucosa, 0 to 1."""
+    redness: float = 0.20
+    """Share of redder mucosa, 0 to 1."""
+    vessels: float = 1.0
+    """How clearly vessels shine through; 0 hides them."""
+    stool: float = 0.0
+    """Share of the mucosa under residual stool, 0 to 0.5."""
+
+
+def default_segments() -> dict[str, SegmentSpec]:
+    """Returns an average insufflated adult colon of 1.64 m.
+
+    Lengths from CT colonography (Khashab et al., Endoscopy 2009; Hanson et al., AJR 2007; the sum is 1.5-1.9 m),
+    distended diameters below the upper bounds of radiology (transverse 6 cm, caecum 9 cm), flexures counted apart:
+    the descending, transverse and ascending colon of the literature each hold half of the flexures beside them.
+    """
+    return {
+        "rectum": SegmentSpec(0.150, 0.025, 0.051),
+        "sigmoid": SegmentSpec(0.480, 0.034, 0.035, FoldSpec(0.021, 0.65, 0.0026, 0.9)),
+        "descending": SegmentSpec(0.220, 0.036, 0.040, FoldSpec(0.026, 0.55, 0.0024, 0.8)),
+        "splenic": SegmentSpec(0.110, 0.041, 0.040, FoldSpec(0.026, 0.65, 0.0024, 0.6)),
+        "transverse": SegmentSpec(0.370, 0.044, 0.048, FoldSpec(0.030, 0.95, 0.0024, 0.25)),
+        "hepatic": SegmentSpec(0.105, 0.046, 0.045, FoldSpec(0.029, 0.80, 0.0024, 0.4)),
+        "ascending": SegmentSpec(0.135, 0.051, 0.056, FoldSpec(0.033, 0.95, 0.0026, 0.35)),
+        "cecum": SegmentSpec(0.065, 0.062, 0.066, FoldSpec(0.034, 0.65, 0.0030, 0.4)),
+    }
+
+
+@dataclass(frozen=True)
+class ColonSpec:
+    """One colon to generate; the same spec always gives the same stage."""
+
+    name: str = "colon"
+    """Name of the colon and of its folder."""
+    patient: str = "generated adult"
+    """Patient in words, kept in the stage."""
+    seed: int = 0
+    """Seed of everything random. Change it for another colon of the same kind."""
+    segments: dict[str, SegmentSpec] = field(default_factory=default_segments)
+    """Size and features of each segment."""
+    posture: str = "supine"
+    """``supine`` or ``prone``: the same spec gives the same wall in both, mobile segments lying elsewhere."""
+    sigmoid_shape: str = "plain"
+    """Course of the sigmoid, a key of :data:`arcgym.anatomy.generator.courses.SIGMOID_SHAPES`."""
+    transverse_shape: str = "plain"
+    """Course of the transverse colon, a key of :data:`arcgym.anatomy.generator.courses.TRANSVERSE_SHAPES`."""
+    acute_bends: int | None = 10
+    """How many places shall turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
+    None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
+    min_bend_radius: float = 0.030
+    """Least radius of the centreline [m]. A colonoscope's bending section turns on about 25-30 mm."""
+    transverse_sag: float = 0.10
+    """How far the middle of the transverse colon hangs below its ends [m]."""
+    left_rise: float = 0.0
+    """How much higher than usual the left flexure lies [m]. The descending colon runs straight up the flank: give it
+    about the length that the descending colon is longer than 0.215 m, or its borders leave their usual heights."""
+    right_rise: float = 0.0
+    """How much higher than usual the right flexure lies [m]; likewise for an ascending colon longer than 0.145 m."""
+    iliac_fossa: float | None = None
+    """Height above the anal verge at which the descending colon ends and the sigmoid begins [m], wherever relaxation
+    has moved the course; the lengths of both differ by as much. None leaves the border where the lengths put it."""
+    jitter: float = 0.004
+    """Standard deviation of the random shift of the course's control points [m]."""
+    straight_cecum: bool = True
+    """Whether the caecum goes on in the ascending colon's line, turning gently forwards, as most do. If not, its course
+    is too short for it: it bends wherever :attr:`jitter` and its neighbours push it, as in the five patients."""
+    radius_variation: float = 0.05
+    """Relative standard deviation of the lumen radius along the colon."""
+    clearance: float = 0.005
+    """Least gap between the walls of two loops [m]. Larger than the contact gap, or loops would touch at rest."""
+    polyp_radius: tuple[float, float] = (0.0030, 0.0065)
+    """Smallest and largest polyp radius [m] (diminutive to 13 mm)."""
+    polyp_list: tuple[PolypSpec, ...] = ()
+    """Polyps of given size and shape, besides those that segments ask for."""
+    openings: bool = True
+    """Whether the caecum has an ileocaecal valve and an appendix orifice."""
+    mucosa: MucosaSpec = MucosaSpec()
+    """Look of the mucosa."""
+    wide_neck: tuple[float, float] = (0.0073, 0.0080)
+    """Smallest and largest neck radius of diverticula that pass for the lumen [m]: a 13 mm tip fits in."""
+    diverticulum_neck: tuple[float, float] = (0.0026, 0.0042)
+    """Smallest and largest radius of a diverticulum's neck [m]; sacs are 5-10 mm wide."""
+    wall_thickness: float = 0.002
+    """Thickness of the simulated wall [m]; a well distended colon wall is thinner than 3 mm on CT."""
+    ring_spacing: float = 0.0125
+    """Distance of the wall's rings [m]. A finer grid bends more softly and costs proportionally more."""
+    sectors: int = 12
+    """Wall vertices around a ring."""
+    wall_fold_depth: float = 0.6
+    """Depth of the wall's folds as a share of the visual ones: a coarse grid would turn sharp folds into spikes."""
+    wall_fold_width: float = 0.007
+    """Least half width of the wall's folds [m], about half the ring spacing."""
+    min_lumen_radius: float = 0.010
+    """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through everywhere."""
+    material: TissueMaterial = TissueMaterial()
+    """Tissue of the wall."""
+    visual_rows: int = 590
+    """Cross sections of the fine visual surface."""
+    visual_columns: int = 68
+    """Points around the fine visual surface."""
+    visual_refinements: int = 3
+    """How often triangles on lesions are split for the fine surface. 2 makes smaller files of many lesions."""
+    proxy_rows: int = 430
+    """Cross sections of the surface drawn for policies."""
+    proxy_columns: int = 28
+    """Points around the surface drawn for policies."""
+    max_attempts: int = 8
+    """How many seeds are tried before the spec is given up."""
+
+    def __post_init__(self) -> None:
+        """Checks every value.
+
+        Raises:
+            ValueError: Names the field, its value and what is allowed.
+        """
+        check_spec(self)

@@ -1,0 +1,36 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Colon stages: the data classes and the two functions that write and read them as USD."""
+
+from __future__ import annotations
+
+from arcgym.anatomy.stage.layout import (
+    CENTERLINE_PATH,
+    LANDMARKS_PATH,
+    PROXY_PATH,
+    ROOT_PATH,
+    TISSUE_PATH,
+    VISUAL_PATH,
+    WALL_PATH,
+)
+from arcgym.anatomy.stage.reader import read_colon
+from arcgym.anatomy.stage.types import Centerline, ColonStage, StageError, TissueMaterial, VisualMesh, WallMesh
+from arcgym.anatomy.stage.writer import write_colon
+
+__all__ = [
+    "CENTERLINE_PATH",
+    "LANDMARKS_PATH",
+    "PROXY_PATH",
+    "ROOT_PATH",
+    "TISSUE_PATH",
+    "VISUAL_PATH",
+    "WALL_PATH",
+    "Centerline",
+    "ColonStage",
+    "StageError",
+    "TissueMaterial",
+    "VisualMesh",
+    "WallMesh",
+    "read_colon",
+    "write_colon",
+]

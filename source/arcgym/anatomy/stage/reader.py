@@ -1,0 +1,218 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reads a colon stage and says precisely what is wrong with it when it cannot be used."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade
+
+from arcgym.anatomy.measures import flipped_normal_fraction, tet_volumes, winds_outwards
+from arcgym.anatomy.stage import layout
+from arcgym.anatomy.stage.types import Centerline, ColonStage, StageError, TissueMaterial, VisualMesh, WallMesh
+
+_REMAKE = "Remake the stage with scripts/tools/author_assets.py or write it with arcgym.anatomy.write_colon"
+
+
+def read_colon(path: str | Path) -> ColonStage:
+    """Reads and checks a colon stage.
+
+    Args:
+        path: The stage, usually ``assets/usd/colon_<n>/colon.usda``.
+
+    Raises:
+        StageError: The stage is missing or unusable; the message says where, what was found and how to mend it.
+    """
+    path = Path(path)
+    reader = _Reader(path)
+    root = reader.prim(layout.ROOT_PATH)
+    metadata = dict(root.GetCustomDataByKey(layout.CUSTOM_DATA) or {})
+    centerline = _read_centerline(reader)
+    wall = _read_wall(reader)
+    return ColonStage(
+        name=str(metadata.get("name", path.parent.name)),
+        wall=wall,
+        visual=_read_visual(reader, layout.VISUAL_PATH, len(wall.points)),
+        visual_proxy=_read_visual(reader, layout.PROXY_PATH, len(wall.points)),
+        centerline=centerline,
+        landmarks=_read_landmarks(reader),
+        material=_read_tissue(reader),
+        albedo_texture=reader.asset(f"{layout.MUCOSA_PATH}/Albedo", "inputs:file"),
+        detail_texture=reader.asset(layout.MUCOSA_PATH, layout.DETAIL_TEXTURE),
+        metadata=metadata,
+    )
+
+
+class _Reader:
+    """An open stage plus the errors of everything that can be missing in it."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        if not path.is_file():
+            raise StageError(path, "", "", "no such file", _list_stages(path))
+        try:
+            self.usd = Usd.Stage.Open(str(path))
+        except Tf.ErrorException as error:
+            raise StageError(path, "", "", f"not a USD file ({error})", "Pass a .usda, .usdc or .usd file") from error
+        self._check_units()
+
+    def _check_units(self) -> None:
+        units = UsdGeom.GetStageMetersPerUnit(self.usd)
+        if not np.isclose(units, 1.0):
+            mend = "Scale the points to metres and set metersPerUnit = 1"
+            raise StageError(self.path, "/", "metersPerUnit", f"found {units:g}, expected 1", mend)
+        axis = UsdGeom.GetStageUpAxis(self.usd)
+        if axis != UsdGeom.Tokens.z:
+            mend = 'Turn the points so that +Z is cranial and set upAxis = "Z"'
+            raise StageError(self.path, "/", "upAxis", f"found {axis}, expected Z", mend)
+
+    def error(self, prim: str, attribute: str, found: str, mend: str = _REMAKE) -> StageError:
+        return StageError(self.path, prim, attribute, found, mend)
+
+    def prim(self, path: str, type_name: str = "") -> Usd.Prim:
+        prim = self.usd.GetPrimAtPath(path)
+        if not prim or not prim.IsDefined() or not prim.IsActive():
+            have = ", ".join(str(child.GetPath()) for child in self.usd.Traverse()) or "nothing"
+            raise self.error(path, "", f"the prim is missing; the stage has {have[:300]}")
+        if type_name and prim.GetTypeName() != type_name:
+            raise self.error(path, "", f"type is '{prim.GetTypeName()}', expected '{type_name}'")
+        return prim
+
+    def value(self, path: str, name: str) -> Any:
+        value = self.prim(path).GetAttribute(name).Get() if self.prim(path).HasAttribute(name) else None
+        if value is None:
+            raise self.error(path, name, "the attribute is missing or empty")
+        return value
+
+    def array(self, path: str, name: str, width: int = 1, rows: int | None = None) -> np.ndarray:
+        """Reads an array as (rows, width), or (rows,) for width 1, and checks its length and that it is finite."""
+        value = np.asarray(self.value(path, name))
+        kind = np.int32 if value.dtype.kind in "iu" else np.float32
+        if value.size % width or (rows is not None and value.size != rows * width):
+            wanted = f"{rows} rows of {width}" if rows is not None else f"a multiple of {width}"
+            raise self.error(path, name, f"{value.size} numbers, expected {wanted}")
+        if not np.isfinite(value).all():
+            raise self.error(path, name, f"{int((~np.isfinite(value)).sum())} numbers are not finite")
+        value = np.array(value, kind)
+        return value.reshape(-1, width) if width > 1 else value.reshape(-1)
+
+    def indices(self, path: str, name: str, width: int, count: int, rows: int | None = None) -> np.ndarray:
+        """Reads an index array and checks that every index points at one of ``count`` vertices."""
+        value = self.array(path, name, width, rows)
+        if value.size and (value.min() < 0 or value.max() >= count):
+            raise self.error(path, name, f"indices from {value.min()} to {value.max()}, expected 0 to {count - 1}")
+        return value
+
+    def asset(self, path: str, name: str) -> Path:
+        asset = self.value(path, name)
+        found = Path(asset.resolvedPath or self.path.parent / asset.path)
+        if not isinstance(asset, Sdf.AssetPath) or not found.is_file():
+            raise self.error(path, name, f"texture {asset.path} does not exist", "Put the image beside the stage")
+        return found
+
+
+def _list_stages(path: Path) -> str:
+    """Lists the stages closest above the missing file."""
+    for folder in list(path.parents)[:4]:
+        stages = sorted(folder.glob("**/colon.usda"))[:10] if folder.is_dir() and folder.parent != folder else []
+        if stages:
+            return "Existing stages: " + ", ".join(str(stage) for stage in stages)
+    return "Make the stages with scripts/tools/author_assets.py"
+
+
+def _read_wall(reader: _Reader) -> WallMesh:
+    path = layout.WALL_PATH
+    _check_schemas(reader, reader.prim(path, "TetMesh"), layout.WALL_SCHEMAS)
+    points = reader.array(path, "points", 3)
+    count = len(points)
+    ring_arc = reader.array(path, layout.RING_ARC)
+    wall = WallMesh(
+        points=points,
+        tets=reader.indices(path, "tetVertexIndices", 4, count),
+        anchor=reader.array(path, layout.ANCHOR, rows=count),
+        segment=reader.array(path, layout.SEGMENT, rows=count),
+        ring=reader.indices(path, layout.RING, 1, len(ring_arc), count),
+        layer=reader.array(path, layout.LAYER, rows=count),
+        frame_neighbors=reader.indices(path, layout.FRAME_NEIGHBORS, 4, count, count),
+        ring_arc=ring_arc,
+    )
+    volumes = tet_volumes(wall.points, wall.tets)
+    if (volumes <= 0).any():
+        bad = np.flatnonzero(volumes <= 0)
+        found = f"{len(bad)} of {len(volumes)} tetrahedra are inverted or flat (the first is number {bad[0]})"
+        mend = "Swap two indices of each inverted tetrahedron; its volume (b-a) x (c-a) . (d-a) / 6 must be positive"
+        raise reader.error(path, "tetVertexIndices", found, mend)
+    return wall
+
+
+def _check_schemas(reader: _Reader, prim: Usd.Prim, schemas: tuple[str, ...]) -> None:
+    applied = prim.GetAppliedSchemas() + list(prim.GetPrimTypeInfo().GetAppliedAPISchemas())
+    missing = [schema for schema in schemas if schema not in applied]
+    if missing:
+        mend = f'Add prepend apiSchemas = ["{missing[0]}"] to the prim'
+        raise reader.error(str(prim.GetPath()), "apiSchemas", f"{', '.join(missing)} not applied", mend)
+
+
+def _read_visual(reader: _Reader, path: str, wall_count: int) -> VisualMesh:
+    reader.prim(path, "Mesh")
+    points = reader.array(path, "points", 3)
+    count = len(points)
+    visual = VisualMesh(
+        points=points,
+        faces=reader.indices(path, "faceVertexIndices", 3, count),
+        normals=reader.array(path, "normals", 3, count),
+        uv=reader.array(path, layout.UV, 2, count),
+        tint=reader.array(path, layout.TINT, rows=count),
+        skin_indices=reader.indices(path, layout.SKIN_INDICES, 4, wall_count, count),
+        skin_weights=reader.array(path, layout.SKIN_WEIGHTS, 4, count),
+    )
+    sums = visual.skin_weights.sum(1)
+    if np.abs(sums - 1).max() > 1e-3:
+        found = f"weights of a vertex sum to {sums.min():.3f} to {sums.max():.3f}, expected 1"
+        raise reader.error(path, layout.SKIN_WEIGHTS, found, "Divide each row by its sum")
+    if winds_outwards(visual.points, visual.faces):
+        found = "the faces are wound so that they face away from the lumen"
+        raise reader.error(path, "faceVertexIndices", found, "Reverse the order of each face's vertices")
+    flipped = flipped_normal_fraction(visual)
+    if flipped > 0.05:
+        found = f"{100 * flipped:.0f} % of the normals point away from the lumen"
+        raise reader.error(path, "normals", found, "Multiply them by -1: the visual normals point into the lumen")
+    return visual
+
+
+def _read_centerline(reader: _Reader) -> Centerline:
+    path = layout.CENTERLINE_PATH
+    reader.prim(path, "BasisCurves")
+    points = reader.array(path, "points", 3)
+    count = len(points)
+    return Centerline(
+        points=points,
+        arc=reader.array(path, layout.ARC, rows=count),
+        radius=reader.array(path, layout.RADIUS, rows=count),
+        segment=reader.array(path, layout.SEGMENT, rows=count),
+    )
+
+
+def _read_landmarks(reader: _Reader) -> dict[str, float]:
+    children = reader.prim(layout.LANDMARKS_PATH).GetChildren()
+    arcs = {child.GetName(): float(reader.value(str(child.GetPath()), layout.LANDMARK_ARC)) for child in children}
+    return dict(sorted(arcs.items(), key=lambda item: item[1]))
+
+
+def _read_tissue(reader: _Reader) -> TissueMaterial:
+    wall = reader.prim(layout.WALL_PATH)
+    material = UsdShade.MaterialBindingAPI(wall).ComputeBoundMaterial("physics")[0]
+    if not material:
+        mend = f"Bind {layout.TISSUE_PATH} to the wall with the purpose 'physics'"
+        raise reader.error(layout.WALL_PATH, "material:binding:physics", "no physics material is bound", mend)
+    path = str(material.GetPath())
+    _check_schemas(reader, material.GetPrim(), layout.MATERIAL_SCHEMAS)
+    names = ("youngsModulus", "poissonsRatio", "density")
+    values = [round(float(reader.value(path, f"physics:{name}")), 6) for name in names]
+    if not (values[0] > 0 and 0 <= values[1] < 0.5 and values[2] > 0):
+        found = f"E {values[0]:g} Pa, nu {values[1]:g}, density {values[2]:g} kg/m^3"
+        raise reader.error(path, "physics:*", found, "Use E > 0, 0 <= nu < 0.5 and density > 0 in SI units")
+    return TissueMaterial(*values)

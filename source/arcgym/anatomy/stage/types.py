@@ -1,0 +1,151 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A colon as numpy arrays: what a stage file holds and what the simulation, the camera and the tasks read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from arcgym.anatomy.segments import SEGMENTS, segment_index
+
+TEXTURE_LENGTH = 0.24
+"""Length of colon that one repeat of the texture covers [m]."""
+
+
+class StageError(ValueError):
+    """A stage file cannot be used; the message names file, prim and attribute, what was found and how to mend it."""
+
+    def __init__(self, path: str | Path, prim: str, attribute: str, found: str, mend: str) -> None:
+        """Builds the message from its five parts; an empty prim or attribute is left out."""
+        where = "".join([f", prim {prim}" if prim else "", f", attribute '{attribute}'" if attribute else ""])
+        super().__init__(f"{path}{where}: {found}. {mend}")
+
+
+@dataclass(frozen=True)
+class WallMesh:
+    """Tetrahedral wall on a grid of rings and sectors: vertex ``layer * rings * sectors + ring * sectors + sector``."""
+
+    points: np.ndarray
+    """Rest positions [m], shape (V, 3), float32."""
+    tets: np.ndarray
+    """Vertex indices of each tetrahedron, positive volume, shape (T, 4), int32."""
+    anchor: np.ndarray
+    """0 free, 1 elastic attachment, 2 fixed, shape (V,), int32."""
+    segment: np.ndarray
+    """Index into ``SEGMENTS``, shape (V,), int32."""
+    ring: np.ndarray
+    """Ring number along the centreline, from the anal verge, shape (V,), int32."""
+    layer: np.ndarray
+    """0 for the lumen side, then outwards, shape (V,), int32."""
+    frame_neighbors: np.ndarray
+    """Next ring, previous ring, next around, previous around; itself where there is none, shape (V, 4), int32."""
+    ring_arc: np.ndarray
+    """Arc length of each ring along the centreline at rest [m], shape (R,), float32."""
+
+    @property
+    def num_rings(self) -> int:
+        """Number of rings R."""
+        return len(self.ring_arc)
+
+    @property
+    def num_sectors(self) -> int:
+        """Number of vertices around one ring of one layer."""
+        return int(np.count_nonzero((self.ring == 0) & (self.layer == 0)))
+
+
+@dataclass(frozen=True)
+class VisualMesh:
+    """Inner surface as the camera sees it, skinned to the wall's inner layer."""
+
+    points: np.ndarray
+    """Rest positions [m], shape (M, 3), float32."""
+    faces: np.ndarray
+    """Triangles, counter-clockwise as seen from the lumen, shape (F, 3), int32."""
+    normals: np.ndarray
+    """Unit normals towards the lumen, shape (M, 3), float32."""
+    uv: np.ndarray
+    """Texture coordinates: u turns around the lumen, v along it, one unit each repeat of the texture, which covers
+    :data:`TEXTURE_LENGTH`. Both may leave 0 to 1; shape (M, 2), float32."""
+    tint: np.ndarray
+    """Above 0 on polyps, below 0 inside diverticula, in [-1, 1], shape (M,), float32."""
+    skin_indices: np.ndarray
+    """Wall vertices that carry each vertex, shape (M, 4), int32."""
+    skin_weights: np.ndarray
+    """Their weights, summing to 1, shape (M, 4), float32."""
+
+
+@dataclass(frozen=True)
+class Centerline:
+    """Centreline of the lumen from the anal verge to the caecal pole."""
+
+    points: np.ndarray
+    """Positions [m], shape (C, 3), float32."""
+    arc: np.ndarray
+    """Arc length s from the anal verge [m], shape (C,), float32."""
+    radius: np.ndarray
+    """Mean lumen radius between folds [m], shape (C,), float32."""
+    segment: np.ndarray
+    """Index into ``SEGMENTS``, shape (C,), int32."""
+
+
+@dataclass(frozen=True)
+class TissueMaterial:
+    """Isotropic elastic material of the wall."""
+
+    youngs_modulus: float = 5.0e6
+    """Young's modulus [Pa]. The ARCGym paper's value; distended human colon in vivo is about ten times softer."""
+    poissons_ratio: float = 0.49
+    """Poisson's ratio: nearly incompressible soft tissue, as in the ARCGym paper."""
+    density: float = 1040.0
+    """Mass density [kg/m^3], soft tissue."""
+
+
+@dataclass(frozen=True)
+class ColonStage:
+    """Everything a stage file says about one colon."""
+
+    name: str
+    """Short name, such as ``colon_1``."""
+    wall: WallMesh
+    """What is simulated."""
+    visual: VisualMesh
+    """Fine surface for videos (USD purpose ``render``)."""
+    visual_proxy: VisualMesh
+    """Coarse surface for policy images (USD purpose ``proxy``)."""
+    centerline: Centerline
+    """Centreline with radius and segment."""
+    landmarks: dict[str, float]
+    """Arc length s of each landmark [m], in ascending order."""
+    material: TissueMaterial
+    """Tissue of the wall."""
+    albedo_texture: Path
+    """Colour of the mucosa, periodic in both directions."""
+    detail_texture: Path
+    """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.generator.texture`)."""
+    metadata: dict[str, Any] = field(default_factory=dict)
+    """Provenance, licence, patient, frame."""
+
+    @property
+    def length(self) -> float:
+        """Length of the centreline [m]."""
+        return float(self.centerline.arc[-1])
+
+    def segment_bounds(self) -> dict[str, tuple[float, float]]:
+        """Returns arc length at start and end [m] of each segment that the colon has."""
+        arc, code = self.centerline.arc, self.centerline.segment
+        starts = {SEGMENTS[k]: float(arc[np.argmax(code == k)]) for k in dict.fromkeys(code.tolist())}
+        ends = [*list(starts.values())[1:], self.length]
+        return {name: (start, end) for (name, start), end in zip(starts.items(), ends, strict=True)}
+
+    def segment_at(self, s: float) -> str:
+        """Returns the segment at arc length ``s`` [m]; beyond either end, the last one there."""
+        bounds = self.segment_bounds()
+        return next((name for name, (_, end) in bounds.items() if s < end), list(bounds)[-1])
+
+    def segment_nodes(self, name: str) -> np.ndarray:
+        """Returns the wall vertices of a segment, shape (n,), int."""
+        return np.flatnonzero(self.wall.segment == segment_index(name))

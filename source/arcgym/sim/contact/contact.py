@@ -1,0 +1,131 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Contact search between all links and the lumen, world by world."""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from arcgym.sim.contact import contact_kernels as kernels
+from arcgym.sim.simulation_cfg import ContactCfg
+from arcgym.sim.wall.wall_topology import LumenTopology
+
+SPAN = 4
+"""Rings that a link may cross in one physics step."""
+
+
+class ContactSearch:
+    """Finds the contacts of every link with the inner wall faces near it.
+
+    A link's ring (its bin along the centreline) is tracked from step to step, so that only a few hundred faces are
+    tested a link and a neighbouring loop of the colon, however close, is never mistaken for its own.
+    """
+
+    def __init__(
+        self,
+        cfg: ContactCfg,
+        surface_offset: float,
+        topology: LumenTopology,
+        vertex_ring: np.ndarray,
+        half_length: np.ndarray,
+        radius: np.ndarray,
+        num_envs: int,
+        device: str,
+    ):
+        """Allocate the search.
+
+        Args:
+            cfg: Contact settings.
+            surface_offset: Distance of the lumen from its faces, towards the axis [m].
+            topology: Lumen faces of one world.
+            vertex_ring: Ring of each wall vertex, shape (V,).
+            half_length: Half the length of each link's axis [m], shape (L,).
+            radius: Link radii [m], shape (L,).
+            num_envs: Worlds, W.
+            device: Warp device.
+        """
+        self.num_envs, self.device = num_envs, device
+        self.link_count, self.vertex_count, self.ring_count = len(radius), len(vertex_ring), len(topology.rings)
+        self.surface = self._surface(topology, cfg.search_reach)
+        self.links = kernels.LinkShapes()
+        self.links.half_length = wp.array(half_length, dtype=float, device=device)
+        self.links.radius = wp.array(radius, dtype=float, device=device)
+        self.law = self._law(cfg)
+        self.law.wall_radius += surface_offset
+        self.law.widest = 2.0 * topology.radius + cfg.search_gap
+        self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
+        self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
+        self.centres = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
+        self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
+        self.away = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
+        shape = (num_envs, self.link_count, topology.candidates(cfg.search_reach))
+        self.distance = wp.zeros(shape, dtype=float, device=device)
+        self.records = self._records(cfg.capacity)
+
+    def _surface(self, topology: LumenTopology, reach: int) -> kernels.LumenSurface:
+        surface = kernels.LumenSurface()
+        for name in ("rings", "faces", "neighbors", "ring_start"):
+            setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
+        surface.reach = reach
+        return surface
+
+    def _law(self, cfg: ContactCfg) -> kernels.ContactLaw:
+        law = kernels.ContactLaw()
+        for name in ("stiffness", "hardening", "damping", "slip_velocity", "wall_radius", "search_gap"):
+            setattr(law, name, getattr(cfg, name))
+        return law
+
+    def _records(self, capacity: int) -> kernels.ContactRecords:
+        rows = self.num_envs * self.link_count
+        records = kernels.ContactRecords()
+        records.capacity = capacity
+        records.count = wp.zeros(rows, dtype=int, device=self.device)
+        records.face = wp.zeros(rows * capacity, dtype=int, device=self.device)
+        records.corners = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
+        records.way = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+        records.bary = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+        for name in ("distance", "weight"):
+            setattr(records, name, wp.zeros(rows * capacity, dtype=float, device=self.device))
+        records.normal = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+        records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
+        records.vertex_next = wp.full(3 * rows * capacity, -1, dtype=int, device=self.device)
+        records.ring_head = wp.full((self.ring_count, self.num_envs), -1, dtype=int, device=self.device)
+        records.ring_next = wp.full(rows * capacity, -1, dtype=int, device=self.device)
+        return records
+
+    def update_centres(self, x: wp.array) -> None:
+        """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W)."""
+        wp.launch(
+            kernels.ring_centres, (self.num_envs, self.ring_count), [x, self.surface, self.centres], device=self.device
+        )
+
+    def track(self, body_q: wp.array) -> None:
+        """Follow each link's ring; links whose ring is -1 are searched along the whole colon."""
+        shape = (self.num_envs, self.link_count)
+        wp.launch(kernels.track_rings, shape, [self.centres, body_q, SPAN, self.ring, self.away], device=self.device)
+
+    def detect(self, x: wp.array, body_q: wp.array) -> None:
+        """Fill the contact records for wall positions ``x`` (V, W) and link poses ``body_q`` (W*L,)."""
+        self.update_centres(x)
+        self.track(body_q)
+        wp.launch(
+            kernels.face_distances,
+            self.distance.shape,
+            [x, body_q, self.links, self.surface, self.law, self.ring, self.away, self.distance],
+            device=self.device,
+        )
+        links = (self.num_envs, self.link_count)
+        args = [self.surface, self.ring, self.distance, self.records]
+        wp.launch(kernels.select_contacts, links, args, device=self.device)
+        args = [x, body_q, self.links, self.surface, self.records]
+        wp.launch(kernels.place_contacts, (*links, self.records.capacity), args, device=self.device)
+        wp.launch(kernels.clear_contacts, links, [self.links, self.records], device=self.device)
+        self.records.vertex_head.fill_(-1)
+        self.records.ring_head.fill_(-1)
+        wp.launch(
+            kernels.build_lists,
+            self.num_envs,
+            [self.vertex_ring, self.link_count, self.records],
+            device=self.device,
+        )

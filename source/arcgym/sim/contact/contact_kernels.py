@@ -1,0 +1,386 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Narrow phase between capsule links and the inner wall, binned along the centreline, and the contact law.
+
+Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candidate faces a link, V wall vertices.
+"""
+
+import warp as wp
+
+from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle, segment_triangle_mean
+from arcgym.utils import warp_setup  # noqa: F401
+
+FAR = wp.constant(1.0e9)
+BLUR = wp.constant(5.0e-5)
+"""How much farther than the closest point another point of a face may be and still draw the contact to it [m]."""
+RIM = wp.constant(0.1)
+"""Barycentric coordinate under which the face beyond the opposite edge shares a contact."""
+BEHIND = wp.constant(-0.5)
+"""Cosine between the way from axis to wall and the wall's normal, under which the axis is behind the wall."""
+SHARE = wp.constant(0.45)
+"""Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
+HARDEST = wp.constant(3.0)
+"""Depth beyond which a contact does not harden any more, in multiples of its hardening depth."""
+CLEAR = wp.constant(0.25)
+"""Share of its radius by which a link's axis must stay off the wall to count as inside."""
+
+
+@wp.struct
+class LinkShapes:
+    """Capsules of one world's links, axis along the link's local Z."""
+
+    half_length: wp.array(dtype=float)  # [m], shape (L,)
+    radius: wp.array(dtype=float)  # [m], shape (L,)
+
+
+@wp.struct
+class LumenSurface:
+    """Inner faces of one world's wall, sorted by ring; normals point from the lumen into the wall."""
+
+    rings: wp.array2d(dtype=int)  # inner vertices of each ring, padded with the first, shape (R, S)
+    faces: wp.array2d(dtype=int)  # shape (F, 3)
+    neighbors: wp.array2d(dtype=int)  # face across the edge opposite to each corner or -1, shape (F, 3)
+    ring_start: wp.array(dtype=int)  # first face of each ring, shape (R + 1,)
+    reach: int  # rings searched on either side of a link's own
+
+
+@wp.struct
+class ContactRecords:
+    """Contacts of every link: up to ``capacity`` slots a link, one for each face near it.
+
+    Everything about a contact is a continuous function of where link and wall are, so that nothing flutters.
+    """
+
+    capacity: int
+    count: wp.array(dtype=int)  # shape (W*L,)
+    face: wp.array(dtype=int)  # shape (W*L*capacity,)
+    corners: wp.array(dtype=wp.vec3i)  # the face's three wall vertices
+    bary: wp.array(dtype=wp.vec3)
+    distance: wp.array(dtype=float)  # of the link's axis from the face [m]
+    weight: wp.array(dtype=float)  # share of the contact stiffness
+    way: wp.array(dtype=wp.vec3)  # unit vector there from the link's axis
+    normal: wp.array(dtype=wp.vec3)  # outward normal of the wall there at detection
+    vertex_head: wp.array2d(dtype=int)  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
+    vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
+    ring_head: wp.array2d(dtype=int)  # first record whose lowest ring is this one, shape (R, W)
+    ring_next: wp.array(dtype=int)  # shape (W*L*capacity,)
+
+
+@wp.struct
+class ContactLaw:
+    """Penalty contact with regularised Coulomb friction."""
+
+    stiffness: float  # of a shallow contact inside a face [N/m]
+    hardening: float  # depth at which the stiffness has doubled, as a secant [m]
+    damping: float  # [N s/m], approach only
+    slip_velocity: float  # speed under which friction is viscous [m/s]
+    wall_radius: float  # half the skin that the wall adds to each link [m]
+    search_gap: float  # distance up to which records are kept [m]
+    widest: float  # links farther than this from the centre of their ring touch nothing [m]
+
+
+@wp.kernel
+def ring_centres(x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, centres: wp.array2d(dtype=wp.vec3)):
+    """Mean of each ring's inner vertices. Launch (W, R)."""
+    w, r = wp.tid()
+    n = surface.rings.shape[1]
+    total = wp.vec3(0.0)
+    for k in range(n):
+        total += x[surface.rings[r, k], w]
+    centres[w, r] = total / float(n)
+
+
+@wp.kernel
+def track_rings(
+    centres: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    span: int,
+    ring: wp.array2d(dtype=int),
+    away: wp.array2d(dtype=float),
+):
+    """Ring nearest to each link among ``span`` on either side of the last one, all of them where it is -1; and how far.
+
+    A link whose centre is out of the anus, before the first ring, is FAR, for the wall has no outside. Launch (W, L).
+    """
+    w, link = wp.tid()
+    p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
+    last = ring[w, link]
+    lo = int(0)
+    hi = centres.shape[1]
+    if last >= 0:
+        lo = wp.max(0, last - span)
+        hi = wp.min(hi, last + span + 1)
+    best = float(FAR)
+    found = last
+    for r in range(lo, hi):
+        d = wp.length_sq(p - centres[w, r])
+        if d < best:
+            best = d
+            found = r
+    ring[w, link] = found
+    away[w, link] = wp.sqrt(best)
+    if found == 0 and wp.dot(p - centres[w, 0], centres[w, 1] - centres[w, 0]) < 0.0:
+        away[w, link] = FAR
+
+
+@wp.func
+def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> bool:
+    """Whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
+    gap = wp.abs(wp.dot(normal, a)) - wp.abs(wp.dot(normal, axis))
+    return gap <= 0.0 or gap * gap <= limit * limit * wp.length_sq(normal)
+
+
+@wp.kernel
+def face_distances(
+    x: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    links: LinkShapes,
+    surface: LumenSurface,
+    law: ContactLaw,
+    ring: wp.array2d(dtype=int),
+    away: wp.array2d(dtype=float),
+    distance: wp.array3d(dtype=float),
+):
+    """Distance from each link's axis to each candidate face, or FAR. Launch (W, L, M)."""
+    w, link, m = wp.tid()
+    if away[w, link] > law.widest + links.half_length[link] + links.radius[link]:
+        distance[w, link, m] = FAR
+        return
+    nr = surface.ring_start.shape[0] - 1
+    face = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)] + m
+    d = float(FAR)
+    if face < surface.ring_start[wp.min(nr, ring[w, link] + surface.reach + 1)]:
+        a = x[surface.faces[face, 0], w]
+        b = x[surface.faces[face, 1], w]
+        c = x[surface.faces[face, 2], w]
+        pose = body_q[w * ring.shape[1] + link]
+        centre = wp.transform_get_translation(pose)
+        axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+        limit = links.radius[link] + law.wall_radius + law.search_gap
+        g = (a + b + c) / 3.0
+        size = wp.sqrt(wp.max(wp.length_sq(a - g), wp.max(wp.length_sq(b - g), wp.length_sq(c - g))))
+        t = segment_parameter(g, centre - axis, centre + axis)
+        near = wp.length_sq(g - centre - (2.0 * t - 1.0) * axis) < (limit + size) * (limit + size)
+        if near and plane_reached(a - centre, wp.cross(b - a, c - a), axis, limit):
+            u = segment_triangle(centre - axis, centre + axis, a, b, c)
+            if u[3] < limit:
+                d = u[3]
+    distance[w, link, m] = d
+
+
+@wp.func
+def face_normal(surface: LumenSurface, face: int, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
+    """Unit normal of a face, from the lumen into the wall."""
+    a = x[surface.faces[face, 0], w]
+    return wp.normalize(wp.cross(x[surface.faces[face, 1], w] - a, x[surface.faces[face, 2], w] - a))
+
+
+@wp.func
+def rim_share(u: float) -> float:
+    """0 away from the edge opposite to a corner with barycentric coordinate ``u``, 1 on it."""
+    return 1.0 - wp.clamp(u / RIM, 0.0, 1.0)
+
+
+@wp.func
+def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
+    """Normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
+
+    The face's own normal may be at more than a right angle to the way off a sharp fold, and then tells the wrong side
+    (Baerentzen and Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal").
+    """
+    normal = face_normal(surface, face, x, w)
+    for k in range(3):
+        other = surface.neighbors[face, k]
+        if u[k] < RIM and other >= 0:
+            normal += rim_share(u[k]) * face_normal(surface, other, x, w)
+    return wp.normalize(normal)
+
+
+@wp.func
+def face_corners(surface: LumenSurface, face: int) -> wp.vec3i:
+    """Vertices of a face."""
+    return wp.vec3i(surface.faces[face, 0], surface.faces[face, 1], surface.faces[face, 2])
+
+
+@wp.struct
+class Place:
+    """Where a face comes closest to a link."""
+
+    bary: wp.vec3
+    normal: wp.vec3  # of the wall there
+    way: wp.vec3  # unit vector there from the link's axis
+
+
+@wp.func
+def place_on(
+    surface: LumenSurface,
+    face: int,
+    x: wp.array2d(dtype=wp.vec3),
+    w: int,
+    centre: wp.vec3,
+    axis: wp.vec3,
+    distance: float,
+) -> Place:
+    """Place on ``face`` closest to the link from ``centre`` - ``axis`` to ``centre`` + ``axis``."""
+    f = face_corners(surface, face)
+    out = Place()
+    out.bary = segment_triangle_mean(centre - axis, centre + axis, x[f[0], w], x[f[1], w], x[f[2], w], distance, BLUR)
+    out.normal = surface_normal(surface, face, out.bary, x, w)
+    p = corner_point(x, f, out.bary, w)
+    t = segment_parameter(p, centre - axis, centre + axis)
+    out.way = wp.normalize(p - centre - (2.0 * t - 1.0) * axis)
+    return out
+
+
+@wp.func
+def free_slot(records: ContactRecords, distance: wp.array3d(dtype=float), w: int, link: int, n: int, d: float) -> int:
+    """Slot for a contact at distance ``d``: the next one, or the farthest contact's if all are taken, or -1."""
+    row = w * distance.shape[1] + link
+    if n < records.capacity:
+        return row * records.capacity + n
+    worst = int(-1)
+    for k in range(records.capacity):
+        slot = row * records.capacity + k
+        if records.distance[slot] > d:
+            d = records.distance[slot]
+            worst = slot
+    return worst
+
+
+@wp.kernel
+def select_contacts(
+    surface: LumenSurface, ring: wp.array2d(dtype=int), distance: wp.array3d(dtype=float), records: ContactRecords
+):
+    """Make a record of every face near a link, the nearest where there are too many. Launch (W, L)."""
+    w, link = wp.tid()
+    row = w * ring.shape[1] + link
+    first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
+    n = int(0)
+    for m in range(distance.shape[2]):
+        d = distance[w, link, m]
+        if d < FAR:
+            slot = free_slot(records, distance, w, link, n, d)
+            if slot >= 0:
+                records.face[slot] = first + m
+                records.distance[slot] = d
+                n = wp.min(n + 1, records.capacity)
+    records.count[row] = n
+
+
+@wp.kernel
+def place_contacts(
+    x: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array(dtype=wp.transform),
+    links: LinkShapes,
+    surface: LumenSurface,
+    records: ContactRecords,
+):
+    """Find where every recorded face comes closest to its link. Launch (W, L, capacity)."""
+    w, link, k = wp.tid()
+    row = w * links.radius.shape[0] + link
+    if k >= records.count[row]:
+        return
+    slot = row * records.capacity + k
+    pose = body_q[row]
+    centre = wp.transform_get_translation(pose)
+    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
+    face = records.face[slot]
+    place = place_on(surface, face, x, w, centre, axis, records.distance[slot])
+    u = place.bary
+    records.corners[slot] = face_corners(surface, face)
+    records.bary[slot] = u
+    records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
+    records.normal[slot] = place.normal
+    records.way[slot] = place.way
+
+
+@wp.kernel
+def clear_contacts(links: LinkShapes, records: ContactRecords):
+    """Keep the wall off from all sides of a link that is clear of it. Launch (W, L).
+
+    A link whose axis is clear of the wall has not gone through and will not in this step. The far side of a fold, whose
+    normal tells nothing, pushes it on then, too.
+    """
+    w, link = wp.tid()
+    row = w * links.radius.shape[0] + link
+    nearest = float(FAR)
+    for k in range(records.count[row]):
+        nearest = wp.min(nearest, records.distance[row * records.capacity + k])
+    if nearest > CLEAR * links.radius[link]:
+        for k in range(records.count[row]):
+            slot = row * records.capacity + k
+            records.normal[slot] = records.way[slot]
+
+
+@wp.kernel
+def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRecords):
+    """Thread each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
+
+    One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
+    """
+    w = wp.tid()
+    for step in range(links):
+        row = (w + 1) * links - 1 - step
+        n = records.count[row]
+        for back in range(n):
+            slot = row * records.capacity + n - 1 - back
+            face = records.corners[slot]
+            lowest = records.ring_head.shape[0]
+            for k in range(3):
+                entry = 3 * slot + k
+                v = face[k]
+                records.vertex_next[entry] = records.vertex_head[v, w]
+                records.vertex_head[v, w] = entry
+                lowest = wp.min(lowest, vertex_ring[v])
+            records.ring_next[slot] = records.ring_head[lowest, w]
+            records.ring_head[lowest, w] = slot
+
+
+@wp.func
+def contact_push(law: ContactLaw, depth: float) -> wp.vec2:
+    """Normal force k d (1 + min(d / h, 3)^2) of a full contact [N] at a depth d > 0, and its stiffness [N/m]."""
+    hard = wp.min(depth / law.hardening, HARDEST)
+    secant = 1.0 + hard * hard
+    if hard >= HARDEST:
+        return law.stiffness * wp.vec2(depth * secant, secant)
+    return law.stiffness * wp.vec2(depth * secant, 1.0 + 3.0 * hard * hard)
+
+
+@wp.struct
+class Touch:
+    """Gap [m] (negative inside), unit normal from the scope into the wall, and axis point of one contact."""
+
+    gap: float
+    normal: wp.vec3
+
+
+@wp.func
+def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: float, radius: float) -> Touch:
+    """Signed gap of wall point ``p`` to a capsule.
+
+    A point on the lumen side of the axis, judged by the wall's own normal, counts as behind it: the gap is then
+    negative however far the link has gone through, so that a link is always pushed back inside.
+    """
+    centre = wp.transform_get_translation(pose)
+    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, half_length))
+    t = segment_parameter(p, centre - axis, centre + axis)
+    r = p - centre - (2.0 * t - 1.0) * axis
+    d = wp.length(r)
+    out = Touch()
+    out.normal = wall_normal
+    if d > 1.0e-6:
+        out.normal = r / d
+    if wp.dot(out.normal, wall_normal) < BEHIND:
+        out.normal = -out.normal
+        d = -d
+    out.gap = d - radius
+    return out
+
+
+@wp.func
+def slip_scale(speed: float, limit: float) -> float:
+    """1/speed above ``limit``, smoothly bounded below it: friction = mu N * scale * slip (Li et al. 2020, IPC)."""
+    if speed > limit:
+        return 1.0 / speed
+    return (2.0 - speed / limit) / limit

@@ -1,0 +1,117 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Contact loads on the links, implicit in their motion. W worlds, L links, V wall vertices a world."""
+
+import warp as wp
+
+from arcgym.sim.contact.contact_kernels import (
+    CLEAR,
+    ContactLaw,
+    ContactRecords,
+    LinkShapes,
+    contact_push,
+    slip_scale,
+    touch,
+)
+from arcgym.sim.geometry_kernels import corner_point
+from arcgym.sim.scope.scope_kernels import Articulated, LinkLoads, moved
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+@wp.func
+def contact_load(
+    law: ContactLaw,
+    share: float,
+    friction: float,
+    gap: float,
+    normal: wp.vec3,
+    lin: wp.vec3,
+    wall_v: wp.vec3,
+    dt: float,
+) -> Articulated:
+    """Load of one contact, a ``share`` of a full one, at its point, which moves at ``lin``; the wall's at ``wall_v``.
+
+    The normal spring and damper act with their values at the end of the step, the spring's stiffness as a secant that
+    lets it not pull. Friction is a damper that gives Coulomb's
+    force at the present slip: it brakes and holds at any friction coefficient, and creeps below the slip velocity.
+    """
+    out = Articulated()
+    end = gap - dt * wp.dot(normal, lin)
+    if end < 0.0:
+        relative = lin - wall_v
+        approach = wp.dot(normal, relative)
+        damping = float(0.0)
+        if approach > 0.0:
+            damping = share * law.damping
+        slip = relative - approach * normal
+        now = share * contact_push(law, wp.max(-gap, 0.0))
+        drag = friction * now[0] * slip_scale(wp.length(slip), law.slip_velocity)
+        push = share * contact_push(law, -end)
+        stiffness = wp.max(-push[0] / end, 0.5 * push[1])
+        out.force = (damping * approach + push[0]) * normal + drag * slip
+        along = wp.outer(normal, normal)
+        out.ll = (dt * (damping + dt * stiffness)) * along + (dt * drag) * (wp.identity(n=3, dtype=float) - along)
+    return out
+
+
+@wp.kernel
+def load_contacts(
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    com: wp.array(dtype=wp.vec3),
+    x: wp.array2d(dtype=wp.vec3),
+    v: wp.array2d(dtype=wp.vec3),
+    links: LinkShapes,
+    records: ContactRecords,
+    law: ContactLaw,
+    friction: wp.array(dtype=float),
+    dt: float,
+    loads: LinkLoads,
+    pierced: wp.array(dtype=int),
+):
+    """Sum the contacts of each link with the wall where it is. Launch (L, W).
+
+    Sets ``pierced``, shape (W,), where a link's axis is so close to the wall that it may get, or be, behind it.
+    """
+    link, w = wp.tid()
+    row = w * loads.wrench.shape[0] + link
+    pose = body_q[row]
+    centre = wp.transform_point(pose, com[link])
+    total = Articulated()
+    for k in range(records.count[row]):
+        slot = row * records.capacity + k
+        f = records.corners[slot]
+        u = records.bary[slot]
+        wall_v = corner_point(v, f, u, w)
+        p = corner_point(x, f, u, w)
+        radius = links.radius[link] + law.wall_radius
+        c = touch(p, records.normal[slot], pose, links.half_length[link], radius)
+        if c.gap + radius < CLEAR * links.radius[link]:
+            pierced[w] = 1
+        lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - centre)
+        one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)
+        total.ll += one.ll
+        total.la += one.la
+        total.aa += one.aa
+        total.force += one.force
+        total.torque += one.torque
+    loads.ll[link, w] = total.ll
+    loads.la[link, w] = total.la
+    loads.aa[link, w] = total.aa
+    loads.wrench[link, w] = wp.spatial_vector(-total.force, -total.torque)
+
+
+@wp.kernel
+def record_forces(
+    loads: LinkLoads,
+    acc_lin: wp.array2d(dtype=wp.vec3),
+    acc_ang: wp.array2d(dtype=wp.vec3),
+    weight: float,
+    wall_force: wp.array(dtype=wp.vec3),
+):
+    """Add ``weight`` times each link's contact force at the end of the step to ``wall_force``. Launch (L, W)."""
+    link, w = wp.tid()
+    row = w * loads.wrench.shape[0] + link
+    given = loads.ll[link, w] * acc_lin[link, w] + loads.la[link, w] * acc_ang[link, w]
+    wall_force[row] = wall_force[row] + weight * (wp.spatial_top(loads.wrench[link, w]) - given)

@@ -1,0 +1,113 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Quantities derived from the state once a control step: tip, camera, place along the colon, broken worlds.
+
+W worlds, L links, R rings.
+"""
+
+import warp as wp
+
+from arcgym.sim.geometry_kernels import segment_parameter
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+@wp.kernel
+def collect_forces(step_force: wp.array(dtype=wp.vec3), total: wp.array(dtype=wp.vec3), peak: wp.array(dtype=float)):
+    """Add one physics step's mean force to the control step's sum and peak, and clear it. Launch (W*L,)."""
+    i = wp.tid()
+    f = step_force[i]
+    total[i] = total[i] + f
+    peak[i] = wp.max(peak[i], wp.length(f))
+    step_force[i] = wp.vec3(0.0)
+
+
+@wp.kernel
+def measure_forces(force: wp.array(dtype=wp.vec3), magnitude: wp.array(dtype=float)):
+    """Magnitude of each link's force [N]. Launch (W*L,)."""
+    i = wp.tid()
+    magnitude[i] = wp.length(force[i])
+
+
+@wp.kernel
+def read_tip(
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    links: int,
+    tip_offset: wp.vec3,
+    camera_offset: wp.transform,
+    tip_pose: wp.array(dtype=wp.transform),
+    tip_velocity: wp.array(dtype=wp.spatial_vector),
+    camera_pose: wp.array(dtype=wp.transform),
+):
+    """Pose and velocity of the front of the last link, and the camera's pose. Launch (W,)."""
+    w = wp.tid()
+    link = (w + 1) * links - 1
+    pose = body_q[link]
+    omega = wp.spatial_bottom(body_qd[link])
+    tip = wp.transform_point(pose, tip_offset)
+    tip_pose[w] = wp.transform(tip, wp.transform_get_rotation(pose))
+    arm = tip - wp.transform_get_translation(pose)
+    tip_velocity[w] = wp.spatial_vector(wp.spatial_top(body_qd[link]) + wp.cross(omega, arm), omega)
+    camera_pose[w] = wp.transform_multiply(pose, camera_offset)
+
+
+@wp.kernel
+def locate_tip(
+    tip_pose: wp.array(dtype=wp.transform),
+    centres: wp.array2d(dtype=wp.vec3),
+    ring_arc: wp.array(dtype=float),
+    link_ring: wp.array2d(dtype=int),
+    span: int,
+    arc: wp.array(dtype=float),
+    distance: wp.array(dtype=float),
+    direction: wp.array(dtype=wp.vec3),
+):
+    """Closest point of the deformed centreline to the tip, near the last link's ring. Launch (W,).
+
+    ``arc`` is in rest arc length [m]; before the first ring and beyond the last it goes on along the end segments.
+    """
+    w = wp.tid()
+    rings = centres.shape[1]
+    p = wp.transform_get_translation(tip_pose[w])
+    near = link_ring[w, link_ring.shape[1] - 1]
+    lo = int(0)
+    hi = rings - 1
+    if near >= 0:
+        lo = wp.max(0, near - span)
+        hi = wp.min(rings - 1, near + span)
+    best = float(1.0e9)
+    for r in range(lo, hi):
+        a = centres[w, r]
+        b = centres[w, r + 1]
+        t = segment_parameter(p, a, b)
+        d = wp.length(p - a - t * (b - a))
+        if d < best:
+            best = d
+            if (r == 0 and t <= 0.0) or (r == rings - 2 and t >= 1.0):
+                t = wp.dot(p - a, b - a) / wp.max(wp.length_sq(b - a), 1.0e-12)
+            arc[w] = ring_arc[r] + t * (ring_arc[r + 1] - ring_arc[r])
+            distance[w] = wp.length(p - a - t * (b - a))
+            direction[w] = wp.normalize(b - a)
+
+
+@wp.func
+def broken(p: wp.vec3) -> bool:
+    """Whether a position is not finite or farther than 10 m away."""
+    return not (wp.abs(p[0]) < 10.0 and wp.abs(p[1]) < 10.0 and wp.abs(p[2]) < 10.0)
+
+
+@wp.kernel
+def flag_broken_points(x: wp.array2d(dtype=wp.vec3), flag: wp.array(dtype=int)):
+    """Mark worlds with a broken wall vertex. Launch (V, W)."""
+    i, w = wp.tid()
+    if broken(x[i, w]):
+        flag[w] = 1
+
+
+@wp.kernel
+def flag_broken_bodies(body_q: wp.array(dtype=wp.transform), per_world: int, flag: wp.array(dtype=int)):
+    """Mark worlds with a broken link. Launch (W*L,)."""
+    i = wp.tid()
+    if broken(wp.transform_get_translation(body_q[i])):
+        flag[i // per_world] = 1

@@ -1,0 +1,255 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""What the articulated-body algorithm of a serial chain works on: inertias, loads and joint forces at a step's start.
+
+Linearly implicit Euler: springs, dampers and contacts act with their values at the end of the step, to first order in
+the acceleration. All vectors have world axes. Inertias refer to the link's joint (its *anchor*; the centre of mass of a
+free root) and accelerations are those of the material point there, so that lengths stay short and float32 suffices.
+
+W worlds, L links, D degrees of freedom a world; scratch is world-fastest, shape (L, W) or (D, W).
+"""
+
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+@wp.struct
+class Chain:
+    """What one world's chain is made of."""
+
+    links: int  # L
+    dofs: int  # D
+    coords: int  # D, or D + 1 for a free root
+    free: int  # whether the root is free
+    parent_frame: wp.array(dtype=wp.transform)  # joint in the frame of the link before, shape (L,)
+    child_frame: wp.array(dtype=wp.transform)  # joint in the link's frame, shape (L,)
+    com: wp.array(dtype=wp.vec3)  # centre of mass in the link's frame [m], shape (L,)
+    mass: wp.array(dtype=float)  # [kg], shape (L,)
+    inertia: wp.array(dtype=wp.mat33)  # about the centre of mass, link's axes [kg m^2], shape (L,)
+    dof_start: wp.array(dtype=int)  # first degree of freedom of each link's joint, shape (L + 1,)
+    linear: wp.array(dtype=int)  # whether a degree of freedom slides, shape (D,)
+    axis: wp.array(dtype=wp.vec3)  # in the joint's frame, shape (D,)
+    stiffness: wp.array(dtype=float)  # of the drive [N/m or N m/rad], shape (D,)
+    damping: wp.array(dtype=float)  # of the drive, shape (D,)
+    effort: wp.array(dtype=float)  # largest force of the drive [N or N m], shape (D,)
+    armature: wp.array(dtype=float)  # [kg or kg m^2], shape (D,)
+    lower: wp.array(dtype=float)  # [m or rad], shape (D,)
+    upper: wp.array(dtype=float)  # [m or rad], shape (D,)
+    stop_stiffness: wp.array(dtype=float)  # beyond lower and upper, shape (D,)
+    stop_damping: wp.array(dtype=float)  # shape (D,)
+
+
+@wp.struct
+class LinkLoads:
+    """Forces on the links that resist their acceleration, about the centre of mass.
+
+    The force at the end of the step is ``wrench`` less the inertias times the link's acceleration: ``wrench`` holds for
+    a link that keeps its velocity v, and a spring K and damper C add dt (C + dt K) to the inertias.
+    """
+
+    wrench: wp.array2d(dtype=wp.spatial_vector)  # force [N], torque [N m], shape (L, W)
+    ll: wp.array2d(dtype=wp.mat33)  # force by linear acceleration [kg], shape (L, W)
+    la: wp.array2d(dtype=wp.mat33)  # force by angular acceleration [kg m], shape (L, W)
+    aa: wp.array2d(dtype=wp.mat33)  # torque by angular acceleration [kg m^2], shape (L, W)
+
+
+@wp.struct
+class ChainWork:
+    """Scratch of a step, and what can be read after it."""
+
+    ll: wp.array2d(dtype=wp.mat33)  # inertia of each link and its loads about its anchor, shape (L, W)
+    la: wp.array2d(dtype=wp.mat33)
+    aa: wp.array2d(dtype=wp.mat33)
+    force: wp.array2d(dtype=wp.vec3)  # bias force and torque, shape (L, W)
+    torque: wp.array2d(dtype=wp.vec3)
+    arm: wp.array2d(dtype=wp.vec3)  # from the anchor before to the link's own [m], shape (L, W)
+    lever: wp.array2d(dtype=wp.vec3)  # from the anchor to the centre of mass [m], shape (L, W)
+    drift_lin: wp.array2d(dtype=wp.vec3)  # acceleration of the joint at constant joint velocities, shape (L, W)
+    drift_ang: wp.array2d(dtype=wp.vec3)
+    axis: wp.array2d(dtype=wp.vec3)  # shape (D, W)
+    drive: wp.array2d(dtype=float)  # drive's force if the joint keeps its velocity, shape (D, W)
+    drive_inertia: wp.array2d(dtype=float)  # its drop by acceleration, shape (D, W)
+    stop: wp.array2d(dtype=float)  # the same of the stop, shape (D, W)
+    stop_inertia: wp.array2d(dtype=float)
+    gain_lin: wp.array2d(dtype=wp.vec3)  # joint acceleration = offset - gain . parent's acceleration, shape (D, W)
+    gain_ang: wp.array2d(dtype=wp.vec3)
+    offset: wp.array2d(dtype=float)
+    drive_force: wp.array2d(dtype=float)  # force of each drive at the end of the step [N or N m], shape (D, W)
+    acc_lin: wp.array2d(dtype=wp.vec3)  # of each centre of mass [m/s^2], shape (L, W)
+    acc_ang: wp.array2d(dtype=wp.vec3)  # [rad/s^2], shape (L, W)
+
+
+@wp.struct
+class Articulated:
+    """Force [N] and torque [N m] at a point as functions of its linear a and angular acceleration b.
+
+    force = ll a + la b + force, torque = la^T a + aa b + torque.
+    """
+
+    ll: wp.mat33
+    la: wp.mat33
+    aa: wp.mat33
+    force: wp.vec3
+    torque: wp.vec3
+
+
+@wp.func
+def skew_times(r: wp.vec3, m: wp.mat33) -> wp.mat33:
+    """Matrix of the cross products of ``r`` with the columns of ``m``."""
+    return wp.matrix_from_rows(r[1] * m[2] - r[2] * m[1], r[2] * m[0] - r[0] * m[2], r[0] * m[1] - r[1] * m[0])
+
+
+@wp.func
+def moved(body: Articulated, r: wp.vec3) -> Articulated:
+    """The same body seen from a point that ``r`` leads away from."""
+    out = Articulated()
+    out.ll = body.ll
+    out.la = body.la + wp.transpose(skew_times(r, body.ll))
+    out.aa = body.aa + skew_times(r, out.la) + wp.transpose(skew_times(r, body.la))
+    out.force = body.force
+    out.torque = body.torque + wp.cross(r, body.force)
+    return out
+
+
+@wp.func
+def anchor(chain: Chain, link: int, pose: wp.transform) -> wp.vec3:
+    """Point that a link's inertia and acceleration refer to."""
+    if link == 0 and chain.free == 1:
+        return wp.transform_point(pose, chain.com[0])
+    return wp.transform_point(pose, wp.transform_get_translation(chain.child_frame[link]))
+
+
+@wp.func
+def link_inertia(
+    chain: Chain, link: int, pose: wp.transform, omega: wp.vec3, lever: wp.vec3, load: Articulated
+) -> Articulated:
+    """A link with its loads (about the centre of mass), seen from its anchor."""
+    rot = wp.quat_to_matrix(wp.transform_get_rotation(pose))
+    inertia = rot * chain.inertia[link] * wp.transpose(rot)
+    centripetal = wp.cross(omega, wp.cross(omega, lever))
+    out = load
+    out.ll += chain.mass[link] * wp.identity(n=3, dtype=float)
+    out.aa += inertia
+    out.force += out.ll * centripetal
+    out.torque += wp.transpose(out.la) * centripetal + wp.cross(omega, inertia * omega)
+    return moved(out, lever)
+
+
+@wp.func
+def contact_load(loads: LinkLoads, link: int, w: int) -> Articulated:
+    """Load of the contacts on one link."""
+    out = Articulated()
+    out.ll = loads.ll[link, w]
+    out.la = loads.la[link, w]
+    out.aa = loads.aa[link, w]
+    out.force = -wp.spatial_top(loads.wrench[link, w])
+    out.torque = -wp.spatial_bottom(loads.wrench[link, w])
+    return out
+
+
+@wp.func
+def prepare_axes(
+    chain: Chain,
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    joint_qd: wp.array(dtype=float),
+    here: wp.vec3,
+    link: int,
+    w: int,
+    work: ChainWork,
+):
+    """Axes and velocity products of a link's joint; its first axis is fixed in the link before, its last in its own."""
+    row = w * chain.links + link
+    parent = chain.parent_frame[link]
+    arm = wp.vec3(0.0)
+    spin = wp.vec3(0.0)
+    if link > 0:
+        parent = body_q[row - 1] * parent
+        arm = here - anchor(chain, link - 1, body_q[row - 1])
+        spin = wp.spatial_bottom(body_qd[row - 1])
+    child = body_q[row] * chain.child_frame[link]
+    drift_lin = wp.cross(spin, wp.cross(spin, arm))
+    drift_ang = wp.vec3(0.0)
+    first = chain.dof_start[link]
+    if link > 0 or chain.free == 0:
+        for d in range(first, chain.dof_start[link + 1]):
+            axis = wp.transform_vector(parent, chain.axis[d])
+            if d > first:
+                axis = wp.transform_vector(child, chain.axis[d])
+            work.axis[d, w] = axis
+            rate = axis * joint_qd[w * chain.dofs + d]
+            if chain.linear[d] == 1:
+                drift_lin += 2.0 * wp.cross(spin, rate)
+            else:
+                drift_ang += wp.cross(spin, rate)
+                spin += rate
+    work.arm[link, w] = arm
+    work.drift_lin[link, w] = drift_lin
+    work.drift_ang[link, w] = drift_ang
+
+
+@wp.kernel
+def prepare_links(
+    chain: Chain,
+    body_q: wp.array(dtype=wp.transform),
+    body_qd: wp.array(dtype=wp.spatial_vector),
+    body_f: wp.array(dtype=wp.spatial_vector),
+    joint_qd: wp.array(dtype=float),
+    resistance: wp.array2d(dtype=wp.spatial_vector),
+    loads: LinkLoads,
+    work: ChainWork,
+):
+    """Inertia, bias force, joint axes and velocity products of every link. Launch (L, W).
+
+    ``body_f`` loads the centres of mass; ``resistance`` is the diagonal of its drop by acceleration.
+    """
+    link, w = wp.tid()
+    row = w * chain.links + link
+    pose = body_q[row]
+    omega = wp.spatial_bottom(body_qd[row])
+    here = anchor(chain, link, pose)
+    lever = wp.transform_point(pose, chain.com[link]) - here
+    load = contact_load(loads, link, w)
+    load.ll += wp.diag(wp.spatial_top(resistance[link, w]))
+    load.aa += wp.diag(wp.spatial_bottom(resistance[link, w]))
+    load.force -= wp.spatial_top(body_f[row])
+    load.torque -= wp.spatial_bottom(body_f[row])
+    body = link_inertia(chain, link, pose, omega, lever, load)
+    work.ll[link, w] = body.ll
+    work.la[link, w] = body.la
+    work.aa[link, w] = body.aa
+    work.force[link, w] = body.force
+    work.torque[link, w] = body.torque
+    work.lever[link, w] = lever
+    prepare_axes(chain, body_q, body_qd, joint_qd, here, link, w, work)
+
+
+@wp.kernel
+def prepare_joints(
+    chain: Chain,
+    joint_q: wp.array(dtype=float),
+    joint_qd: wp.array(dtype=float),
+    target: wp.array(dtype=float),
+    joint_f: wp.array(dtype=float),
+    dt: float,
+    work: ChainWork,
+):
+    """Forces of drives and stops if the joints keep their velocities. Launch (D, W)."""
+    d, w = wp.tid()
+    if chain.free == 1 and d < 6:
+        return
+    i = w * chain.coords + d + chain.coords - chain.dofs
+    v = joint_qd[w * chain.dofs + d]
+    end = joint_q[i] + dt * v
+    work.drive[d, w] = chain.stiffness[d] * (target[i] - end) - chain.damping[d] * v
+    work.drive_inertia[d, w] = dt * (chain.damping[d] + dt * chain.stiffness[d])
+    stop = joint_f[w * chain.dofs + d]
+    stop_inertia = chain.armature[d]
+    beyond = wp.min(joint_q[i] - chain.lower[d], 0.0) + wp.max(joint_q[i] - chain.upper[d], 0.0)
+    if beyond != 0.0:
+        stop -= chain.stop_stiffness[d] * (beyond + dt * v) + chain.stop_damping[d] * v
+        stop_inertia += dt * (chain.stop_damping[d] + dt * chain.stop_stiffness[d])
+    work.stop[d, w] = stop
+    work.stop_inertia[d, w] = stop_inertia

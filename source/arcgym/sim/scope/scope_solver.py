@@ -1,0 +1,161 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Newton solver for scopes: one serial chain of joints a world, solved directly and implicitly in O(links)."""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401  isort: skip
+import newton
+from newton import JointType
+from newton.solvers import SolverBase
+
+from arcgym.sim.scope import scope_kernels as kernels
+from arcgym.sim.scope.aba_kernels import chain_kinematics, solve_chain
+
+JOINTS = (JointType.REVOLUTE, JointType.PRISMATIC, JointType.D6, JointType.FIXED)
+"""Joint types that may join two links, with at most two axes each."""
+
+
+class SolverArticulatedChain(SolverBase):
+    """Articulated-body algorithm with linearly implicit Euler steps.
+
+    Position drives (``control.joint_target_q``), stops and the loads in :attr:`loads` and :attr:`resistance` are
+    implicit and stable at any stiffness; ``state.body_f`` and ``control.joint_f`` act as they are. Gravity, joint
+    friction, velocity targets and contacts of the model are left to the caller. Steps may be made in place.
+    """
+
+    def __init__(self, model: newton.Model):
+        """Read the chain of the first world, and allocate the scratch of all.
+
+        Args:
+            model: Model whose worlds all hold the same single chain.
+
+        Raises:
+            ValueError: If the articulation is not a chain, or has joints of another kind.
+        """
+        super().__init__(model)
+        self.num_envs = max(1, model.world_count)
+        self.chain = self._chain()
+        links, dofs, worlds = self.chain.links, self.chain.dofs, self.num_envs
+        self.work = _scratch(kernels.ChainWork(), links, dofs, worlds, model.device)
+        self.loads = kernels.LinkLoads()
+        self.loads.wrench = wp.zeros((links, worlds), dtype=wp.spatial_vector, device=model.device)
+        for name in ("ll", "la", "aa"):
+            setattr(self.loads, name, wp.zeros((links, worlds), dtype=wp.mat33, device=model.device))
+        self.resistance = wp.zeros((links, worlds), dtype=wp.spatial_vector, device=model.device)
+        """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W)."""
+
+    def _chain(self) -> kernels.Chain:
+        model, worlds = self.model, self.num_envs
+        counts = [model.body_count, model.joint_dof_count, model.joint_coord_count]
+        links, dofs, coords = (count // worlds for count in counts)
+        _check_chain(model, links)
+        chain = kernels.Chain()
+        chain.links, chain.dofs, chain.coords, chain.free = links, dofs, coords, int(coords > dofs)
+        first = {
+            "parent_frame": (model.joint_X_p, links),
+            "child_frame": (model.joint_X_c, links),
+            "com": (model.body_com, links),
+            "mass": (model.body_mass, links),
+            "inertia": (model.body_inertia, links),
+            "dof_start": (model.joint_qd_start, links + 1),
+            "axis": (model.joint_axis, dofs),
+            "stiffness": (model.joint_target_ke, dofs),
+            "damping": (model.joint_target_kd, dofs),
+            "effort": (model.joint_effort_limit, dofs),
+            "armature": (model.joint_armature, dofs),
+            "lower": (model.joint_limit_lower, dofs),
+            "upper": (model.joint_limit_upper, dofs),
+            "stop_stiffness": (model.joint_limit_ke, dofs),
+            "stop_damping": (model.joint_limit_kd, dofs),
+        }
+        for name, (array, count) in first.items():
+            setattr(chain, name, wp.clone(array[:count]))
+        chain.linear = wp.array(_linear(model, links, dofs), dtype=int, device=model.device)
+        return chain
+
+    def forward(self, state: newton.State) -> None:
+        """Recompute the links' poses and velocities; to the bit what :meth:`step` leaves if nothing was changed."""
+        args = [self.chain, state.joint_q, state.joint_qd, state.body_q, state.body_qd]
+        wp.launch(chain_kinematics, self.num_envs, args, device=self.model.device)
+
+    def step(
+        self,
+        state_in: newton.State,
+        state_out: newton.State,
+        control: newton.Control,
+        contacts: newton.Contacts | None,
+        dt: float,
+    ) -> None:
+        """Advance all chains by ``dt`` [s]; ``contacts`` are not used."""
+        if state_in is not state_out:
+            wp.copy(state_out.joint_q, state_in.joint_q)
+            wp.copy(state_out.joint_qd, state_in.joint_qd)
+        chain, work, worlds, device = self.chain, self.work, self.num_envs, self.model.device
+        args = [chain, state_in.body_q, state_in.body_qd, state_in.body_f, state_in.joint_qd]
+        wp.launch(
+            kernels.prepare_links, (chain.links, worlds), [*args, self.resistance, self.loads, work], device=device
+        )
+        args = [chain, state_in.joint_q, state_in.joint_qd, control.joint_target_q, control.joint_f, dt, work]
+        wp.launch(kernels.prepare_joints, (chain.dofs, worlds), args, device=device)
+        args = [chain, state_in.body_q, state_in.body_qd, dt, work, state_out.joint_q, state_out.joint_qd]
+        wp.launch(solve_chain, worlds, [*args, state_out.body_q, state_out.body_qd], device=device)
+
+
+def _scratch(work: kernels.ChainWork, links: int, dofs: int, worlds: int, device: wp.Device) -> kernels.ChainWork:
+    for rows, dtype, names in (
+        (links, wp.mat33, "ll la aa"),
+        (links, wp.vec3, "force torque arm lever drift_lin drift_ang acc_lin acc_ang"),
+        (dofs, wp.vec3, "axis gain_lin gain_ang"),
+        (dofs, float, "drive drive_inertia stop stop_inertia offset drive_force"),
+    ):
+        for name in names.split():
+            setattr(work, name, wp.zeros((rows, worlds), dtype=dtype, device=device))
+    return work
+
+
+def _linear(model: newton.Model, links: int, dofs: int) -> np.ndarray:
+    """Which degrees of freedom of the first world slide, shape (D,)."""
+    kind, start = model.joint_type.numpy()[:links], model.joint_qd_start.numpy()[: links + 1]
+    sliding = model.joint_dof_dim.numpy()[:links, 0]
+    linear = np.zeros(dofs, np.int32)
+    for joint in range(links):
+        if kind[joint] != JointType.FREE:
+            linear[start[joint] : start[joint] + sliding[joint]] = 1
+    return linear
+
+
+def _check_chain(model: newton.Model, links: int) -> None:
+    """Refuse what :class:`SolverArticulatedChain` cannot solve.
+
+    Raises:
+        ValueError: With the number of the first joint that does not fit.
+    """
+    if model.joint_count != model.body_count or model.joint_count % max(1, model.world_count):
+        raise ValueError(
+            f"SolverArticulatedChain needs one chain of joints a world, the first to the world; the model has "
+            f"{model.joint_count} joints for {model.body_count} bodies in {model.world_count} worlds."
+        )
+    kind, axes = model.joint_type.numpy()[:links], model.joint_dof_dim.numpy()[:links].sum(axis=1)
+    parent, child = model.joint_parent.numpy()[:links], model.joint_child.numpy()[:links]
+    for joint in range(links):
+        name = f"Joint {joint} ({JointType(kind[joint]).name})"
+        if (parent[joint], child[joint]) != (joint - 1, joint):
+            raise ValueError(
+                f"{name} joins links {parent[joint]} and {child[joint]} instead of {joint - 1} and {joint}: "
+                "SolverArticulatedChain solves serial chains, whose joints are numbered as their links."
+            )
+        free = kind[joint] == JointType.FREE
+        if free and (joint > 0 or not _is_identity(model, joint)):
+            raise ValueError(f"{name} is free; only the root may be, and at the world's origin.")
+        if not free and (kind[joint] not in JOINTS or axes[joint] > 2):
+            known = ", ".join(JointType(k).name for k in JOINTS)
+            raise ValueError(f"{name} has {axes[joint]} axes; SolverArticulatedChain takes up to two of {known}.")
+
+
+def _is_identity(model: newton.Model, joint: int) -> bool:
+    frames = np.concatenate([model.joint_X_p.numpy()[joint], model.joint_X_c.numpy()[joint]])
+    return bool(np.allclose(np.abs(frames), np.tile([0.0] * 6 + [1.0], 2), atol=1e-6))

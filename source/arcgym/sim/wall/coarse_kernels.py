@@ -1,0 +1,194 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Coarse correction of the wall: every ring moves in a few modes, x_i += R_r sum_k b_ik c_k, with R_r its rotation.
+
+The modes turn with their ring, so the elastic matrix is the rest matrix for every pose; inertia and isotropic anchors
+do not turn at all. Anchors with slack are taken at the shift of the ring's centre. Only the contacts at hand, with
+the scope and with other loops, are added in each step. Launch dimensions: R rings, V wall vertices, W worlds last.
+"""
+
+import warp as wp
+
+from arcgym.sim.contact.contact_kernels import ContactRecords
+from arcgym.sim.contact.self_contact_kernels import LoopPress
+from arcgym.sim.geometry_kernels import shortened
+from arcgym.sim.wall.anchor_kernels import secant_share
+from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
+from arcgym.sim.wall.wall_kernels import Pressing, Tissue
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+@wp.struct
+class RingSpace:
+    """Ring modes of one world's wall, shared by all worlds."""
+
+    ring: wp.array(dtype=int)  # ring of each vertex, shape (V,)
+    basis: wp.array2d(dtype=wp.vec3)  # displacement of each vertex in each mode, zero where it is held, shape (V, M)
+    members: wp.array2d(dtype=int)  # vertices of each ring, -1 padded, shape (R, S)
+    frame_weights: wp.array(dtype=wp.vec2)  # in-plane coordinates (p, q) over the rms radius, shape (V,)
+    rest_frame: wp.array(dtype=wp.mat33)  # rest ring frame, columns p, q, p x q, shape (R,)
+    stiffness: wp.array3d(dtype=Unknowns)  # rows of the three elastic parts' diagonal blocks [N/m], shape (3, R, M)
+    coupling: wp.array3d(dtype=Unknowns)  # rows of their blocks to the next ring [N/m], shape (3, R, M)
+    mass: wp.array2d(dtype=Unknowns)  # rows [kg], shape (R, M)
+    anchor: wp.array2d(dtype=Unknowns)  # rows of the tight springs [N/m], shape (R, M)
+    loose: wp.array(dtype=float)  # share of them within the slack, shape (R,)
+    slack: wp.array(dtype=float)  # [m], shape (R,)
+    rest_centre: wp.array(dtype=wp.vec3)  # mean rest position of the ring's vertices [m], shape (R,)
+
+
+@wp.kernel
+def ring_rotations(
+    x: wp.array2d(dtype=wp.vec3),
+    space: RingSpace,
+    rotation: wp.array2d(dtype=wp.mat33),
+    shift: wp.array2d(dtype=wp.vec3),
+):
+    """Rotation of each ring since rest, and shift of its centre [m]. Launch (R, W)."""
+    r, w = wp.tid()
+    total = wp.vec3(0.0)
+    count = float(0.0)
+    p = wp.vec3(0.0)
+    q = wp.vec3(0.0)
+    for k in range(space.members.shape[1]):
+        i = space.members[r, k]
+        if i >= 0:
+            p += space.frame_weights[i][0] * x[i, w]
+            q += space.frame_weights[i][1] * x[i, w]
+            total += x[i, w]
+            count += 1.0
+    shift[r, w] = total / count - space.rest_centre[r]
+    p = wp.normalize(p)
+    q = wp.normalize(q - p * wp.dot(p, q))
+    rotation[r, w] = wp.matrix_from_cols(p, q, wp.cross(p, q)) * wp.transpose(space.rest_frame[r])
+
+
+@wp.func
+def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int) -> wp.vec3:
+    """How mode ``m`` of ring ``r`` moves the point ``u`` of face ``f``, in the rest frame."""
+    out = wp.vec3(0.0)
+    for k in range(3):
+        if space.ring[f[k]] == r:
+            out += u[k] * space.basis[f[k], m]
+    return out
+
+
+@wp.func
+def contact_push(pressing: Pressing, slot: int, move: wp.vec3) -> wp.vec3:
+    """Stiffness of a contact times a move of its point."""
+    n = pressing.normal[slot]
+    k = pressing.stiffness[slot]
+    return ((k[0] - k[1]) * wp.dot(n, move)) * n + k[1] * move
+
+
+@wp.func
+def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.vec3) -> Unknowns:
+    """How far each mode of ring ``r`` moves the point ``u`` of face ``f`` along ``direction`` (in the rest frame)."""
+    out = Unknowns()
+    for k in range(3):
+        if space.ring[f[k]] == r:
+            for m in range(MODES):
+                out[m] = out[m] + u[k] * wp.dot(space.basis[f[k], m], direction)
+    return out
+
+
+@wp.func
+def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int) -> Unknowns:
+    """Stiffness of the anchors of ring ``r`` between mode ``a`` and all modes [N/m], see ``anchor_hessian``."""
+    d = wp.length(shift)
+    secant = secant_share(d, space.loose[r], space.slack[r])
+    row = secant * space.anchor[r, a]
+    if a < 3 and secant < 1.0 and d > space.slack[r]:
+        along = back * shift
+        tight = (1.0 - secant) * space.anchor[r, 0][0] * along[a] / (d * d)
+        for c in range(3):
+            row[c] = row[c] + tight * along[c]
+    return row
+
+
+@wp.func
+def loop_row(space: RingSpace, loops: LoopPress, back: wp.mat33, r: int, a: int, w: int) -> Unknowns:
+    """Stiffness of the contact of ring ``r`` with other loops between its mode ``a`` and all of its modes [N/m]."""
+    out = Unknowns()
+    for k in range(space.members.shape[1]):
+        v = space.members[r, k]
+        if v >= 0:
+            stiffness = loops.stiffness[v, w]
+            if stiffness > 0.0:
+                plane = loops.plane[v, w]
+                n = back * wp.vec3(plane[0], plane[1], plane[2])
+                pull = stiffness * wp.dot(space.basis[v, a], n)
+                for c in range(MODES):
+                    out[c] = out[c] + pull * wp.dot(space.basis[v, c], n)
+    return out
+
+
+@wp.kernel
+def assemble(
+    force: wp.array2d(dtype=wp.vec3),
+    space: RingSpace,
+    rotation: wp.array2d(dtype=wp.mat33),
+    shift: wp.array2d(dtype=wp.vec3),
+    tissue: Tissue,
+    inv_dt2: float,
+    regularisation: float,
+    records: ContactRecords,
+    pressing: Pressing,
+    loops: LoopPress,
+    diagonal: wp.array4d(dtype=float),
+    upper: wp.array4d(dtype=float),
+    rhs: wp.array3d(dtype=float),
+):
+    """One row of the system: mode ``a`` of ring ``r``. Launch (R, M, W)."""
+    r, a, w = wp.tid()
+    rings = space.mass.shape[0]
+    moduli = tissue.moduli[w]
+    back = wp.transpose(rotation[r, w])
+    own_row = inv_dt2 * space.mass[r, a] + tissue.anchor[w] * anchor_row(space, shift[r, w], back, r, a)
+    next_row = Unknowns()
+    for part in range(3):
+        own_row += moduli[part] * space.stiffness[part, r, a]
+        next_row += moduli[part] * space.coupling[part, r, a]
+    own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
+    if loops.touched[r, w] == 1:
+        own_row += loop_row(space, loops, back, r, a, w)
+    total = float(0.0)
+    for k in range(space.members.shape[1]):
+        v = space.members[r, k]
+        if v >= 0:
+            total += wp.dot(space.basis[v, a], back * force[v, w])
+    rhs[r, a, w] = total
+    for which in range(2):
+        lowest = r - which
+        slot = int(-1)
+        if lowest >= 0:
+            slot = records.ring_head[lowest, w]
+        while slot >= 0:
+            if pressing.stiffness[slot][0] > 0.0:
+                f = records.corners[slot]
+                u = records.bary[slot]
+                push = contact_push(pressing, slot, rotation[r, w] * point_move(space, f, u, r, a))
+                own_row += ring_share(space, f, u, r, back * push)
+                if which == 0 and r + 1 < rings:
+                    next_row += ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * push)
+            slot = records.ring_next[slot]
+    for c in range(MODES):
+        diagonal[r, a, c, w] = own_row[c]
+        upper[r, a, c, w] = next_row[c]
+
+
+@wp.kernel
+def prolong(
+    space: RingSpace,
+    rotation: wp.array2d(dtype=wp.mat33),
+    solution: wp.array3d(dtype=float),
+    largest_move: float,
+    x: wp.array2d(dtype=wp.vec3),
+):
+    """Move every vertex with its ring, at most ``largest_move`` [m]. Launch (V, W)."""
+    i, w = wp.tid()
+    r = space.ring[i]
+    d = wp.vec3(0.0)
+    for m in range(MODES):
+        d += solution[r, m, w] * space.basis[i, m]
+    x[i, w] = x[i, w] + rotation[r, w] * shortened(d, largest_move)

@@ -1,0 +1,61 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What kernels need of a shell at rest, in numpy: cotangents, and the fan of triangles around each vertex."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from arcgym.assets.shell_geometry import ShellGeometry
+
+
+def triangle_rest(geometry: ShellGeometry) -> np.ndarray:
+    """Cotangent of each corner over twice the area [1/m^2] and the area [m^2] of every triangle, shape (F, 4).
+
+    The cotangents are minus the products of the other two corners' shape gradients.
+    """
+    m = np.concatenate([-geometry.inv_rest.sum(axis=1, keepdims=True), geometry.inv_rest], axis=1)
+    products = np.einsum("tac,tbc->tab", m, m)
+    return np.column_stack([-products[:, 1, 2], -products[:, 2, 0], -products[:, 0, 1], geometry.area])
+
+
+def hinge_of_edges(geometry: ShellGeometry) -> np.ndarray:
+    """Hinge at the edge opposite to each corner of each triangle, -1 at a border, shape (F, 3)."""
+    out = np.full(geometry.triangles.shape, -1, np.int32)
+    for side in range(2):
+        triangle = geometry.sides[:, side]
+        corner = geometry.triangles[triangle] == geometry.hinges[:, side : side + 1]
+        out[triangle, corner.argmax(axis=1)] = np.arange(len(geometry.hinges))
+    return out
+
+
+def fan_blades(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
+    """Each corner's view of its triangle and of two of the hinges there.
+
+    Args:
+        geometry: Rest geometry.
+        corner: Corners, 3 * triangle + corner, shape (n,).
+        dtype: Of :class:`arcgym.sim.wall.shell_kernels.Blade`, whose fields are filled.
+
+    Returns:
+        The blades, shape (n,).
+    """
+    blades: Any = np.zeros(len(corner), dtype)
+    owner, turned = corner // 3, (corner[:, None] + np.arange(3)) % 3  # corners of the triangle, this one first
+    vertex, rest, edges = geometry.triangles[owner[:, None], turned], triangle_rest(geometry), hinge_of_edges(geometry)
+    blades["first"], blades["second"], blades["triangle"] = vertex[:, 1], vertex[:, 2], owner
+    blades["rest"] = np.column_stack([rest[owner[:, None], turned], rest[owner, 3]])
+    for name, edge, start in (("rim", 0, 1), ("spoke", 2, 0)):
+        hinge = edges[owner, turned[:, edge]]
+        beyond = (geometry.sides[hinge, 0] == owner).astype(int)  # which of the hinge's sides is not this triangle
+        blades[name] = np.maximum(hinge, 0)
+        blades[f"{name}_vertex"] = geometry.hinges[hinge, beyond]
+        blades[f"{name}_triangle"] = geometry.sides[hinge, beyond]
+        foot = geometry.foot[hinge[:, None], np.stack([1 - beyond, beyond], axis=1)]
+        backwards = geometry.hinges[hinge, 2] != vertex[:, start]
+        foot[backwards] = 1.0 - foot[backwards]
+        stiffness = np.where(hinge >= 0, geometry.weight[hinge], 0.0)
+        blades[f"{name}_shape"] = np.column_stack([geometry.length[hinge], foot, stiffness])
+    return blades

@@ -1,0 +1,259 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Vertex block descent on a thin shell: stretching triangles and bending hinges, in closed form.
+
+Membrane: compressible neo-Hookean, mu / 2 (I - 2 - 2 ln J) + lambda / 2 (ln J)^2 for an area, I = tr C (Bonet and
+Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, section 6.4), with plane-stress moduli, and a term
+b mu / 6 (I - 2)^3 that stiffens large stretches. Its area cannot shrink to nothing, as that of the St. Venant-Kirchhoff
+membrane of Newton's ``SolverVBD`` can; at small strain the two are the same.
+Bending: discrete shells (Grinspun et al. 2003, "Discrete Shells", SCA), with the Gauss-Newton part of the Hessian.
+
+What several vertices need is measured once a step for each element: the normals and corner forces of the triangles, and
+the angles of the hinges. A hinge's angle is then linear in the moves of its vertices for the rest of the step, which
+spares the sweep its normals and inverse tangents.
+"""
+
+import warp as wp
+
+from arcgym.sim.wall.wall_kernels import Tissue, VertexBlock
+from arcgym.utils import warp_setup  # noqa: F401
+
+SMALLEST = wp.constant(1.0e-4)
+"""Least square of a triangle's area over that at rest: keeps the logarithm finite."""
+STIFFENING = wp.constant(2.75)
+"""Factor b of the stiffening term. A strip of 0.5 MPa then bears 0.87 MPa at a stretch of 1.63, where human colon
+tears (0.87 MPa at 63 %, Christensen et al. 2015); without it, a quarter."""
+
+
+@wp.struct
+class Blade:
+    """A triangle as one of its vertices sees it: one blade of the fan around that vertex.
+
+    Its *rim* is the hinge at the edge opposite to the vertex, its *spoke* the hinge at the edge to ``first``. A hinge
+    that is not there, at a border, has no stiffness.
+    """
+
+    first: int  # the other two vertices, in the triangle's order
+    second: int
+    triangle: int
+    rest: wp.vec4  # ``ShellElements.rest`` of the triangle, beginning with this vertex
+    rim: int  # hinge
+    rim_vertex: int  # vertex beyond it
+    rim_triangle: int  # triangle beyond it
+    rim_shape: wp.vec4  # length [m], foot of this vertex and of that beyond from first to second, stiffness
+    spoke: int
+    spoke_vertex: int
+    spoke_triangle: int
+    spoke_shape: wp.vec4  # length [m], feet of ``second`` and of the vertex beyond from here to ``first``, stiffness
+
+
+@wp.struct
+class ShellElements:
+    """Triangles and hinges of one world's wall, shared by all worlds, and what is measured of them in each."""
+
+    triangles: wp.array(dtype=wp.vec3i)  # shape (F,)
+    rest: wp.array(dtype=wp.vec4)  # cotangent of each corner over 2 A [1/m^2], area A [m^2], at rest, shape (F,)
+    edges: wp.array(dtype=wp.vec3i)  # hinge opposite to each corner or -1, shape (F,)
+    hinges: wp.array(dtype=wp.vec4i)  # two opposite vertices, then the edge from start to end, shape (H,)
+    rest_angle: wp.array(dtype=float)  # dihedral angle at rest [rad], shape (H,)
+    lever: wp.array(dtype=float)  # stiffness over flexural rigidity and length [1/m], shape (H,)
+    fan_start: wp.array(dtype=int)  # first blade of each vertex, shape (V + 1,)
+    fan: wp.array(dtype=Blade)  # shape (3*F,)
+    fan_corner: wp.array(dtype=int)  # 3 * triangle + corner of each blade, shape (3*F,)
+    tilt: wp.array2d(dtype=wp.vec3)  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
+    corner_force: wp.array2d(dtype=wp.vec3)  # force on each corner [N], shape (3*F, W)
+    bend: wp.array2d(dtype=float)  # angle of each hinge from rest [rad], shape (H, W)
+
+
+@wp.struct
+class Stretch:
+    """Deformation of a triangle and its stress."""
+
+    dots: wp.vec3  # product of the two edges at each corner [m^2]
+    inverse: float  # one over the squared length of the edges' cross product [1/m^4]
+    excess: float  # I - 2, zero where negative
+    shear: float  # mu (1 + b (I - 2)^2) [N/m]
+    spread: float  # lambda ln J - mu [N/m]
+
+
+@wp.func
+def stretch_of(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> Stretch:
+    """Stress S = shear Id + spread C^-1 of a triangle with the edges ``d1`` and ``d2`` from its first corner.
+
+    I is the sum of the squared edges, each times the cotangent of the corner opposite over 2 A.
+    """
+    d11 = wp.dot(d1, d1)
+    d22 = wp.dot(d2, d2)
+    d12 = wp.dot(d1, d2)
+    unit = 4.0 * rest[3] * rest[3]
+    square = wp.max(d11 * d22 - d12 * d12, SMALLEST * unit)
+    out = Stretch()
+    out.dots = wp.vec3(d12, d11 - d12, d22 - d12)
+    out.inverse = 1.0 / square
+    trace = rest[2] * d11 + rest[1] * d22 + rest[0] * (out.dots[1] + out.dots[2])
+    out.excess = wp.max(trace - 2.0, 0.0)
+    out.shear = moduli[0] * (1.0 + STIFFENING * out.excess * out.excess)
+    out.spread = moduli[1] * 0.5 * wp.log(square / unit) - moduli[0]
+    return out
+
+
+@wp.func
+def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
+    """The membrane pulls its corners together like springs along its edges: force over length of each [N/m]."""
+    s = rest[3] * now.shear
+    k = rest[3] * now.spread * now.inverse
+    return wp.vec3(s * rest[0] + k * now.dots[0], s * rest[1] + k * now.dots[1], s * rest[2] + k * now.dots[2])
+
+
+@wp.func
+def direction_angle(sine: float, cosine: float) -> float:
+    """Angle whose sine and cosine are in the ratio given [rad].
+
+    Up to 45 degrees from the tangent of its half by the polynomial of ``atanf`` in Cephes (Moshier 1989), which takes
+    a CPU a third of the time of ``atan2``.
+    """
+    span = wp.sqrt(sine * sine + cosine * cosine) + cosine
+    if wp.abs(sine) >= 0.41421356 * span:
+        return wp.atan2(sine, cosine)
+    t = sine / span
+    z = t * t
+    series = ((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1
+    return 2.0 * (t + series * z * t)
+
+
+@wp.func
+def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: int) -> float:
+    """Dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
+    corners = shell.hinges[h]
+    start = x[corners[2], w]
+    edge = x[corners[3], w] - start
+    a = x[corners[0], w] - start
+    b = x[corners[1], w] - start
+    squared = wp.length_sq(edge)
+    sine = -wp.sqrt(squared) * wp.dot(edge, wp.cross(a, b))
+    return direction_angle(sine, wp.dot(a, edge) * wp.dot(b, edge) - squared * wp.dot(a, b))
+
+
+@wp.kernel
+def measure_hinges(shell: ShellElements, x: wp.array2d(dtype=wp.vec3)):
+    """Angle of every hinge from rest. Launch (H, W)."""
+    h, w = wp.tid()
+    shell.bend[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
+
+
+@wp.func
+def hinge_pull(shell: ShellElements, h: int, w: int) -> float:
+    """Moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
+    if h < 0:
+        return 0.0
+    return shell.lever[h] * shell.bend[h, w]
+
+
+@wp.kernel
+def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d(dtype=wp.vec3)):
+    """Normal and corner forces of every triangle, with the bending of its hinges. Launch (F, W).
+
+    A hinge turns its triangle by pulling at the corners along the normal: at the corner opposite with its moment over
+    the height, and back at the others by where the foot of the height is.
+    """
+    t, w = wp.tid()
+    corners = shell.triangles[t]
+    x0 = x[corners[0], w]
+    d1 = x[corners[1], w] - x0
+    d2 = x[corners[2], w] - x0
+    normal = wp.cross(d1, d2)
+    tilt = normal / wp.max(wp.length_sq(normal), 1.0e-20)
+    shell.tilt[t, w] = tilt
+    rest = shell.rest[t]
+    edges = shell.edges[t]
+    pull = edge_tensions(stretch_of(d1, d2, rest, tissue.moduli[w]), rest)
+    bend = (4.0 * rest[3] * rest[3] * tissue.moduli[w][2]) * tilt
+    u0 = hinge_pull(shell, edges[0], w)
+    u1 = hinge_pull(shell, edges[1], w)
+    u2 = hinge_pull(shell, edges[2], w)
+    one = (rest[2] * (u1 - u0) + rest[0] * (u1 - u2)) * bend - (pull[2] + pull[0]) * d1 + pull[0] * d2
+    two = (rest[0] * (u2 - u1) + rest[1] * (u2 - u0)) * bend - (pull[1] + pull[0]) * d2 + pull[0] * d1
+    shell.corner_force[3 * t, w] = -one - two
+    shell.corner_force[3 * t + 1, w] = one
+    shell.corner_force[3 * t + 2, w] = two
+
+
+@wp.func
+def add_stretching(block: VertexBlock, rest: wp.vec4, d1: wp.vec3, d2: wp.vec3, moduli: wp.vec3) -> VertexBlock:
+    """Add the membrane terms of a triangle to its first corner, from where the edges ``d1`` and ``d2`` lead.
+
+    With the corner's shape gradient m, g = F m, h = F C^-1 m, the normal n and s = mu (1 + b (I - 2)^2) |m|^2, the
+    Hessian is A times s (Id - n n^T) + (lambda + mu - lambda ln J) h h^T + (s + (lambda ln J - mu) m.C^-1 m) n n^T
+    + 4 b mu (I - 2) g g^T; negative factors, of a compressed triangle that would buckle, count as zero.
+    """
+    now = stretch_of(d1, d2, rest, moduli)
+    pull = edge_tensions(now, rest)
+    h = now.dots[2] * d1 + now.dots[1] * d2
+    g = rest[2] * d1 + rest[1] * d2
+    n = wp.cross(d1, d2)
+    s = now.shear * (rest[1] + rest[2])
+    along = wp.max(moduli[1] - now.spread, 0.0) * now.inverse * now.inverse
+    across = wp.max(s + now.spread * now.inverse * (now.dots[1] + now.dots[2]), 0.0)
+    stretched = 4.0 * STIFFENING * moduli[0] * now.excess
+    out = block
+    out.force += pull[2] * d1 + pull[1] * d2
+    out.hessian += (rest[3] * s) * wp.identity(n=3, dtype=float)
+    out.hessian += (rest[3] * along) * wp.outer(h, h) + (rest[3] * stretched) * wp.outer(g, g)
+    out.hessian += (rest[3] * (across - s) * now.inverse) * wp.outer(n, n)
+    return out
+
+
+@wp.func
+def add_hinge(block: VertexBlock, turn: wp.vec3, angle: float, stiffness: float) -> VertexBlock:
+    """Add the term k angle^2 / 2 of a hinge whose angle has the gradient ``turn`` at the vertex."""
+    out = block
+    out.force -= (stiffness * angle) * turn
+    out.hessian += stiffness * wp.outer(turn, turn)
+    return out
+
+
+@wp.func
+def add_elements(
+    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+) -> VertexBlock:
+    """Add the terms of the triangles and hinges around vertex ``i`` of world ``w``.
+
+    A hinge's angle is the measured one less, for both of its triangles, length times tilt times the way that the vertex
+    opposite has come from the foot of its height. That way had no part along the tilt when it was measured.
+    """
+    out = block
+    here = x[i, w]
+    for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
+        blade = shell.fan[k]
+        d1 = x[blade.first, w] - here
+        d2 = x[blade.second, w] - here
+        out = add_stretching(out, blade.rest, d1, d2, moduli)
+        tilt = shell.tilt[blade.triangle, w]
+        rise1 = wp.dot(tilt, d1)
+        rise2 = wp.dot(tilt, d2)
+
+        shape = blade.rim_shape
+        away = x[blade.rim_vertex, w] - here - (1.0 - shape[2]) * d1 - shape[2] * d2
+        lift = wp.dot(shell.tilt[blade.rim_triangle, w], away) - (1.0 - shape[1]) * rise1 - shape[1] * rise2
+        angle = shell.bend[blade.rim, w] - shape[0] * lift
+        out = add_hinge(out, -shape[0] * tilt, angle, moduli[2] * shape[3])
+
+        shape = blade.spoke_shape
+        other = shell.tilt[blade.spoke_triangle, w]
+        lift = rise2 - shape[1] * rise1 + wp.dot(other, x[blade.spoke_vertex, w] - here - shape[2] * d1)
+        angle = shell.bend[blade.spoke, w] - shape[0] * lift
+        turn = shape[0] * ((1.0 - shape[1]) * tilt + (1.0 - shape[2]) * other)
+        out = add_hinge(out, turn, angle, moduli[2] * shape[3])
+    return out
+
+
+@wp.func
+def add_forces(
+    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+) -> VertexBlock:
+    """Add the measured forces of the triangles around vertex ``i`` of world ``w``."""
+    out = block
+    for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
+        out.force += shell.corner_force[shell.fan_corner[k], w]
+    return out

@@ -1,0 +1,80 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Sweep and total force of a wall, the same for elements of every kind."""
+
+import warp as wp
+
+from arcgym.sim.geometry_kernels import shortened
+from arcgym.sim.wall.wall_kernels import (
+    Pressing,
+    Tissue,
+    VertexBlock,
+    WallContacts,
+    WallNodes,
+    add_contact,
+    add_loops,
+    contact_force,
+    inertia_and_anchor,
+    quiet,
+)
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+def sweep_kernels(
+    elements_type: type, add_elements: wp.Function, add_forces: wp.Function
+) -> tuple[wp.Kernel, wp.Kernel]:
+    """Make the kernels ``sweep_colour`` and ``residual`` for one kind of elements.
+
+    Args:
+        elements_type: Struct of the elements.
+        add_elements: Adds force and Hessian of the elements around a vertex to its block, at the present positions;
+            takes block, elements, positions, vertex, world and moduli.
+        add_forces: Adds the forces alone, where the elements were measured; takes the same.
+    """
+
+    @wp.kernel(module="unique")
+    def sweep_colour(
+        colour: wp.array(dtype=int),
+        nodes: WallNodes,
+        elements: elements_type,
+        tissue: Tissue,
+        inertial: wp.array2d(dtype=wp.vec3),
+        contacts: WallContacts,
+        largest_move: float,
+        force: wp.array2d(dtype=wp.vec3),
+        x: wp.array2d(dtype=wp.vec3),
+    ):
+        """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
+        k, w = wp.tid()
+        i = colour[k]
+        if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
+            return
+        block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
+        block = add_elements(block, elements, x, i, w, tissue.moduli[w])
+        block = add_contact(block, contacts, x, i, w)
+        block = add_loops(block, contacts.loops, x[i, w], i, w)
+        x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
+
+    @wp.kernel(module="unique")
+    def residual(
+        nodes: WallNodes,
+        elements: elements_type,
+        tissue: Tissue,
+        inertial: wp.array2d(dtype=wp.vec3),
+        contacts: WallContacts,
+        pressing: Pressing,
+        x: wp.array2d(dtype=wp.vec3),
+        force: wp.array2d(dtype=wp.vec3),
+    ):
+        """Total force on every mobile vertex where elements and contacts were measured. Launch (V, W)."""
+        i, w = wp.tid()
+        block = VertexBlock()
+        if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
+            block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
+            block = add_forces(block, elements, x, i, w, tissue.moduli[w])
+            block.force += contact_force(contacts.records, pressing, i, w)
+            block = add_loops(block, contacts.loops, x[i, w], i, w)
+        force[i, w] = block.force
+
+    return sweep_colour, residual

@@ -1,0 +1,190 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two-level solver of the wall: one coarse correction of the rings, then vertex block descent."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import warp as wp
+
+from arcgym.sim.contact.contact import ContactSearch
+from arcgym.sim.contact.self_contact import LoopContact
+from arcgym.sim.simulation_cfg import WallSolverCfg
+from arcgym.sim.wall import coarse_kernels, wall_kernels
+from arcgym.sim.wall.block_tridiagonal import ChainSolver
+from arcgym.sim.wall.block_tridiagonal_kernels import Unknowns
+from arcgym.sim.wall.ring_modes import MODES, RingModes
+from arcgym.sim.wall.wall_elements import wall_elements
+from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
+from arcgym.sim.wall.wall_topology import ring_mean
+
+REGULARISATION = 1.0e-5
+"""Shift of the coarse matrix, relative to each diagonal entry."""
+
+
+def wall_contacts(
+    contact: ContactSearch, dt: float, x_prev: wp.array, body_q: wp.array, body_q_prev: wp.array
+) -> wall_kernels.WallContacts:
+    """What kernels need of the contacts in one wall step.
+
+    Args:
+        contact: Contacts found at the start of the step.
+        dt: Its length [s].
+        x_prev: Wall positions at its start [m], shape (V, W), vec3.
+        body_q: Link poses at its end, shape (W*L,).
+        body_q_prev: Link poses at its start, shape (W*L,).
+    """
+    contacts = wall_kernels.WallContacts()
+    contacts.records, contacts.links, contacts.law = contact.records, contact.links, contact.law
+    contacts.friction, contacts.dt, contacts.x_prev = contact.friction, dt, x_prev
+    contacts.body_q, contacts.body_q_prev = body_q, body_q_prev
+    return contacts
+
+
+class WallSolver:
+    """Steps the walls of all worlds in place.
+
+    Vertex block descent alone converges slowly over a long tube: the error of a bent colon is smooth along its
+    length. The coarse correction removes just that part, which makes one sweep a step enough.
+    """
+
+    def __init__(
+        self,
+        cfg: WallSolverCfg,
+        wall: WallParameters,
+        modes: RingModes,
+        dt: float,
+        num_envs: int,
+        contact_slots: int,
+        device: str,
+    ):
+        """Allocate the solver.
+
+        Args:
+            cfg: Solver settings.
+            wall: One world's wall.
+            modes: Its ring modes.
+            dt: Physics step [s].
+            num_envs: Worlds, W.
+            contact_slots: Number of contact records of all worlds.
+            device: Warp device.
+        """
+        self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
+        self.vertex_count, self.ring_count = len(wall.points), len(modes.mass)
+        self.moves = bool(wall.mobile.any())
+        self.nodes = wall_nodes(wall, device)
+        self.elements = wall_elements(wall, num_envs, device)
+        self.space = self._space(wall, modes)
+        self.colours = [
+            wp.array(c[wall.mobile[c]], dtype=int, device=device) for c in wall.colours if wall.mobile[c].any()
+        ]
+        self.tissue = wall_kernels.Tissue()
+        self.tissue.moduli = wp.array(np.tile(wall.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
+        self.tissue.anchor = wp.ones(num_envs, dtype=float, device=device)
+        self.tissue.rigid = wp.zeros(num_envs, dtype=int, device=device)
+        count, rings = (self.vertex_count, num_envs), (self.ring_count, num_envs)
+        self.x_prev = wp.zeros(count, dtype=wp.vec3, device=device)
+        self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
+        self.force = wp.zeros(count, dtype=wp.vec3, device=device)
+        self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
+        self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
+        self.pressing = self._pressing(contact_slots)
+        self.chain = ChainSolver(num_envs, self.ring_count, device)
+        self.loops = LoopContact(cfg, wall.points, wall.ring, modes.members, wall.thickness, num_envs, device)
+
+    def _pressing(self, slots: int) -> wall_kernels.Pressing:
+        pressing = wall_kernels.Pressing()
+        pressing.force = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        pressing.normal = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        pressing.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
+        return pressing
+
+    def _space(self, wall: WallParameters, modes: RingModes) -> coarse_kernels.RingSpace:
+        space = coarse_kernels.RingSpace()
+        space.ring = wp.array(wall.ring, dtype=int, device=self.device)
+        space.basis = wp.array(modes.basis, dtype=wp.vec3, device=self.device)
+        space.frame_weights = wp.array(modes.frame_weights, dtype=wp.vec2, device=self.device)
+        space.members = wp.array(modes.members, dtype=int, device=self.device)
+        space.rest_frame = wp.array(modes.rest_frame, dtype=wp.mat33, device=self.device)
+        space.loose = wp.array(ring_mean(wall.anchor.loose, wall.ring), dtype=float, device=self.device)
+        space.slack = wp.array(ring_mean(wall.anchor.slack, wall.ring), dtype=float, device=self.device)
+        space.rest_centre = wp.array(ring_mean(wall.points, wall.ring), dtype=wp.vec3, device=self.device)
+        for name in ("stiffness", "coupling", "mass", "anchor"):
+            setattr(space, name, wp.array(getattr(modes, name), dtype=Unknowns, device=self.device))
+        return space
+
+    def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
+        """Advance the wall by one physics step, in place.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            v: Wall velocities [m/s], shape (V, W), vec3.
+            contact: Contacts found at the start of the step.
+            body_q: Link poses at the end of the step, shape (W*L,).
+            body_q_prev: Link poses at its start, shape (W*L,).
+        """
+        if not self.moves:
+            return
+        shape = (self.vertex_count, self.num_envs)
+        contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
+        decay = math.exp(-self.cfg.drag * self.dt)
+        wp.launch(
+            wall_kernels.predict,
+            shape,
+            [x, v, self.nodes, self.tissue, decay, self.dt, self.x_prev, self.inertial],
+            device=self.device,
+        )
+        for _ in range(self.cfg.repeats):
+            self._residual(x, self.inertial, contacts, self.force)
+            if self.cfg.coarse_correction:
+                self._correct_rings(x, contacts)
+            for _ in range(self.cfg.iterations):
+                self._sweep(x, contacts)
+        wp.launch(wall_kernels.finish, x.shape, [self.x_prev, self.dt, x, v], device=self.device)
+
+    def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
+        for colour in self.colours:
+            args = [colour, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
+            wp.launch(
+                self.elements.sweep_colour,
+                (len(colour), self.num_envs),
+                [*args, self.cfg.largest_move, self.force, x],
+                device=self.device,
+            )
+
+    def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
+        """Force on every mobile vertex at rest [N], shape (V, W), vec3: elements, anchors and contacts, no friction.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            contact: Contacts at hand.
+            body_q: Link poses, shape (W*L,).
+        """
+        force = wp.zeros_like(x)
+        self._residual(x, x, wall_contacts(contact, self.dt, x, body_q, body_q), force)
+        return force
+
+    def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
+        """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
+        self.elements.measure(x, self.tissue)
+        contacts.loops = self.loops.measure(contacts.x_prev)
+        links = (contacts.links.radius.shape[0], self.num_envs)
+        wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.pressing], device=self.device)
+        args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.pressing, x, force]
+        wp.launch(self.elements.residual, x.shape, args, device=self.device)
+
+    def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
+        shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
+        wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
+        args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
+        args += [contacts.records, self.pressing, contacts.loops, self.chain.diagonal, self.chain.upper, self.chain.rhs]
+        wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
+        self.chain.solve()
+        wp.launch(
+            coarse_kernels.prolong,
+            shape,
+            [self.space, self.rotation, self.chain.rhs, self.cfg.largest_move, x],
+            device=self.device,
+        )
