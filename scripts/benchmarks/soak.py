@@ -203,10 +203,10 @@ def growth(samples: list[float]) -> float:
 
 def check_worlds(env: Any, adversaries: Any, journal: Journal, task: str) -> None:
     """Check that a broken world is caught and that a reset leaves the others alone; write what is wrong."""
-    from soak_checks.isolation import breakage_caught, neighbours_disturbed
+    from soak_checks.isolation import breakage_caught, neighbors_disturbed
 
     problems = [f"after a NaN in world 0: {problem}" for problem in breakage_caught(env)]
-    disturbed = neighbours_disturbed(env, adversaries.act(*idle(env)))
+    disturbed = neighbors_disturbed(env, adversaries.act(*idle(env)))
     if disturbed:
         problems.append(f"a reset of world 0 changed the next step of {disturbed} other worlds")
     if problems:

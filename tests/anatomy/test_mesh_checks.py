@@ -60,7 +60,7 @@ def test_wall_pushed_through_the_opposite_side_is_found() -> None:
     assert "self-intersections" in "".join(check.name for check in failed(inspect_stage(broken)))
 
 
-def test_centreline_beside_the_tube_is_found() -> None:
+def test_centerline_beside_the_tube_is_found() -> None:
     stage = tiny_colon_stage()
     beside = replace(stage.centerline, points=stage.centerline.points + np.float32([0.03, 0, 0]))
     names = [check.name for check in failed(inspect_stage(replace(stage, centerline=beside)))]

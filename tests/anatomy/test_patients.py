@@ -97,7 +97,7 @@ def test_no_polyps_or_diverticula(stages: dict[str, ColonStage], name: str) -> N
 
 
 @pytest.mark.parametrize("name", list(PATIENTS))
-def test_caecum_has_valve_and_appendix(stages: dict[str, ColonStage], name: str) -> None:
+def test_cecum_has_valve_and_appendix(stages: dict[str, ColonStage], name: str) -> None:
     marks = stages[name].landmarks
     order = ["cecum_entry", "ileocecal_valve", "appendix_orifice", "cecum_pole"]
     assert [mark for mark in marks if mark in order] == order

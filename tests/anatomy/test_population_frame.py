@@ -28,7 +28,7 @@ def test_flexures_rise_and_carry_the_transverse_colon_along() -> None:
     assert np.all(np.diff(rise["descending"]) > 0.0) and np.all(np.diff(rise["ascending"]) < 0.0)
 
 
-def test_straight_caecum_has_its_full_length_without_jitter() -> None:
+def test_straight_cecum_has_its_full_length_without_jitter() -> None:
     """Everything before it stays as it was."""
     straight, free = points(), points(straight_cecum=False)
     assert straight["ascending"] == pytest.approx(free["ascending"])
@@ -36,7 +36,7 @@ def test_straight_caecum_has_its_full_length_without_jitter() -> None:
     assert chords.sum() == pytest.approx(ColonSpec().segments["cecum"].length, abs=0.005)
 
 
-def test_caecum_of_random_patients_turns_gently() -> None:
+def test_cecum_of_random_patients_turns_gently() -> None:
     """Forwards and to the middle, by less than 45 degrees, on a radius larger than its lumen's."""
     spec = draw_spec(26)
     curve = make_centerline(spec, np.random.default_rng(26))

@@ -47,8 +47,8 @@ def test_rings_start_on_the_axis_at_their_arc_length(sim: Simulation) -> None:
     torch.testing.assert_close(sim.colon.data.centerline_arc, arc)
     for world in range(2):
         expected = torch.stack([torch.zeros(RINGS), torch.zeros(RINGS), arc], dim=1)
-        centres = sim.colon.data.centerline_pos_w[world, :-1]  # the blind end is half a thickness farther out
-        torch.testing.assert_close(centres, expected[:-1], atol=1e-6, rtol=0.0)
+        centers = sim.colon.data.centerline_pos_w[world, :-1]  # the blind end is half a thickness farther out
+        torch.testing.assert_close(centers, expected[:-1], atol=1e-6, rtol=0.0)
 
 
 def test_displacement_is_the_distance_from_rest(sim: Simulation) -> None:

@@ -102,12 +102,12 @@ def test_magnetic_head_is_stiffer_than_its_tether() -> None:
 
 
 @each_spec
-def test_rest_pose_has_its_tip_two_centimetres_in(spec: EndoscopeSpec) -> None:
+def test_rest_pose_has_its_tip_two_centimeters_in(spec: EndoscopeSpec) -> None:
     usd = Usd.Stage.Open(str(SHIPPED / f"{spec.name}.usda"))
     links = usd.GetPrimAtPath("/Endoscope/Links").GetChildren()
-    centres = [UsdGeom.Xformable(link).GetLocalTransformation().ExtractTranslation()[2] for link in links]
-    assert centres[-1] + spec.link_length[-1] / 2 == pytest.approx(0.02)
-    assert centres[0] - spec.link_length[0] / 2 == pytest.approx(0.02 - spec.total_length)
+    centers = [UsdGeom.Xformable(link).GetLocalTransformation().ExtractTranslation()[2] for link in links]
+    assert centers[-1] + spec.link_length[-1] / 2 == pytest.approx(0.02)
+    assert centers[0] - spec.link_length[0] / 2 == pytest.approx(0.02 - spec.total_length)
 
 
 @each_spec

@@ -82,12 +82,12 @@ def test_indices_of_world_w_are_w_times_count_plus_i(world: ModelBuilder, two_wo
     assert two_worlds.body_label[:links] == two_worlds.body_label[links:]
 
 
-def test_colouring_one_world_colours_all(world: ModelBuilder, two_worlds: Model) -> None:
-    colour = np.full(two_worlds.particle_count, -1)
+def test_coloring_one_world_colors_all(world: ModelBuilder, two_worlds: Model) -> None:
+    color = np.full(two_worlds.particle_count, -1)
     for index, group in enumerate(two_worlds.particle_color_groups):
-        colour[group.numpy()] = index
-    corners = np.sort(colour[two_worlds.tet_indices.numpy().reshape(-1, 4)], axis=1)
-    assert (colour >= 0).all() and (np.diff(corners, axis=1) > 0).all()
+        color[group.numpy()] = index
+    corners = np.sort(color[two_worlds.tet_indices.numpy().reshape(-1, 4)], axis=1)
+    assert (color >= 0).all() and (np.diff(corners, axis=1) > 0).all()
     assert len(two_worlds.particle_color_groups) == len(world.particle_color_groups)
 
 

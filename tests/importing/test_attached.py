@@ -45,7 +45,7 @@ def test_small_bowel_is_cut_off(radius: float, tmp_path: Path) -> None:
     grid, found = found_in(write_volume(tmp_path / "a.mha", extra=leak, extra_radius=radius))
     (cut,) = found.cut
     assert cut["length_mm"] == pytest.approx(1e3 * (0.23 - RADIUS), abs=30)
-    assert cut["calibre_mm"] == pytest.approx(2e3 * radius, abs=5)
+    assert cut["caliber_mm"] == pytest.approx(2e3 * radius, abs=5)
     assert grid.sample(leak[60:]).max() < 0.5
     assert np.linalg.norm(found.points[[0, -1]] - line[[0, -1]], axis=1).max() < 0.025
 

@@ -50,9 +50,9 @@ def test_missing_label(tmp_path: Path) -> None:
     refused(volume(tmp_path / "a.nrrd", ball()), "no voxel of label 7", ImportSettings(label=7))
 
 
-def test_grey_values_are_no_labels(tmp_path: Path) -> None:
-    grey = np.random.default_rng(0).integers(-1000, 2000, (80, 80, 80)).astype(np.int16)
-    refused(volume(tmp_path / "a.mha", grey), "grey values of a CT.*segmentation")
+def test_gray_values_are_no_labels(tmp_path: Path) -> None:
+    gray = np.random.default_rng(0).integers(-1000, 2000, (80, 80, 80)).astype(np.int16)
+    refused(volume(tmp_path / "a.mha", gray), "grey values of a CT.*segmentation")
 
 
 def test_ball_is_no_colon(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from test_surfaces import RADIUS as WIDE
 
 from arcgym.anatomy.importing.centerline import find_path
 from arcgym.anatomy.importing.openings import Opening, find_openings, to_opening
-from arcgym.anatomy.importing.smooth_centerline import centred
+from arcgym.anatomy.importing.smooth_centerline import centerd
 from arcgym.anatomy.importing.surfaces import fill_surface
 from arcgym.anatomy.importing.volumes import read_volume
 
@@ -71,7 +71,7 @@ def test_open_tube_begins_at_its_opening(
     found = find_path(grid, [None, None], "ras")
     assert found.cut == []
     assert np.linalg.norm(found.points[0] - openings[0].center) < np.linalg.norm(found.points[-1] - openings[0].center)
-    path = centred(grid, found.points, openings=openings)
+    path = centerd(grid, found.points, openings=openings)
     assert path[0] == pytest.approx(openings[0].center, abs=1e-3)
     length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
     assert length == pytest.approx(course()[1] - s - least + RADIUS, rel=0.01)

@@ -74,7 +74,7 @@ def test_perturbation_turns_the_target_within_two_deviations(env) -> None:
         ("randomize_friction", "endoscope", "friction", (1,), (0.05, 0.2)),
     ],
 )
-def test_randomisation_stays_in_its_bounds(env, name, entity, command, shape, bounds) -> None:
+def test_randomization_stays_in_its_bounds(env, name, entity, command, shape, bounds) -> None:
     worlds = torch.tensor([1])
     getattr(mdp, name)(env, worlds)
     value, env_ids = env.scene[entity].commands[command]

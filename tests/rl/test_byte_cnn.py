@@ -40,7 +40,7 @@ def test_float_images_are_refused():
         ByteCnnModel(obs, {"actor": ["policy"]}, "actor", 2, [8], cnn_cfg=CNN)
 
 
-def test_normalisation_without_vectors_is_refused():
+def test_normalization_without_vectors_is_refused():
     with pytest.raises(ValueError, match="only images"):
         make_model("policy", obs_normalization=True)
 

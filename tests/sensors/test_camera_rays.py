@@ -12,7 +12,7 @@ from arcgym.sensors.camera_rays import fisheye_rays, pixel_angle
 from arcgym.sensors.endoscope_camera import lights_in_camera
 
 
-def test_angle_grows_with_distance_from_the_centre():
+def test_angle_grows_with_distance_from_the_center():
     """The centre of pixel (0, 0) of an N x N picture lies at 1 - 1/N of the half diagonal, hence of the half angle."""
     rays = fisheye_rays(10, 10, field_of_view=2.0)
     assert np.arccos(-rays[0, 0, 0, 2]) == pytest.approx(0.9, abs=1.0e-5)
@@ -25,7 +25,7 @@ def test_first_pixel_is_up_and_left():
 
 
 @pytest.mark.parametrize("samples", [2, 4])
-def test_samples_surround_the_pixel_centre(samples):
+def test_samples_surround_the_pixel_center(samples):
     rays = fisheye_rays(8, 8, 1.5, samples)
     assert rays.shape == (8, 8, samples, 3)
     assert np.allclose(rays.mean(axis=2), fisheye_rays(8, 8, 1.5)[:, :, 0], atol=2.0e-3)

@@ -113,8 +113,8 @@ def two_tubes(distance: float) -> tuple[np.ndarray, np.ndarray]:
     """A tube of 20 mm radius up and another down beside it, 8 rings of 12 vertices each: points and their rings."""
     angle = np.arange(12) * np.pi / 6.0
     ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
-    centres = [[side * distance, 0.0, z] for side, way in ((0, 1), (1, -1)) for z in 0.0125 * np.arange(8)[::way]]
-    return (np.array(centres)[:, None] + ring).reshape(-1, 3), np.repeat(np.arange(16), 12)
+    centers = [[side * distance, 0.0, z] for side, way in ((0, 1), (1, -1)) for z in 0.0125 * np.arange(8)[::way]]
+    return (np.array(centers)[:, None] + ring).reshape(-1, 3), np.repeat(np.arange(16), 12)
 
 
 def test_rings_that_overlap_at_rest_push_only_when_closer() -> None:

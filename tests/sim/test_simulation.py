@@ -81,7 +81,7 @@ def test_one_call_of_two_steps_equals_two_calls(narrow: TinySim) -> None:
     assert set(differing(together, apart)) <= forces
 
 
-def test_a_world_does_not_depend_on_its_neighbours(narrow: TinySim) -> None:
+def test_a_world_does_not_depend_on_its_neighbors(narrow: TinySim) -> None:
     alone, pair = build(narrow, num_envs=1), build(narrow, num_envs=2)
     drive(alone, [144])
     pair.endoscope.set_insertion_command(torch.tensor([0.1, -0.1]), torch.tensor([0.2, 0.0]))

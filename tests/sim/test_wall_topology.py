@@ -43,7 +43,7 @@ def test_normals_point_from_the_lumen_into_the_wall(wall: WallMesh, lumen: Lumen
     assert (np.einsum("fi,fi->f", np.cross(b - a, c - a), radial) > 0).all()
 
 
-def test_neighbour_shares_the_edge_opposite_to_the_corner(lumen: LumenTopology) -> None:
+def test_neighbor_shares_the_edge_opposite_to_the_corner(lumen: LumenTopology) -> None:
     for face, row in enumerate(lumen.neighbors):
         for corner, other in enumerate(row):
             if other >= 0:
@@ -52,12 +52,12 @@ def test_neighbour_shares_the_edge_opposite_to_the_corner(lumen: LumenTopology) 
                 assert face in lumen.neighbors[other]
 
 
-def test_only_the_rim_at_the_anus_has_no_neighbours(lumen: LumenTopology) -> None:
+def test_only_the_rim_at_the_anus_has_no_neighbors(lumen: LumenTopology) -> None:
     # The blind end is closed, so just the 8 edges of the first ring are open.
     assert (lumen.neighbors < 0).sum() == SECTORS
 
 
-def test_neighbours_of_two_triangles() -> None:
+def test_neighbors_of_two_triangles() -> None:
     faces = np.array([[0, 1, 2], [2, 1, 3]])
     np.testing.assert_array_equal(face_neighbors(faces), [[1, -1, -1], [-1, -1, 0]])
 

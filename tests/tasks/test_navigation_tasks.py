@@ -60,7 +60,7 @@ def test_horizon_is_counted_in_control_steps_of_a_tenth_second(segment: str, ste
     assert round(cfg.episode_length_s / step) == steps
 
 
-def test_play_has_few_worlds_and_no_randomisation() -> None:
+def test_play_has_few_worlds_and_no_randomization() -> None:
     train = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
     play = load_cfg_from_registry("ARC-Sigmoid-Magnetic-Play", "env_cfg_entry_point")
     assert play.scene.num_envs < train.scene.num_envs

@@ -112,7 +112,7 @@ def test_charts_start_again_with_every_episode():
     assert len(view.rewards) == 1
 
 
-def test_viewer_configuration_chooses_the_colours():
+def test_viewer_configuration_chooses_the_colors():
     env = make_env()
     env.scene["colon"].points[:, 0, 2] *= 1.2
     frames = {}

@@ -36,7 +36,7 @@ def test_quarter_turn_looks_from_the_patients_left():
     assert frame_points(CORNERS, (560, 512), azimuth=math.pi / 2).eye[0] < -1.0
 
 
-def test_scale_is_the_projected_length_of_a_metre():
+def test_scale_is_the_projected_length_of_a_meter():
     camera = frame_points(CORNERS, (560, 512))
     a, b = camera.project(np.array([[0.0, 0.0, 0.25], [-0.01, 0.0, 0.25]]))
     assert 100 * (b[0] - a[0]) == pytest.approx(camera.pixels_per_meter(np.array([0.0, 0.0, 0.25])), rel=1e-6)

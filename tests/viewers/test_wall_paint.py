@@ -53,7 +53,7 @@ def test_force_is_shown_beside_the_link_that_presses() -> None:
     assert values[np.abs(SKIN.points[:, 2] - 0.15) < 0.01].max() == 0.0
 
 
-def test_force_scale_has_the_colours_of_the_tasks_tiers() -> None:
+def test_force_scale_has_the_colors_of_the_tasks_tiers() -> None:
     tiers = shown_tiers(ForceTiersCfg(comfort=1.0, unsafe=3.0, perforation=10.0))
     scale = wall_scale("force", tiers=tiers)
     np.testing.assert_allclose(scale.paint(np.array([0.0])), deformation_colors(np.zeros(1)))

@@ -41,9 +41,9 @@ def scene(run: Run, robot: str, num_envs: int) -> Any:
 
     sim = build(run, getattr(assets, f"{robot.upper()}_CFG"), BEND, num_envs, {"material": "in_situ"})
     if robot == "capsule":
-        centre, angle = BEND.frame(np.array([START]))
+        center, angle = BEND.frame(np.array([START]))
         half = -0.5 * float(angle[0])
-        pose = [*centre[0], math.sin(half), 0.0, 0.0, math.cos(half)]
+        pose = [*center[0], math.sin(half), 0.0, 0.0, math.cos(half)]
         sim.endoscope.data.joint_pos[:] = sim.endoscope.data.joint_pos.new_tensor(pose)
         sim.contact.ring.fill_(-1)
         sim.forward()

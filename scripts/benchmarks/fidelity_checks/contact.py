@@ -205,10 +205,10 @@ def links_outside(sim: Any, world: int) -> int:
     if bool(sim.non_finite[world]):
         return sim.endoscope.num_bodies
     points = sim.colon.data.nodal_pos_w[world].cpu().numpy().astype(float)
-    centres = data.body_pos_w[world].cpu().numpy().astype(float)
+    centers = data.body_pos_w[world].cpu().numpy().astype(float)
     ring = sim.contact.ring.numpy()[world]
-    centres = centres[(ring >= margin) & (ring < sim.colon.num_rings - margin)]
-    return int((winding(points[faces], centres) < 0.5).sum())
+    centers = centers[(ring >= margin) & (ring < sim.colon.num_rings - margin)]
+    return int((winding(points[faces], centers) < 0.5).sum())
 
 
 def winding(triangles: np.ndarray, points: np.ndarray) -> np.ndarray:

@@ -68,11 +68,11 @@ class Tube:
 
     def surface(self, s: np.ndarray, theta: np.ndarray, radius: float) -> np.ndarray:
         """Points at arc lengths, angles around and a distance from the centreline [m], shape (S, A, 3)."""
-        centre, angle = self.frame(s)
+        center, angle = self.frame(s)
         inwards = np.stack([0.0 * s, np.cos(angle), -np.sin(angle)], axis=1)
         across = np.array([1.0, 0.0, 0.0])
         around = np.cos(theta)[None, :, None] * across + np.sin(theta)[None, :, None] * inwards[:, None]
-        return centre[:, None] + radius * around
+        return center[:, None] + radius * around
 
 
 @dataclass(frozen=True)

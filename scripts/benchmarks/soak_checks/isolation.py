@@ -46,7 +46,7 @@ class ResetGuard:
 
 
 @torch.no_grad()
-def neighbours_disturbed(env: Any, actions: torch.Tensor) -> int:
+def neighbors_disturbed(env: Any, actions: torch.Tensor) -> int:
     """Worlds whose next control step differs, in any bit, if the first world is reset before it.
 
     The same step is made three times from the same state: as it is, again, which must change no world, and after a

@@ -34,8 +34,8 @@ class LumenCheck:
         """
         colon, endoscope = self._env.scene["colon"], self._env.scene["endoscope"]
         points = wp.from_torch(colon.data.nodal_pos_w.contiguous(), dtype=wp.vec3)
-        centres = wp.from_torch(endoscope.data.body_pos_w.contiguous(), dtype=wp.vec3)
-        args = [points, self._triangles, centres, self._winding]
+        centers = wp.from_torch(endoscope.data.body_pos_w.contiguous(), dtype=wp.vec3)
+        args = [points, self._triangles, centers, self._winding]
         wp.launch(winding_number, self._winding.shape, args, device=self._env.device)
         ring = self._env.sim.world_arrays()["link_ring"]
         examined = (ring >= MARGIN) & (ring < colon.num_rings - MARGIN)

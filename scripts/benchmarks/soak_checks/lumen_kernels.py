@@ -14,12 +14,12 @@ INV_TWO_PI = wp.constant(1.0 / (2.0 * wp.pi))
 def winding_number(
     points: wp.array2d(dtype=wp.vec3),
     triangles: wp.array(dtype=wp.vec3i),
-    centres: wp.array2d(dtype=wp.vec3),
+    centers: wp.array2d(dtype=wp.vec3),
     winding: wp.array2d(dtype=float),
 ):
     """How often the surface winds around each centre (solid angles: van Oosterom and Strackee 1983). Launch (W, L)."""
     w, i = wp.tid()
-    p = centres[w, i]
+    p = centers[w, i]
     total = float(0.0)
     for k in range(triangles.shape[0]):
         a = points[w, triangles[k][0]] - p

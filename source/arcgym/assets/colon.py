@@ -194,7 +194,7 @@ class ColonData:
         """Positions of the wall vertices [m], shape (N, V, 3)."""
         self.nodal_vel_w: torch.Tensor = wp.to_torch(sim.nodal_vel).transpose(0, 1)
         """Velocities of the wall vertices [m/s], shape (N, V, 3)."""
-        self.centerline_pos_w: torch.Tensor = wp.to_torch(sim.ring_centres)
+        self.centerline_pos_w: torch.Tensor = wp.to_torch(sim.ring_centers)
         """Centres of the deformed rings [m], shape (N, R, 3)."""
         wall = colon.wall
         self.centerline_arc = torch.tensor(wall.ring_arc, dtype=torch.float32, device=sim.device)

@@ -49,7 +49,7 @@ def wall_parameters(colon: Colon) -> WallParameters:
         anchor=colon.anchor_springs(),
         ring=colon.wall.ring,
         thickness=2.0 * colon.surface_offset,
-        colours=[np.asarray(group) for group in builder.particle_color_groups],
+        colors=[np.asarray(group) for group in builder.particle_color_groups],
     )
 
 

@@ -82,7 +82,7 @@ class Simulation:
             model_building.wall_lumen(colon), wall.points, wall.ring, wall.anchor, self.wall.tissue.anchor, self.device
         )
         self.coupling: Coupling = self._coupling()
-        self.ring_centres = self.contact.centres
+        self.ring_centers = self.contact.centers
         self.friction: torch.Tensor = wp.to_torch(self.contact.friction)
         self.moduli: torch.Tensor = wp.to_torch(self.wall.tissue.moduli)
         self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor).fill_(colon.anchor_scale)
@@ -218,14 +218,14 @@ class Simulation:
 
     def _read_out(self) -> None:
         links = self.endoscope.num_bodies
-        self.contact.update_centres(self.nodal_pos)
+        self.contact.update_centers(self.nodal_pos)
         self.contact.track(self.state.body_q)
         args = [self.wall_force, self.wall_force_norm]
         wp.launch(readout_kernels.measure_forces, self.wall_force.shape, args, device=self.device)
         args = [self.state.body_q, self.state.body_qd, links, self._tip_offset, self._camera_offset]
         args += [self.tip_pose, self.tip_velocity, self.camera_pose]
         wp.launch(readout_kernels.read_tip, self.num_envs, args, device=self.device)
-        args = [self.tip_pose, self.ring_centres, self.ring_arc, self.contact.ring, TIP_SPAN]
+        args = [self.tip_pose, self.ring_centers, self.ring_arc, self.contact.ring, TIP_SPAN]
         args += [self.tip_arc, self.tip_distance, self.tip_direction]
         wp.launch(readout_kernels.locate_tip, self.num_envs, args, device=self.device)
         self._broken.zero_()

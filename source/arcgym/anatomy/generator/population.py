@@ -113,9 +113,9 @@ def draw_length(rng: np.random.Generator, sex: str) -> float:
 
 def draw_bends(rng: np.random.Generator, length: float) -> int:
     """Draws the number of acute bends: more in longer colons, as between Hanson's groups; over all as Khashab found."""
-    per_metre = (LONG_BENDS - REGULAR_BENDS) / (LONG_LENGTH - REGULAR_LENGTH)
-    explained = per_metre * LENGTH_DEVIATION
-    mean = BENDS_MEAN + per_metre * (length - np.mean(list(LENGTH_MEAN.values())))
+    per_meter = (LONG_BENDS - REGULAR_BENDS) / (LONG_LENGTH - REGULAR_LENGTH)
+    explained = per_meter * LENGTH_DEVIATION
+    mean = BENDS_MEAN + per_meter * (length - np.mean(list(LENGTH_MEAN.values())))
     count = rng.normal(mean, np.sqrt(BENDS_DEVIATION**2 - explained**2))
     return int(np.clip(round(count), *BENDS_RANGE))
 

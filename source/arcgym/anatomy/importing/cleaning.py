@@ -79,12 +79,12 @@ def _tell(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[Piece], br
             "gap_mm": round(1e3 * outside * float(np.linalg.norm(way)), 1),
             "volume_ml": round(1e6 * bridge.volume, 1),
         }
-        done.bridges.append(told | {"place_mm": in_millimetres(0.5 * (bridge.start + bridge.end))})
+        done.bridges.append(told | {"place_mm": in_millimeters(0.5 * (bridge.start + bridge.end))})
     for piece in [piece for piece in pieces if piece not in kept][:20]:
-        done.dropped.append({"volume_ml": round(1e6 * piece.volume, 1), "place_mm": in_millimetres(piece.middle)})
+        done.dropped.append({"volume_ml": round(1e6 * piece.volume, 1), "place_mm": in_millimeters(piece.middle)})
 
 
-def in_millimetres(point: np.ndarray) -> list[int]:
+def in_millimeters(point: np.ndarray) -> list[int]:
     """Returns a position in whole millimetres."""
     return [round(1e3 * float(value)) for value in point]
 

@@ -11,7 +11,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.orientation import FRAMES, likeness
-from arcgym.anatomy.importing.tree import LumenTree, calibre
+from arcgym.anatomy.importing.tree import LumenTree, caliber
 
 _LEAST_LEAK = 0.035
 _LEAK_SHARE = 0.66
@@ -110,7 +110,7 @@ def _arc(points: np.ndarray) -> np.ndarray:
 def _without_leak(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray, list[Attached]]:
     """Cuts a thin tail off the caecum's end, and goes to the end of the wide lumen instead."""
     points, clearance = tree.points[nodes], tree.clearance[nodes]
-    arc, width = _arc(points), calibre(clearance, points)
+    arc, width = _arc(points), caliber(clearance, points)
     start = _thin_tail(arc, width, _LEAK_SHARE, _LEAK_CALIBRE)
     if start is None or arc[start] < (1.0 - _MOST_CUT) * arc[-1]:
         return nodes, []
@@ -177,7 +177,7 @@ def into_the_canal(tree: LumenTree, nodes: np.ndarray) -> np.ndarray:
         beyond = way[leaves + 1 :]
         if arc[leaves] < arc[-1] - _CANAL_REACH or len(beyond) < 2 or _out_of(tree, rectum, tip) < farthest:
             continue
-        if float(np.median(calibre(tree.clearance[beyond], tree.points[beyond], 0.006))) > _CANAL_CALIBRE:
+        if float(np.median(caliber(tree.clearance[beyond], tree.points[beyond], 0.006))) > _CANAL_CALIBRE:
             best, farthest = way, _out_of(tree, rectum, tip)
     return best[::-1]
 
@@ -193,7 +193,7 @@ def _without_tube(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray, list[
     """Cuts a thin tube off the anus's end."""
     back = nodes[::-1]
     points, clearance = tree.points[back], tree.clearance[back]
-    arc, width = _arc(points), calibre(clearance, points, 0.006)
+    arc, width = _arc(points), caliber(clearance, points, 0.006)
     start = _thin_tail(arc, width, _TUBE_SHARE, _TUBE_CALIBRE)
     if start is None or arc[-1] - arc[start] < _LEAST_TUBE or arc[start] < (1.0 - _MOST_CUT) * arc[-1]:
         return nodes, []
@@ -231,7 +231,7 @@ def _is_trough(tree: LumenTree, points: np.ndarray, width: np.ndarray, start: in
 def _side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[Attached]) -> list[Attached]:
     """Returns branches that leave the colon in between and go further than a pouch of it would."""
     colon = tree.points[nodes]
-    width = calibre(tree.clearance[nodes], colon)
+    width = caliber(tree.clearance[nodes], colon)
     on_path, found = set(nodes.tolist()), []
     known = cKDTree(np.concatenate([piece.points for piece in attached])) if attached else None
     taken: set[int] = set()
@@ -248,7 +248,7 @@ def _side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[Attached])
         out = distance > width[nearest] + 0.002
         start = int(out.argmax())
         rest = np.array(way[start:])
-        thick = float(np.median(calibre(tree.clearance[rest], tree.points[rest])))
+        thick = float(np.median(caliber(tree.clearance[rest], tree.points[rest])))
         if not out.any() or tree.step[rest].sum() < max(_LEAST_LEAK, _LEAK_SLENDER * thick):
             continue
         taken |= set(way)

@@ -10,10 +10,10 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.cleaning import in_millimetres
+from arcgym.anatomy.importing.cleaning import in_millimeters
 from arcgym.anatomy.importing.ends import Attached
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.tree import calibre
+from arcgym.anatomy.importing.tree import caliber
 
 _MARGIN = 0.006
 _FOLDS = 1.3
@@ -35,7 +35,7 @@ def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: n
     Returns:
         What was cut, for the report.
     """
-    colon, width = cKDTree(path), np.minimum(calibre(clearance, path), _FOLDS * clearance)
+    colon, width = cKDTree(path), np.minimum(caliber(clearance, path), _FOLDS * clearance)
     told = []
     for piece in attached:
         reach = float(piece.clearance.max()) + _MARGIN
@@ -47,7 +47,7 @@ def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: n
         away, nearest = cKDTree(piece.points).query(points, distance_upper_bound=1.4 * reach)
         near = np.isfinite(away)
         index, away, nearest = index[near], away[near], nearest[near]
-        depth = away - calibre(piece.clearance, piece.points)[nearest]
+        depth = away - caliber(piece.clearance, piece.points)[nearest]
         distance, own = colon.query(points[near])
         gone = depth < distance - width[own]
         lumen = grid.values[tuple(index[gone].T)] > 0.5
@@ -62,10 +62,10 @@ def _told(piece: Attached, volume: float) -> dict[str, Any]:
     return {
         "kind": piece.kind,
         "length_mm": round(1e3 * piece.length),
-        "calibre_mm": round(2e3 * float(np.median(calibre(piece.clearance, piece.points))), 1),
+        "caliber_mm": round(2e3 * float(np.median(caliber(piece.clearance, piece.points))), 1),
         "neck_mm": round(2e3 * piece.neck, 1),
         "volume_ml": round(1e6 * volume, 1),
-        "place_mm": in_millimetres(piece.points[0]),
+        "place_mm": in_millimeters(piece.points[0]),
     }
 
 

@@ -25,7 +25,7 @@ from arcgym.anatomy.importing.openings import Opening, find_openings
 from arcgym.anatomy.importing.orientation import FRAMES, Orientation, orient
 from arcgym.anatomy.importing.polar import cast, cast_rings, own_loop
 from arcgym.anatomy.importing.settings import ImportSettings
-from arcgym.anatomy.importing.smooth_centerline import centred, plain_curve, relaxed, with_upright_canal
+from arcgym.anatomy.importing.smooth_centerline import centerd, plain_curve, relaxed, with_upright_canal
 from arcgym.anatomy.importing.surfaces import SURFACE_SUFFIXES, fill_surface, load_surface
 from arcgym.anatomy.importing.visual_fitting import fit_visual
 from arcgym.anatomy.importing.volumes import VOLUME_SUFFIXES, read_volume
@@ -173,7 +173,7 @@ def _turned(grid: Grid, course: np.ndarray, rotation: np.ndarray) -> tuple[Grid,
 
 
 def _measure(grid: Grid, course: np.ndarray, settings: ImportSettings, openings: list[Opening]) -> Measured:
-    points = centred(grid, course, settings.cecum is None, openings)
+    points = centerd(grid, course, settings.cecum is None, openings)
     half_width = settings.min_lumen_radius + settings.wall_thickness + 0.5 * settings.clearance
     curve = plain_curve(relaxed(points, np.full(len(points), half_width)))
     s = np.linspace(0.0, curve.length, round(curve.length / _MEASURE_SPACING) + 1)

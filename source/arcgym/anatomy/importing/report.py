@@ -81,7 +81,7 @@ def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
     """Returns in words what was bridged, dropped and cut off, at most six lines."""
     lines = [f"bridged a gap of {b['gap_mm']:.0f} mm at {b['place_mm']}" for b in cleaning["bridges"]]
     for cut in cleaning["cut"]:
-        size = f", {cut['length_mm']} mm long, {cut['calibre_mm']:.0f} mm wide" if "length_mm" in cut else ""
+        size = f", {cut['length_mm']} mm long, {cut['caliber_mm']:.0f} mm wide" if "length_mm" in cut else ""
         at = f" at {cut['place_mm']}" if "place_mm" in cut else ""
         lines.append(f"cut off: {cut['kind']}, {cut['volume_ml']:.0f} ml{size}{at}")
     lines += [f"dropped a piece of {d['volume_ml']:.0f} ml at {d['place_mm']}" for d in cleaning["dropped"]]

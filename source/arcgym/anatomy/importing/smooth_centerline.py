@@ -58,7 +58,7 @@ def plain_curve(points: np.ndarray) -> Curve:
     return Curve(points, np.linspace(0.0, 1.0, len(SEGMENTS) + 1)[1:])
 
 
-def centred(
+def centerd(
     grid: Grid, path: np.ndarray, find_pole: bool = True, openings: Sequence[Opening] = (), rounds: int = 6
 ) -> np.ndarray:
     """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
@@ -75,7 +75,7 @@ def centred(
     """
     points = smooth(resample(path, SPACING), 1.5)
     for _ in range(rounds):
-        points = _centred_once(grid, points)
+        points = _centerd_once(grid, points)
     to_anus = to_opening(points[::-1], openings)
     points = (_to_the_wall(grid, points[::-1]) if to_anus is None else to_anus)[::-1]
     to_cecum = to_opening(points, openings)
@@ -84,7 +84,7 @@ def centred(
     return resample(smooth(resample(points, SPACING), 1.5), SPACING)
 
 
-def _centred_once(grid: Grid, points: np.ndarray) -> np.ndarray:
+def _centerd_once(grid: Grid, points: np.ndarray) -> np.ndarray:
     """Returns points moved to the centroids and smoothed."""
     curve = plain_curve(points)
     s = np.linspace(0.0, curve.length, round(curve.length / SPACING) + 1)

@@ -88,8 +88,8 @@ def _load_vtk(path: Path) -> tuple[np.ndarray, np.ndarray]:
 def _guess_unit(path: Path, points: np.ndarray) -> str:
     extent = float(np.ptp(points, axis=0).max())
     low, high = _COLON_EXTENT
-    for unit, metres in UNITS.items():
-        if low <= extent * metres <= high:
+    for unit, meters in UNITS.items():
+        if low <= extent * meters <= high:
             return unit
     raise ColonImportError(
         f"{path} is {extent:.4g} units long, which is no colon's size in mm, cm or m",

@@ -62,7 +62,7 @@ class LumenTree:
         return np.array(a[: a.index(b[meet])] + b[: meet + 1][::-1])
 
 
-def calibre(clearance: np.ndarray, points: np.ndarray, reach: float = 0.012) -> np.ndarray:
+def caliber(clearance: np.ndarray, points: np.ndarray, reach: float = 0.012) -> np.ndarray:
     """Returns the lumen radius between folds along a path [m]: the largest clearance nearby, smoothed, shape (n,)."""
     step = max(float(np.linalg.norm(np.diff(points, axis=0), axis=1).mean()) if len(points) > 1 else 1.0, 1e-5)
     widest = maximum_filter1d(clearance, 2 * round(reach / step) + 1, mode="nearest")

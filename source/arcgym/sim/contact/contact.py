@@ -56,7 +56,7 @@ class ContactSearch:
         self.law.widest = 2.0 * topology.radius + cfg.search_gap
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
-        self.centres = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
+        self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
         self.away = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         shape = (num_envs, self.link_count, topology.candidates(cfg.search_reach))
@@ -94,20 +94,20 @@ class ContactSearch:
         records.ring_next = wp.full(rows * capacity, -1, dtype=int, device=self.device)
         return records
 
-    def update_centres(self, x: wp.array) -> None:
+    def update_centers(self, x: wp.array) -> None:
         """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W)."""
         wp.launch(
-            kernels.ring_centres, (self.num_envs, self.ring_count), [x, self.surface, self.centres], device=self.device
+            kernels.ring_centers, (self.num_envs, self.ring_count), [x, self.surface, self.centers], device=self.device
         )
 
     def track(self, body_q: wp.array) -> None:
         """Follow each link's ring; links whose ring is -1 are searched along the whole colon."""
         shape = (self.num_envs, self.link_count)
-        wp.launch(kernels.track_rings, shape, [self.centres, body_q, SPAN, self.ring, self.away], device=self.device)
+        wp.launch(kernels.track_rings, shape, [self.centers, body_q, SPAN, self.ring, self.away], device=self.device)
 
     def detect(self, x: wp.array, body_q: wp.array) -> None:
         """Fill the contact records for wall positions ``x`` (V, W) and link poses ``body_q`` (W*L,)."""
-        self.update_centres(x)
+        self.update_centers(x)
         self.track(body_q)
         wp.launch(
             kernels.face_distances,

@@ -81,19 +81,19 @@ class ContactLaw:
 
 
 @wp.kernel
-def ring_centres(x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, centres: wp.array2d(dtype=wp.vec3)):
+def ring_centers(x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, centers: wp.array2d(dtype=wp.vec3)):
     """Mean of each ring's inner vertices. Launch (W, R)."""
     w, r = wp.tid()
     n = surface.rings.shape[1]
     total = wp.vec3(0.0)
     for k in range(n):
         total += x[surface.rings[r, k], w]
-    centres[w, r] = total / float(n)
+    centers[w, r] = total / float(n)
 
 
 @wp.kernel
 def track_rings(
-    centres: wp.array2d(dtype=wp.vec3),
+    centers: wp.array2d(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
     span: int,
     ring: wp.array2d(dtype=int),
@@ -107,20 +107,20 @@ def track_rings(
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
     last = ring[w, link]
     lo = int(0)
-    hi = centres.shape[1]
+    hi = centers.shape[1]
     if last >= 0:
         lo = wp.max(0, last - span)
         hi = wp.min(hi, last + span + 1)
     best = float(FAR)
     found = last
     for r in range(lo, hi):
-        d = wp.length_sq(p - centres[w, r])
+        d = wp.length_sq(p - centers[w, r])
         if d < best:
             best = d
             found = r
     ring[w, link] = found
     away[w, link] = wp.sqrt(best)
-    if found == 0 and wp.dot(p - centres[w, 0], centres[w, 1] - centres[w, 0]) < 0.0:
+    if found == 0 and wp.dot(p - centers[w, 0], centers[w, 1] - centers[w, 0]) < 0.0:
         away[w, link] = FAR
 
 
@@ -155,15 +155,15 @@ def face_distances(
         b = x[surface.faces[face, 1], w]
         c = x[surface.faces[face, 2], w]
         pose = body_q[w * ring.shape[1] + link]
-        centre = wp.transform_get_translation(pose)
+        center = wp.transform_get_translation(pose)
         axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
         limit = links.radius[link] + law.wall_radius + law.search_gap
         g = (a + b + c) / 3.0
         size = wp.sqrt(wp.max(wp.length_sq(a - g), wp.max(wp.length_sq(b - g), wp.length_sq(c - g))))
-        t = segment_parameter(g, centre - axis, centre + axis)
-        near = wp.length_sq(g - centre - (2.0 * t - 1.0) * axis) < (limit + size) * (limit + size)
-        if near and plane_reached(a - centre, wp.cross(b - a, c - a), axis, limit):
-            u = segment_triangle(centre - axis, centre + axis, a, b, c)
+        t = segment_parameter(g, center - axis, center + axis)
+        near = wp.length_sq(g - center - (2.0 * t - 1.0) * axis) < (limit + size) * (limit + size)
+        if near and plane_reached(a - center, wp.cross(b - a, c - a), axis, limit):
+            u = segment_triangle(center - axis, center + axis, a, b, c)
             if u[3] < limit:
                 d = u[3]
     distance[w, link, m] = d
@@ -218,18 +218,18 @@ def place_on(
     face: int,
     x: wp.array2d(dtype=wp.vec3),
     w: int,
-    centre: wp.vec3,
+    center: wp.vec3,
     axis: wp.vec3,
     distance: float,
 ) -> Place:
-    """Place on ``face`` closest to the link from ``centre`` - ``axis`` to ``centre`` + ``axis``."""
+    """Place on ``face`` closest to the link from ``center`` - ``axis`` to ``center`` + ``axis``."""
     f = face_corners(surface, face)
     out = Place()
-    out.bary = segment_triangle_mean(centre - axis, centre + axis, x[f[0], w], x[f[1], w], x[f[2], w], distance, BLUR)
+    out.bary = segment_triangle_mean(center - axis, center + axis, x[f[0], w], x[f[1], w], x[f[2], w], distance, BLUR)
     out.normal = surface_normal(surface, face, out.bary, x, w)
     p = corner_point(x, f, out.bary, w)
-    t = segment_parameter(p, centre - axis, centre + axis)
-    out.way = wp.normalize(p - centre - (2.0 * t - 1.0) * axis)
+    t = segment_parameter(p, center - axis, center + axis)
+    out.way = wp.normalize(p - center - (2.0 * t - 1.0) * axis)
     return out
 
 
@@ -283,10 +283,10 @@ def place_contacts(
         return
     slot = row * records.capacity + k
     pose = body_q[row]
-    centre = wp.transform_get_translation(pose)
+    center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     face = records.face[slot]
-    place = place_on(surface, face, x, w, centre, axis, records.distance[slot])
+    place = place_on(surface, face, x, w, center, axis, records.distance[slot])
     u = place.bary
     records.corners[slot] = face_corners(surface, face)
     records.bary[slot] = u
@@ -362,10 +362,10 @@ def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: flo
     A point on the lumen side of the axis, judged by the wall's own normal, counts as behind it: the gap is then
     negative however far the link has gone through, so that a link is always pushed back inside.
     """
-    centre = wp.transform_get_translation(pose)
+    center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, half_length))
-    t = segment_parameter(p, centre - axis, centre + axis)
-    r = p - centre - (2.0 * t - 1.0) * axis
+    t = segment_parameter(p, center - axis, center + axis)
+    r = p - center - (2.0 * t - 1.0) * axis
     d = wp.length(r)
     out = Touch()
     out.normal = wall_normal

@@ -77,7 +77,7 @@ def load_contacts(
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
     pose = body_q[row]
-    centre = wp.transform_point(pose, com[link])
+    center = wp.transform_point(pose, com[link])
     total = Articulated()
     for k in range(records.count[row]):
         slot = row * records.capacity + k
@@ -89,8 +89,8 @@ def load_contacts(
         c = touch(p, records.normal[slot], pose, links.half_length[link], radius)
         if c.gap + radius < CLEAR * links.radius[link]:
             pierced[w] = 1
-        lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - centre)
-        one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - centre)
+        lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - center)
+        one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - center)
         total.ll += one.ll
         total.la += one.la
         total.aa += one.aa

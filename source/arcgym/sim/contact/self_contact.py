@@ -53,9 +53,9 @@ class LoopContact:
         """
         self.device = device
         self.count = count = len(members)
-        centre = ring_mean(points, ring)
-        away = np.linalg.norm(points - centre[ring], axis=1)
-        spacing = np.linalg.norm(np.diff(centre, axis=0), axis=1)
+        center = ring_mean(points, ring)
+        away = np.linalg.norm(points - center[ring], axis=1)
+        spacing = np.linalg.norm(np.diff(center, axis=0), axis=1)
         half_bend = 0.5 * BACK_TO_BACK * ring_mean(away, ring)
         may_touch = _may_touch(spacing, half_bend)
         self.active = cfg.self_contact and bool(may_touch.any())

@@ -66,25 +66,25 @@ class RingBalls:
 def measure_balls(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls):
     """Sphere of each ring. Launch (R, W)."""
     r, w = wp.tid()
-    centre = wp.vec3(0.0)
+    center = wp.vec3(0.0)
     count = float(0.0)
     for k in range(shape.members.shape[1]):
         i = shape.members[r, k]
         if i >= 0:
-            centre += x[i, w]
+            center += x[i, w]
             count += 1.0
-    centre /= count
+    center /= count
     farthest = float(0.0)
     for k in range(shape.members.shape[1]):
         i = shape.members[r, k]
         if i >= 0:
-            farthest = wp.max(farthest, wp.length_sq(x[i, w] - centre))
-    balls.ball[r, w] = wp.vec4(centre[0], centre[1], centre[2], wp.sqrt(farthest))
+            farthest = wp.max(farthest, wp.length_sq(x[i, w] - center))
+    balls.ball[r, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(farthest))
     balls.near[r, w] = 0
 
 
 @wp.func
-def centre_of(ball: wp.vec4) -> wp.vec3:
+def center_of(ball: wp.vec4) -> wp.vec3:
     """Centre of a ring [m]."""
     return wp.vec3(ball[0], ball[1], ball[2])
 
@@ -92,7 +92,7 @@ def centre_of(ball: wp.vec4) -> wp.vec3:
 @wp.func
 def share_of(x: wp.vec3, ball: wp.vec4, n: wp.vec3) -> float:
     """How much a vertex at ``x`` is on the side ``n`` of its ring, 0 to 1: the eighth power of a cosine."""
-    side = wp.max(wp.dot(x - centre_of(ball), n) / ball[3], 0.0)
+    side = wp.max(wp.dot(x - center_of(ball), n) / ball[3], 0.0)
     square = side * side
     return square * square * square * square
 
@@ -106,7 +106,7 @@ def facing(shape: LoopShape, x: wp.array2d(dtype=wp.vec3), r: int, w: int, ball:
         i = shape.members[r, k]
         if i >= 0:
             share = share_of(x[i, w], ball, n)
-            reach += share * wp.dot(x[i, w] - centre_of(ball), n)
+            reach += share * wp.dot(x[i, w] - center_of(ball), n)
             total += share
     return wp.vec2(reach / total, total)
 
@@ -117,7 +117,7 @@ def pair_gap(
 ) -> float:
     """Distance between the outer surfaces of rings ``r`` and ``s`` along ``n``, negative where they overlap [m]."""
     reach = facing(shape, x, r, w, own, n)[0] + facing(shape, x, s, w, other, -n)[0]
-    return wp.length(centre_of(other) - centre_of(own)) - reach - shape.thickness
+    return wp.length(center_of(other) - center_of(own)) - reach - shape.thickness
 
 
 @wp.kernel
@@ -125,7 +125,7 @@ def rest_gaps(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls):
     """Allow the pairs that overlap at rest to do so. Launch (R, R)."""
     r, s = wp.tid()
     if shape.allowed[r, s] > NEVER:
-        n = wp.normalize(centre_of(balls.ball[s, 0]) - centre_of(balls.ball[r, 0]))
+        n = wp.normalize(center_of(balls.ball[s, 0]) - center_of(balls.ball[r, 0]))
         gap = pair_gap(shape, x, r, s, 0, balls.ball[r, 0], balls.ball[s, 0], n)
         shape.allowed[r, s] = wp.min(gap - REST_MARGIN, 0.0)
 
@@ -136,7 +136,7 @@ def way_between(balls: RingBalls, r: int, s: int, w: int, longest: float) -> flo
     way = float(0.0)
     k = wp.min(r, s)
     while k < wp.max(r, s) and way < longest:
-        way += wp.length(centre_of(balls.ball[k + 1, w]) - centre_of(balls.ball[k, w]))
+        way += wp.length(center_of(balls.ball[k + 1, w]) - center_of(balls.ball[k, w]))
         k += 1
     return way
 
@@ -184,7 +184,7 @@ def finish_ring(shape: LoopShape, x: wp.array2d(dtype=wp.vec3), r: int, w: int, 
     for k in range(shape.members.shape[1]):
         i = shape.members[r, k]
         if i >= 0:
-            force = centre_of(press.plane[i, w])
+            force = center_of(press.plane[i, w])
             size = wp.length(force)
             if touched == 1 and size > FAINT:
                 n = force / size
@@ -208,7 +208,7 @@ def find_near(shape: LoopShape, balls: RingBalls):
     s = shape.next_touch[r]
     while s < shape.members.shape[0]:
         other = balls.ball[s, w]
-        d = wp.length(centre_of(other) - centre_of(own))
+        d = wp.length(center_of(other) - center_of(own))
         if d < own[3] + other[3] + shape.thickness:
             balls.near[r, w] = 1
             balls.near[s, w] = 1
@@ -226,7 +226,7 @@ def press_loops(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls
     s = int(0)
     while s < shape.members.shape[0]:
         other = balls.ball[s, w]
-        way = centre_of(other) - centre_of(own)
+        way = center_of(other) - center_of(own)
         d = wp.length(way)
         if d < own[3] + other[3] + shape.thickness and shape.allowed[r, s] > NEVER and d > 0.0:
             n = way / d

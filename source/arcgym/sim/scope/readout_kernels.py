@@ -55,7 +55,7 @@ def read_tip(
 @wp.kernel
 def locate_tip(
     tip_pose: wp.array(dtype=wp.transform),
-    centres: wp.array2d(dtype=wp.vec3),
+    centers: wp.array2d(dtype=wp.vec3),
     ring_arc: wp.array(dtype=float),
     link_ring: wp.array2d(dtype=int),
     span: int,
@@ -68,7 +68,7 @@ def locate_tip(
     ``arc`` is in rest arc length [m]; before the first ring and beyond the last it goes on along the end segments.
     """
     w = wp.tid()
-    rings = centres.shape[1]
+    rings = centers.shape[1]
     p = wp.transform_get_translation(tip_pose[w])
     near = link_ring[w, link_ring.shape[1] - 1]
     lo = int(0)
@@ -78,8 +78,8 @@ def locate_tip(
         hi = wp.min(rings - 1, near + span)
     best = float(1.0e9)
     for r in range(lo, hi):
-        a = centres[w, r]
-        b = centres[w, r + 1]
+        a = centers[w, r]
+        b = centers[w, r + 1]
         t = segment_parameter(p, a, b)
         d = wp.length(p - a - t * (b - a))
         if d < best:

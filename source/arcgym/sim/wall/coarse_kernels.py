@@ -34,7 +34,7 @@ class RingSpace:
     anchor: wp.array2d(dtype=Unknowns)  # rows of the tight springs [N/m], shape (R, M)
     loose: wp.array(dtype=float)  # share of them within the slack, shape (R,)
     slack: wp.array(dtype=float)  # [m], shape (R,)
-    rest_centre: wp.array(dtype=wp.vec3)  # mean rest position of the ring's vertices [m], shape (R,)
+    rest_center: wp.array(dtype=wp.vec3)  # mean rest position of the ring's vertices [m], shape (R,)
 
 
 @wp.kernel
@@ -57,7 +57,7 @@ def ring_rotations(
             q += space.frame_weights[i][1] * x[i, w]
             total += x[i, w]
             count += 1.0
-    shift[r, w] = total / count - space.rest_centre[r]
+    shift[r, w] = total / count - space.rest_center[r]
     p = wp.normalize(p)
     q = wp.normalize(q - p * wp.dot(p, q))
     rotation[r, w] = wp.matrix_from_cols(p, q, wp.cross(p, q)) * wp.transpose(space.rest_frame[r])

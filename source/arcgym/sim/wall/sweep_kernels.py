@@ -24,7 +24,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 def sweep_kernels(
     elements_type: type, add_elements: wp.Function, add_forces: wp.Function
 ) -> tuple[wp.Kernel, wp.Kernel]:
-    """Make the kernels ``sweep_colour`` and ``residual`` for one kind of elements.
+    """Make the kernels ``sweep_color`` and ``residual`` for one kind of elements.
 
     Args:
         elements_type: Struct of the elements.
@@ -34,8 +34,8 @@ def sweep_kernels(
     """
 
     @wp.kernel(module="unique")
-    def sweep_colour(
-        colour: wp.array(dtype=int),
+    def sweep_color(
+        color: wp.array(dtype=int),
         nodes: WallNodes,
         elements: elements_type,
         tissue: Tissue,
@@ -47,7 +47,7 @@ def sweep_kernels(
     ):
         """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
         k, w = wp.tid()
-        i = colour[k]
+        i = color[k]
         if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
             return
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
@@ -77,4 +77,4 @@ def sweep_kernels(
             block = add_loops(block, contacts.loops, x[i, w], i, w)
         force[i, w] = block.force
 
-    return sweep_colour, residual
+    return sweep_color, residual

@@ -21,7 +21,7 @@ from arcgym.sim.wall.wall_topology import vertex_entries
 class WallElements(Protocol):
     """Elements of all worlds' walls."""
 
-    sweep_colour: wp.Kernel
+    sweep_color: wp.Kernel
     """Sweep over this kind of elements, see :mod:`arcgym.sim.wall.sweep_kernels`."""
     residual: wp.Kernel
     """Total force with this kind of elements."""
@@ -42,7 +42,7 @@ def wall_elements(wall: WallParameters, num_envs: int, device: str) -> WallEleme
 class Solid:
     """Tetrahedra, which need nothing measured."""
 
-    sweep_colour, residual = sweep_kernels(
+    sweep_color, residual = sweep_kernels(
         solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic
     )
 
@@ -70,7 +70,7 @@ class Solid:
 class Shell:
     """Triangles and hinges, measured once a step."""
 
-    sweep_colour, residual = sweep_kernels(
+    sweep_color, residual = sweep_kernels(
         shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
     )
 

@@ -56,7 +56,7 @@ class WallParameters:
     """Ring of each vertex, shape (V,)."""
     thickness: float
     """Distance between the outermost vertices of two stretches that touch [m]: a shell's thickness, 0 for a solid."""
-    colours: list[np.ndarray]
+    colors: list[np.ndarray]
     """Vertices that share no element, colour by colour."""
 
 

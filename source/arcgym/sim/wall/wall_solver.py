@@ -77,8 +77,8 @@ class WallSolver:
         self.nodes = wall_nodes(wall, device)
         self.elements = wall_elements(wall, num_envs, device)
         self.space = self._space(wall, modes)
-        self.colours = [
-            wp.array(c[wall.mobile[c]], dtype=int, device=device) for c in wall.colours if wall.mobile[c].any()
+        self.colors = [
+            wp.array(c[wall.mobile[c]], dtype=int, device=device) for c in wall.colors if wall.mobile[c].any()
         ]
         self.tissue = wall_kernels.Tissue()
         self.tissue.moduli = wp.array(np.tile(wall.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
@@ -110,7 +110,7 @@ class WallSolver:
         space.rest_frame = wp.array(modes.rest_frame, dtype=wp.mat33, device=self.device)
         space.loose = wp.array(ring_mean(wall.anchor.loose, wall.ring), dtype=float, device=self.device)
         space.slack = wp.array(ring_mean(wall.anchor.slack, wall.ring), dtype=float, device=self.device)
-        space.rest_centre = wp.array(ring_mean(wall.points, wall.ring), dtype=wp.vec3, device=self.device)
+        space.rest_center = wp.array(ring_mean(wall.points, wall.ring), dtype=wp.vec3, device=self.device)
         for name in ("stiffness", "coupling", "mass", "anchor"):
             setattr(space, name, wp.array(getattr(modes, name), dtype=Unknowns, device=self.device))
         return space
@@ -145,11 +145,11 @@ class WallSolver:
         wp.launch(wall_kernels.finish, x.shape, [self.x_prev, self.dt, x, v], device=self.device)
 
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
-        for colour in self.colours:
-            args = [colour, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
+        for color in self.colors:
+            args = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
             wp.launch(
-                self.elements.sweep_colour,
-                (len(colour), self.num_envs),
+                self.elements.sweep_color,
+                (len(color), self.num_envs),
                 [*args, self.cfg.largest_move, self.force, x],
                 device=self.device,
             )

@@ -26,7 +26,7 @@ _LPS = np.array([-1.0, -1.0, 1.0])
 Edit = Callable[[Grid, ColonStage], None]
 
 
-def write_voxelised(stage: ColonStage, path: Path, direction: np.ndarray, edits: Sequence[Edit]) -> Path:
+def write_voxelized(stage: ColonStage, path: Path, direction: np.ndarray, edits: Sequence[Edit]) -> Path:
     """Writes a colon's lumen, changed by edits in turn, as labels 0 and 1 with a direction matrix."""
     import SimpleITK as sitk
 

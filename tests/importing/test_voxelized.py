@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from label_volumes import DIRECTIONS
-from voxelised import gap, noise, place, rectal_tube, small_bowel, write_voxelised
+from voxelized import gap, noise, place, rectal_tube, small_bowel, write_voxelized
 
 from arcgym.anatomy import read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
@@ -38,7 +38,7 @@ pytestmark = pytest.mark.slow
 def test_import_is_near_the_truth(case: str, tmp_path: Path) -> None:
     name, direction, edits, cut = CASES[case]
     truth = read_colon(COLONS / name / "colon.usda")
-    volume = write_voxelised(truth, tmp_path / "colon.nii.gz", DIRECTIONS[direction], edits)
+    volume = write_voxelized(truth, tmp_path / "colon.nii.gz", DIRECTIONS[direction], edits)
     told = import_to_folder(volume, tmp_path / "out", ImportSettings())
     imported = read_colon(tmp_path / "out" / "colon.usda")
     shift = np.array(imported.metadata["translationAfterRotation"])
