@@ -14,6 +14,7 @@ from arcgym.assets.endoscope_cfg import (
     IntroducerCfg,
     TipPullCfg,
 )
+from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
 
 if TYPE_CHECKING:
     from arcgym.assets.colon import Colon, ColonData
@@ -35,6 +36,8 @@ __all__ = [
     "Endoscope",
     "EndoscopeCfg",
     "EndoscopeData",
+    "FORCE_TIERS",
+    "ForceTiersCfg",
     "IntroducerCfg",
     "MAGNETIC_CFG",
     "PROXIMAL_CFG",

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.envs.mdp.force_tiers import ForceTiersCfg
+from arcgym.assets.force_tiers import ForceTiersCfg
 
 
 @dataclass(frozen=True)

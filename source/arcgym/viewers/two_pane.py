@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from PIL import Image, ImageDraw
 
-from arcgym.envs.mdp.force_tiers import tiers_of
+from arcgym.assets.force_tiers import tiers_of
 from arcgym.sensors import SkinnedSurface
 from arcgym.utils.configclass import configclass
 from arcgym.viewers.drawing import DARK, DIM_INK, font
@@ -59,7 +59,7 @@ class TwoPaneView:
         """
         self.cfg = cfg or _viewer_cfg(env)
         self._env = env
-        self._tiers = shown_tiers(tiers_of(env))
+        self._tiers = shown_tiers(tiers_of(env.cfg))
         self._colon, self._scope = env.scene["colon"], env.scene["endoscope"]
         stage = self._colon.stage
         device = str(self._colon.nodal_pos_wp.device)

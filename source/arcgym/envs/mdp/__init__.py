@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
 from arcgym.envs.mdp.actions import InsertionAction, InsertionActionCfg, TipVelocityAction, TipVelocityActionCfg
 from arcgym.envs.mdp.costs import (
     anchor_tension_above,
@@ -37,7 +38,7 @@ from arcgym.envs.mdp.force_metrics import (
     tip_force_percentile,
     tip_impulse,
 )
-from arcgym.envs.mdp.force_tiers import FORCE_TIERS, ForceTiersCfg, force_limit, tiers_of
+from arcgym.envs.mdp.loads import force_limit
 from arcgym.envs.mdp.lumen import (
     LUMEN_PRESETS,
     METRIC,
@@ -203,7 +204,6 @@ __all__ = [
     "segment_span",
     "stuck",
     "success",
-    "tiers_of",
     "time_above",
     "time_out",
     "time_to_success",

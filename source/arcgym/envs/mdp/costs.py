@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.envs.mdp.force_tiers import force_limit
-from arcgym.envs.mdp.loads import anchor_load, link_load, strain_load, tip_load
+from arcgym.envs.mdp.loads import anchor_load, force_limit, link_load, strain_load, tip_load
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores, resolve_lumen
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import SceneEntityCfg

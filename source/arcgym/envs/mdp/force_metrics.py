@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.envs.mdp.force_tiers import force_limit
+from arcgym.envs.mdp.loads import force_limit
 from arcgym.managers import ManagerTermBase, MetricsTermCfg, SceneEntityCfg
 from arcgym.utils.worlds import fill_worlds
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.assets.force_tiers import tier_limit, tiers_of
+
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
     from arcgym.managers import SceneEntityCfg
@@ -36,3 +38,12 @@ def anchor_load(env: ManagerBasedEnv, peak: bool) -> torch.Tensor:
     """Pull of each ring on its anchors [N], shape (N, R); a view."""
     data = env.scene["colon"].data
     return data.anchor_tension_peak if peak else data.anchor_tension
+
+
+def force_limit(env: ManagerBasedEnv, limit: float | str) -> float:
+    """Return a limit of force [N], given as a number or by the name of a tier of the task.
+
+    Raises:
+        ValueError: If there is no such tier, with those there are.
+    """
+    return tier_limit(tiers_of(env.cfg), limit)

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.envs.mdp.force_tiers import force_limit
-from arcgym.envs.mdp.loads import anchor_load, link_load, strain_load, tip_load
+from arcgym.envs.mdp.loads import anchor_load, force_limit, link_load, strain_load, tip_load
 from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import has_passed
 from arcgym.managers import ManagerTermBase, RewardTermCfg, SceneEntityCfg

@@ -5,13 +5,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from arcgym.utils.configclass import configclass
 from arcgym.utils.string import did_you_mean
-
-if TYPE_CHECKING:
-    from arcgym.envs import ManagerBasedEnv
 
 
 @configclass
@@ -50,20 +45,27 @@ FORCE_TIERS = ForceTiersCfg()
 """Tiers of tasks that define none."""
 
 
-def tiers_of(env: ManagerBasedEnv) -> ForceTiersCfg:
-    """Tiers of the task: its field ``force_tiers``, or the defaults where it has none."""
-    return getattr(env.cfg, "force_tiers", None) or FORCE_TIERS
+def tiers_of(env_cfg: object) -> ForceTiersCfg:
+    """Return the tiers of a task: its field ``force_tiers``, or the defaults where it has none.
+
+    Args:
+        env_cfg: The task's configuration, ``env.cfg``.
+    """
+    return getattr(env_cfg, "force_tiers", None) or FORCE_TIERS
 
 
-def force_limit(env: ManagerBasedEnv, limit: float | str) -> float:
-    """A limit of force [N], given as a number or by the name of a tier: ``comfort``, ``unsafe`` or ``perforation``.
+def tier_limit(tiers: ForceTiersCfg, limit: float | str) -> float:
+    """Return a limit of force [N].
+
+    Args:
+        tiers: The task's tiers.
+        limit: A number [N], or the name of a tier: ``comfort``, ``unsafe`` or ``perforation``.
 
     Raises:
         ValueError: If there is no such tier, with those there are.
     """
     if not isinstance(limit, str):
         return limit
-    tiers = vars(tiers_of(env))
-    if limit not in tiers:
-        raise ValueError(f"There is no force tier '{limit}'. {did_you_mean(limit, tiers)}")
-    return tiers[limit]
+    if limit not in vars(tiers):
+        raise ValueError(f"There is no force tier '{limit}'. {did_you_mean(limit, vars(tiers))}")
+    return getattr(tiers, limit)
