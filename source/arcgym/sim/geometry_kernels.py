@@ -9,12 +9,12 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.func
-def shortened(move: wp.vec3, longest: float) -> wp.vec3:
-    """``move`` in its direction, no longer than ``longest``."""
-    length = wp.length(move)
-    if length > longest:
-        return move * (longest / length)
-    return move
+def clamp_length(vector: wp.vec3, max_length: float) -> wp.vec3:
+    """Return ``vector`` with its length clamped to ``max_length``."""
+    length = wp.length(vector)
+    if length > max_length:
+        return vector * (max_length / length)
+    return vector
 
 
 @wp.func

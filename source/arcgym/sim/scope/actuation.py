@@ -78,9 +78,13 @@ class Actuation:
 
     def _introducer(self, endoscope: Endoscope) -> kernels.Introducer:
         guide, cfg = kernels.Introducer(), self.scope.introducer
-        rest, guide.height, guide.lid = endoscope.rest_height, cfg.height, -cfg.slack
+        rest, guide.height, guide.min_height = endoscope.rest_height, cfg.height, -cfg.slack
         if self.stage.root == "free":
-            rest, guide.height, guide.lid = np.full(self.link_count, 1.0), -math.inf, float(endoscope.half_length[0])
+            rest, guide.height, guide.min_height = (
+                np.full(self.link_count, 1.0),
+                -math.inf,
+                float(endoscope.half_length[0]),
+            )
         guide.rest = wp.array(rest, dtype=float, device=self.device)
         guide.stiffness, guide.damping = cfg.stiffness, cfg.damping
         return guide

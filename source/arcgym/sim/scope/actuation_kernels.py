@@ -11,6 +11,7 @@ W worlds, L links, J joint coordinates a world; the root's slide and roll are co
 
 import warp as wp
 
+from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -51,17 +52,8 @@ class Introducer:
     stiffness: float  # [N/m]
     damping: float  # [N s/m]
     height: float  # up to which links are pulled onto the Z axis [m]
-    lid: float  # down to which links that belong inside may sink [m]
+    min_height: float  # down to which links that belong inside may sink [m]
     rest: wp.array(dtype=float)  # height of each link where the slide is at zero and the shaft straight [m], shape (L,)
-
-
-@wp.func
-def limited(v: wp.vec3, limit: float) -> wp.vec3:
-    """Vector shortened to ``limit``."""
-    length = wp.length(v)
-    if length > limit:
-        return v * (limit / length)
-    return v
 
 
 @wp.kernel
@@ -141,7 +133,7 @@ def load_links(
     """Weight of every link, and the springs of the introducer near the colon's first rings. Launch (L, W).
 
     Low links are pulled sideways onto the Z axis. The base's slide tells how high each would be in a straight shaft; a
-    link up to ``SPHINCTER`` lower than that, and lower than the lid, is lifted. ``ring`` has the shape (W, L).
+    link up to ``SPHINCTER`` lower than that, and lower than ``min_height``, is lifted. ``ring`` has the shape (W, L).
     """
     link, w = wp.tid()
     i = w * resistance.shape[0] + link
@@ -154,7 +146,7 @@ def load_links(
         if p[2] < guide.height:
             force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)
             held = wp.vec3(dt * damping, dt * damping, 0.0)
-        low = guide.lid + wp.min(guide.rest[link] + joint_q[w * coords], 0.0) - p[2]
+        low = guide.min_height + wp.min(guide.rest[link] + joint_q[w * coords], 0.0) - p[2]
         if low > 0.0 and low < SPHINCTER:
             force[2] = force[2] + guide.stiffness * low - damping * v[2]
             held[2] = dt * damping
@@ -187,8 +179,8 @@ def pull_tip(
     tip = (w + 1) * links - 1
     ahead = wp.transform_vector(body_q[tip], lin_command[w]) - wp.spatial_top(body_qd[tip])
     spin = wp.transform_vector(body_q[tip], ang_command[w]) - wp.spatial_bottom(body_qd[tip])
-    d = limited(lead[w] + dt * ahead, pull.force_limit / pull.stiffness)
-    e = limited(turn[w] + dt * spin, pull.torque_limit / pull.angular_stiffness)
+    d = clamp_length(lead[w] + dt * ahead, pull.force_limit / pull.stiffness)
+    e = clamp_length(turn[w] + dt * spin, pull.torque_limit / pull.angular_stiffness)
     lead[w] = d
     turn[w] = e
     f = pull.stiffness * d + (pull.damping + dt * pull.stiffness) * ahead
@@ -196,10 +188,10 @@ def pull_tip(
     f_drop = dt * (pull.damping + dt * pull.stiffness)
     m_drop = dt * (pull.angular_damping + dt * pull.angular_stiffness)
     if wp.length(f) >= pull.force_limit:
-        f = limited(f, pull.force_limit)
+        f = clamp_length(f, pull.force_limit)
         f_drop = 0.0
     if wp.length(m) >= pull.torque_limit:
-        m = limited(m, pull.torque_limit)
+        m = clamp_length(m, pull.torque_limit)
         m_drop = 0.0
     body_f[tip] = body_f[tip] + wp.spatial_vector(f, m)
     drop = wp.spatial_vector(f_drop, f_drop, f_drop, m_drop, m_drop, m_drop)

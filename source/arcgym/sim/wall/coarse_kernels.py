@@ -12,7 +12,7 @@ import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactRecords
 from arcgym.sim.contact.self_contact_kernels import LoopPress
-from arcgym.sim.geometry_kernels import shortened
+from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.sim.wall.anchor_kernels import secant_share
 from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
 from arcgym.sim.wall.wall_kernels import Pressing, Tissue
@@ -191,4 +191,4 @@ def prolong(
     d = wp.vec3(0.0)
     for m in range(MODES):
         d += solution[r, m, w] * space.basis[i, m]
-    x[i, w] = x[i, w] + rotation[r, w] * shortened(d, largest_move)
+    x[i, w] = x[i, w] + rotation[r, w] * clamp_length(d, largest_move)

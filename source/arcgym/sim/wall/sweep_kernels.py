@@ -5,7 +5,7 @@
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import shortened
+from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.sim.wall.wall_kernels import (
     Pressing,
     Tissue,
@@ -54,7 +54,7 @@ def sweep_kernels(
         block = add_elements(block, elements, x, i, w, tissue.moduli[w])
         block = add_contact(block, contacts, x, i, w)
         block = add_loops(block, contacts.loops, x[i, w], i, w)
-        x[i, w] = x[i, w] + shortened(wp.inverse(block.hessian) * block.force, largest_move)
+        x[i, w] = x[i, w] + clamp_length(wp.inverse(block.hessian) * block.force, largest_move)
 
     @wp.kernel(module="unique")
     def residual(
