@@ -9,12 +9,17 @@ import logging
 import sys
 import webbrowser
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from arcgym.anatomy.importing import ImportSettings
 
 
 def main() -> None:
     """Parses the command line and imports."""
     args = _parser().parse_args()
     logging.basicConfig(level=logging.INFO, format="%(message)s")
+    settings = _checked_settings(args)
     try:
         import SimpleITK  # noqa: F401
         import skimage  # noqa: F401
@@ -24,7 +29,7 @@ def main() -> None:
     except ImportError as error:
         sys.exit(f"{error}. The importer has dependencies of its own: pip install 'arcgym[importer]'")
     try:
-        told = import_to_folder(args.input, args.out, _settings(args), args.overwrite)
+        told = import_to_folder(args.input, args.out, settings, args.overwrite)
     except ColonImportError as error:
         sys.exit(f"error: {error}")
     failed = [check for check in told["checks"] if not check["ok"]]
@@ -65,8 +70,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--units", choices=("auto", "mm", "cm", "m"), default="auto", help="unit of a surface")
     parser.add_argument("--frame", choices=("auto", "ras", "lps", "y-up", "y-up-lps"), default="auto", help="its axes")
-    parser.add_argument("--anus", type=_point, metavar="X,Y,Z", help="place of the anus [mm], see docs/importing.md")
-    parser.add_argument("--cecum", type=_point, metavar="X,Y,Z", help="place of the caecal pole [mm]")
+    parser.add_argument("--anus", metavar="X,Y,Z", help="place of the anus [mm], see docs/importing.md")
+    parser.add_argument("--cecum", metavar="X,Y,Z", help="place of the caecal pole [mm]")
     parser.add_argument(
         "--landmark", action="append", default=[], metavar="NAME=MM", help="landmark by arc length, or X,Y,Z [mm]"
     )
@@ -81,8 +86,22 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _settings(args: argparse.Namespace) -> object:
+def _checked_settings(args: argparse.Namespace) -> ImportSettings:
+    """Return the settings; where one or a path cannot be right, say so and exit with status 2 before any work."""
+    from arcgym.anatomy.importing import ImportArgumentError
+    from arcgym.anatomy.importing.preflight import check_paths
+
+    try:
+        check_paths(args.input, args.out, args.overwrite)
+        return _settings(args)
+    except ImportArgumentError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+def _settings(args: argparse.Namespace) -> ImportSettings:
     from arcgym.anatomy.importing import ImportSettings
+    from arcgym.anatomy.importing.arguments import parse_landmark, parse_point
 
     return ImportSettings(
         name=args.out.name,
@@ -90,9 +109,9 @@ def _settings(args: argparse.Namespace) -> object:
         spacing=args.spacing and tuple(args.spacing),
         units=args.units,
         frame=args.frame,
-        anus=args.anus,
-        cecum=args.cecum,
-        landmarks=dict(_landmark(text) for text in args.landmark),
+        anus=args.anus and parse_point(args.anus, "--anus"),
+        cecum=args.cecum and parse_point(args.cecum, "--cecum"),
+        landmarks=dict(parse_landmark(text) for text in args.landmark),
         posture=args.posture,
         licence=args.licence,
         patient=args.patient,
@@ -102,21 +121,6 @@ def _settings(args: argparse.Namespace) -> object:
         ring_spacing=1e-3 * args.ring_spacing,
         sectors=args.sectors,
     )
-
-
-def _point(text: str) -> tuple[float, ...]:
-    values = tuple(float(value) for value in text.split(","))
-    if len(values) != 3:
-        raise argparse.ArgumentTypeError(f"'{text}' is no X,Y,Z")
-    return values
-
-
-def _landmark(text: str) -> tuple[str, float | tuple[float, ...]]:
-    name, _, value = text.partition("=")
-    try:
-        return name, _point(value) if "," in value else 1e-3 * float(value)
-    except (ValueError, argparse.ArgumentTypeError):
-        sys.exit(f"error: --landmark {text}: expected NAME=MM or NAME=X,Y,Z, such as rectosigmoid=150")
 
 
 if __name__ == "__main__":

@@ -33,11 +33,6 @@ def ball(size: int = 40, radius: float = 15) -> np.ndarray:
     return (np.linalg.norm(offset, axis=0) < radius).astype(np.uint8)
 
 
-def test_impossible_wall() -> None:
-    with pytest.raises(ColonImportError, match="sectors is 3. Pass 6 to 64"):
-        ImportSettings(sectors=3)
-
-
 def test_empty_mask(tmp_path: Path) -> None:
     refused(volume(tmp_path / "a.mha", np.zeros((9, 9, 9), np.uint8)), "no voxel above 0.*--label")
 

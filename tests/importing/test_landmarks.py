@@ -9,7 +9,8 @@ import pytest
 
 from arcgym.anatomy.generator.centerline import make_centerline
 from arcgym.anatomy.generator.population import draw_spec
-from arcgym.anatomy.importing.landmarks import BORDERS, find_segment_ends
+from arcgym.anatomy.importing.landmarks import find_segment_ends
+from arcgym.anatomy.landmarks import BORDERS
 
 
 @pytest.mark.parametrize("seed", [10, 25, 33, 50, 74, 76])

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from arcgym.anatomy.generator.centerline import make_centerline
-from arcgym.anatomy.generator.landmarks import find_landmarks
 from arcgym.anatomy.generator.lesions import Lesion, place_lesions
 from arcgym.anatomy.generator.posture import make_posed, repose
 from arcgym.anatomy.generator.quantize import compact
@@ -20,6 +19,7 @@ from arcgym.anatomy.generator.surface import Surface
 from arcgym.anatomy.generator.texture import write_textures
 from arcgym.anatomy.generator.visual import sample_visual
 from arcgym.anatomy.generator.wall import sample_wall
+from arcgym.anatomy.landmarks import find_landmarks
 from arcgym.anatomy.stage.types import Centerline, ColonStage
 from arcgym.anatomy.validation.validate import failed, validate_curve, validate_wall
 

@@ -10,7 +10,8 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.orientation import FRAMES, likeness
+from arcgym.anatomy.importing.formats import FRAMES
+from arcgym.anatomy.importing.orientation import likeness
 from arcgym.anatomy.importing.tree import LumenTree, caliber
 
 _LEAST_LEAK = 0.035

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.landmarks import BORDERS
 
 RECTUM = 0.150
 """Length of the rectum [m]: clinically the last 15 cm above the anal verge (D'Souza et al., Ann Surg 2019)."""
@@ -26,17 +27,6 @@ lie within 1 cm and within 5 cm of its top."""
 HEPATIC_FLEXURE, LIMB_SHARE = 0.107, 0.185
 """Length of the right flexure [m], and where it ends: at this share of the way from the upper part of its descending
 limb to the caecum. That upper part is the mean of where the limb is steep, 3 cm and 8 cm below the top."""
-
-BORDERS = (
-    "rectosigmoid",
-    "sigmoid_descending",
-    "splenic_flexure_entry",
-    "splenic_flexure_exit",
-    "hepatic_flexure_entry",
-    "hepatic_flexure_exit",
-    "cecum_entry",
-)
-"""Landmarks between segments, in order."""
 
 _SHORTEST_SEGMENT = 0.02
 _TOPS = (0.01, 0.05)
@@ -57,15 +47,12 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
     Args:
         points: Centreline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
         arc: Its arc length [m], shape (n,).
-        given: Arc length [m] of landmarks that the caller knows, by names of :data:`BORDERS`.
+        given: Arc length [m] of landmarks that the caller knows, by names of :data:`arcgym.anatomy.landmarks.BORDERS`.
 
     Returns:
         Ends [m], shape (8,), and the names of the borders that were set to typical shares of the length, because the
         course does not show them.
     """
-    unknown = set(given) - set(BORDERS)
-    if unknown:
-        raise ColonImportError(f"Unknown landmarks {sorted(unknown)}", f"Pass --landmark with {', '.join(BORDERS)}.")
     found = {**_from_course(points, arc), **given}
     borders = np.array([found[name] for name in BORDERS])
     guessed: list[str] = []

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.formats import FRAMES
 
 _TYPICAL_COURSE = np.array(
     [
@@ -36,21 +37,13 @@ _TYPICAL_SHARE = np.array([0.0, 0.06, 0.115, 0.19, 0.29, 0.40, 0.487, 0.55, 0.63
 _LEAST_MARGIN = 0.08
 _LEAST_LIKENESS = 0.25
 
-FRAMES = {
-    "ras": np.diag([1.0, 1.0, 1.0]),
-    "lps": np.diag([-1.0, -1.0, 1.0]),
-    "y-up": np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]]),
-    "y-up-lps": np.array([[-1.0, 0, 0], [0, 0, 1.0], [0, 1.0, 0]]),
-}
-"""Rotation from a file's axes to right, anterior, cranial."""
-
 
 @dataclass(frozen=True)
 class Orientation:
     """How a course lies in its file."""
 
     frame: str
-    """Key of :data:`FRAMES`."""
+    """Key of :data:`arcgym.anatomy.importing.formats.FRAMES`."""
     reversed: bool
     """Whether the course was found from caecum to anus."""
     likeness: float
@@ -66,7 +59,7 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
 
     Args:
         path: Course from one end to the other in the file's axes [m], shape (n, 3).
-        frame: A key of :data:`FRAMES`, or ``auto``.
+        frame: A key of :data:`arcgym.anatomy.importing.formats.FRAMES`, or ``auto``.
         ends_known: The caller gave an end; the path runs from anus to caecum.
 
     Raises:

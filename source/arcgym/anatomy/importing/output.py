@@ -9,8 +9,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.pipeline import import_colon
+from arcgym.anatomy.importing.preflight import check_paths
 from arcgym.anatomy.importing.report import write_report
 from arcgym.anatomy.importing.settings import ImportSettings
 from arcgym.anatomy.stage import write_colon
@@ -25,16 +25,16 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
         path: Label volume or surface.
         out: Folder to make.
         settings: What the caller knows better.
-        overwrite: Replaces a folder that exists.
+        overwrite: Replaces a folder that is empty or was made by an import.
 
     Returns:
         The figures of the report.
 
     Raises:
-        ColonImportError: The input cannot become a colon, or the folder exists.
+        ImportArgumentError: A path cannot be right; nothing has been read or made.
+        ColonImportError: The input cannot become a colon.
     """
-    if out.exists() and not overwrite:
-        raise ColonImportError(f"{out} exists", "Pass another folder, or --overwrite.")
+    check_paths(path, out, overwrite)
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}-", dir=out.parent) as place:
         made = Path(place) / "colon"

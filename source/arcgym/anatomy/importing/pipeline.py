@@ -14,22 +14,24 @@ import numpy as np
 from scipy.ndimage import gaussian_filter, gaussian_filter1d
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.generator.landmarks import find_landmarks
 from arcgym.anatomy.generator.texture import write_textures
 from arcgym.anatomy.importing.centerline import LEAST_HOLE, find_path
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.formats import FRAMES, GRAVITY, VOLUME_SUFFIXES
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.landmarks import find_segment_ends
 from arcgym.anatomy.importing.openings import Opening, find_openings
-from arcgym.anatomy.importing.orientation import FRAMES, Orientation, orient
+from arcgym.anatomy.importing.orientation import Orientation, orient
 from arcgym.anatomy.importing.polar import cast, cast_rings, own_loop
+from arcgym.anatomy.importing.preflight import check_input
 from arcgym.anatomy.importing.settings import ImportSettings
 from arcgym.anatomy.importing.smooth_centerline import centerd, plain_curve, relaxed, with_upright_canal
-from arcgym.anatomy.importing.surfaces import SURFACE_SUFFIXES, fill_surface, load_surface
+from arcgym.anatomy.importing.surfaces import fill_surface, load_surface
 from arcgym.anatomy.importing.visual_fitting import fit_visual
-from arcgym.anatomy.importing.volumes import VOLUME_SUFFIXES, read_volume
+from arcgym.anatomy.importing.volumes import read_volume
 from arcgym.anatomy.importing.wall_fitting import FittedWall, fit_wall
+from arcgym.anatomy.landmarks import find_landmarks
 from arcgym.anatomy.stage.types import Centerline, ColonStage, TissueMaterial
 
 _LOGGER = logging.getLogger(__name__)
@@ -38,7 +40,6 @@ _MEASURE_COLUMNS = 72
 _SMOOTHING = 0.0006
 _DOME_ROWS = 12
 _FARTHEST_LANDMARK = 0.06
-_GRAVITY = {"supine": [0.0, -1.0, 0.0], "prone": [0.0, 1.0, 0.0]}
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,7 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
     Raises:
         ColonImportError: The input cannot become a colon; says what was found and what to pass.
     """
+    check_input(path)
     progress = _Progress()
     grid, openings, source = _read(path, settings)
     progress.done("read", f"{grid.mask.sum() * grid.spacing**3 * 1e6:.0f} ml in {'x'.join(map(str, grid.mask.shape))}")
@@ -136,18 +138,12 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
 
 def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], dict[str, str]]:
     """Returns the lumen, where it is open if it was a surface, and what was read."""
-    if not path.is_file():
-        raise ColonImportError(f"{path} does not exist", "Pass a label volume or a surface.")
-    name = path.name.lower()
-    if name.endswith(VOLUME_SUFFIXES):
+    if path.name.lower().endswith(VOLUME_SUFFIXES):
         grid = read_volume(path, settings.label, settings.spacing, settings.voxel)
         return grid, [], {"kind": "volume", "units": "mm"}
-    if name.endswith(SURFACE_SUFFIXES):
-        points, faces, unit = load_surface(path, settings.units, settings.spacing)
-        grid = fill_surface(points, faces, settings.voxel)
-        return grid, find_openings(points, faces), {"kind": "surface", "units": unit}
-    known = ", ".join(VOLUME_SUFFIXES + SURFACE_SUFFIXES)
-    raise ColonImportError(f"{path} is of no known kind", f"Pass a file that ends in {known}.")
+    points, faces, unit = load_surface(path, settings.units, settings.spacing)
+    grid = fill_surface(points, faces, settings.voxel)
+    return grid, find_openings(points, faces), {"kind": "surface", "units": unit}
 
 
 def _course(grid: Grid, settings: ImportSettings, is_surface: bool) -> tuple[np.ndarray, Orientation, list[Any]]:
@@ -267,7 +263,7 @@ def _stage(
         metadata={
             "patient": settings.patient,
             "posture": settings.posture,
-            "gravityInScan": _GRAVITY[settings.posture],
+            "gravityInScan": GRAVITY[settings.posture],
             "provenance": f"imported from {path.name} with scripts/tools/import_colon.py",
             "licence": settings.licence,
             **transform,

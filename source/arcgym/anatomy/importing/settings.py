@@ -1,13 +1,18 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an import may be told."""
+"""Import settings: what may be told about a scan, the wall's grid and the bounds of the lumen."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from arcgym.anatomy.generator.spec import ColonSpec
-from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.errors import ImportArgumentError
+from arcgym.anatomy.importing.formats import FRAMES, GRAVITY, UNITS
+from arcgym.anatomy.landmarks import BORDERS
+from arcgym.utils.string import did_you_mean
 
 _RANGES = {
     "voxel": (0.0003, 0.01),
@@ -16,8 +21,13 @@ _RANGES = {
     "sectors": (6, 64),
     "wall_thickness": (0.0005, 0.006),
     "min_lumen_radius": (0.004, 0.03),
+    "clearance": (0.0, 0.02),
+    "visual_spacing": (0.0005, 0.02),
+    "visual_columns": (12, 400),
+    "proxy_spacing": (0.0005, 0.02),
+    "proxy_columns": (12, 400),
 }
-"""Smallest and largest value of settings in metres and of counts."""
+"""Smallest and largest value of settings in meters and of counts."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +43,7 @@ class ImportSettings:
     units: str = "auto"
     """Unit of a surface: ``mm``, ``cm``, ``m``, or ``auto`` to tell by its size."""
     frame: str = "auto"
-    """Axes of a surface, a key of :data:`arcgym.anatomy.importing.orientation.FRAMES`, or ``auto``."""
+    """Axes of a surface, a key of :data:`arcgym.anatomy.importing.formats.FRAMES`, or ``auto``."""
     anus: tuple[float, float, float] | None = None
     """Position of the anus [mm] on the patient's right, anterior and cranial axes, when it is not found."""
     cecum: tuple[float, float, float] | None = None
@@ -71,12 +81,44 @@ class ImportSettings:
     """Points around the surface drawn for policies."""
 
     def __post_init__(self) -> None:
-        """Checks the sizes.
+        """Check every setting.
 
         Raises:
-            ColonImportError: Names the setting, its value and what is allowed.
+            ImportArgumentError: Names the setting, its value and what is allowed.
         """
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise ColonImportError(f"{name} is {value:g}", f"Pass {low:g} to {high:g} (lengths in metres).")
+                raise ImportArgumentError(f"{name} is {value:g}", f"Pass {low:g} to {high:g} (lengths in meters).")
+        _check_choice("units", self.units, ("auto", *UNITS))
+        _check_choice("frame", self.frame, ("auto", *FRAMES))
+        _check_choice("posture", self.posture, GRAVITY)
+        if not self.name or "/" in self.name:
+            raise ImportArgumentError(f"name is '{self.name}'", "Pass one or more letters, no slash.")
+        if 0 in (self.label if isinstance(self.label, tuple) else (self.label,)):
+            raise ImportArgumentError("label is 0, the background", "Pass the value of the colon.")
+        if self.spacing is not None and not (_is_point(self.spacing) and min(self.spacing) > 0):
+            raise ImportArgumentError(f"spacing is {self.spacing}", "Pass three numbers above 0.")
+        for name in ("anus", "cecum"):
+            if getattr(self, name) is not None and not _is_point(getattr(self, name)):
+                raise ImportArgumentError(f"{name} is {getattr(self, name)}", "Pass X,Y,Z in millimeters.")
+        self._check_landmarks()
+
+    def _check_landmarks(self) -> None:
+        for name, place in self.landmarks.items():
+            if name not in BORDERS:
+                raise ImportArgumentError(f"Unknown landmark '{name}'", did_you_mean(name, BORDERS))
+            if isinstance(place, tuple) and _is_point(place):
+                continue
+            if isinstance(place, tuple) or not (math.isfinite(place) and place > 0.0):
+                expected = "Pass an arc length from the anal verge [m], above 0, or a position X,Y,Z [mm]."
+                raise ImportArgumentError(f"Landmark '{name}' is at {place}", expected)
+
+
+def _check_choice(name: str, value: str, known: Iterable[str]) -> None:
+    if value not in known:
+        raise ImportArgumentError(f"{name} is '{value}'", f"Pass one of {', '.join(known)}.")
+
+
+def _is_point(values: tuple[float, ...]) -> bool:
+    return len(values) == 3 and all(math.isfinite(value) for value in values)

@@ -10,13 +10,8 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.formats import UNITS
 from arcgym.anatomy.importing.grid import Grid
-
-SURFACE_SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtp", ".glb")
-"""File names that are read as surfaces."""
-
-UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}
-"""Metres in a unit."""
 
 _COLON_EXTENT = (0.18, 0.80)
 _LARGEST_HOLE = 0.08
@@ -27,8 +22,8 @@ def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel:
     """Reads a surface and fills it.
 
     Args:
-        path: File with one of :data:`SURFACE_SUFFIXES`.
-        units: A key of :data:`UNITS`, or ``auto`` to tell by the size.
+        path: File with one of :data:`arcgym.anatomy.importing.formats.SURFACE_SUFFIXES`.
+        units: A key of :data:`arcgym.anatomy.importing.formats.UNITS`, or ``auto`` to tell by the size.
         scale: Factors along the file's axes, for surfaces in voxels; applied first.
         voxel: Edge of the voxels of the result [m].
 

@@ -17,9 +17,6 @@ import numpy as np
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
 
-VOLUME_SUFFIXES = (".mha", ".mha.gz", ".nii", ".nii.gz", ".nrrd")
-"""File names that are read as label volumes."""
-
 _PLAUSIBLE_SPACING = (0.2, 6.0)
 _MARGIN = 0.006
 _MOST_LABELS = 150
@@ -32,7 +29,7 @@ def read_volume(
     """Reads a label volume.
 
     Args:
-        path: File with one of :data:`VOLUME_SUFFIXES`.
+        path: File with one of :data:`arcgym.anatomy.importing.formats.VOLUME_SUFFIXES`.
         label: Value or values of the colon; None takes everything above 0, if there is one such value only.
         spacing: Voxel spacing [mm] along the file's axes in place of the file's own.
         voxel: Edge of the voxels of the result [m].

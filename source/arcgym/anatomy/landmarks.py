@@ -1,28 +1,36 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Named places along the colon."""
+"""Names of the places along a colon, and where they lie on a centerline whose segments are known."""
 
 from __future__ import annotations
 
-from arcgym.anatomy.curve import Curve
+from typing import TYPE_CHECKING
 
-LANDMARKS = (
-    "anal_verge",
+if TYPE_CHECKING:
+    from arcgym.anatomy.curve import Curve
+
+BORDERS = (
     "rectosigmoid",
     "sigmoid_descending",
     "splenic_flexure_entry",
     "splenic_flexure_exit",
-    "mid_transverse",
     "hepatic_flexure_entry",
     "hepatic_flexure_exit",
     "cecum_entry",
-    "cecum_pole",
 )
-"""Landmarks in the order in which a colonoscope meets them."""
+"""Landmarks between two segments, in the order in which a colonoscope meets them."""
+
+LANDMARKS = ("anal_verge", *BORDERS[:4], "mid_transverse", *BORDERS[4:], "cecum_pole")
+"""Landmarks of every colon, in order."""
 
 
 def find_landmarks(curve: Curve, openings: dict[str, float] | None = None) -> dict[str, float]:
-    """Returns the arc length of each landmark [m], in order; ``openings`` are those of the caecum."""
+    """Return the arc length of each landmark [m], in order.
+
+    Args:
+        curve: Centerline with its segments.
+        openings: Arc lengths of further landmarks [m], such as the openings of the cecum.
+    """
     start = {name: curve.bounds(name)[0] for name in ("sigmoid", "descending", "splenic", "transverse")}
     hepatic, ascending, cecum = (curve.bounds(name)[0] for name in ("hepatic", "ascending", "cecum"))
     arcs = [0.0, start["sigmoid"], start["descending"], start["splenic"], start["transverse"]]

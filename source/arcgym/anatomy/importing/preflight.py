@@ -1,0 +1,63 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks of an import's paths before anything is read or made."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from arcgym.anatomy.importing.errors import ImportArgumentError
+from arcgym.anatomy.importing.formats import SURFACE_SUFFIXES, VOLUME_SUFFIXES
+
+_OWN_FILES = ("colon.usda", "report.json")
+"""Files that show that a folder was made by an import."""
+
+
+def check_paths(path: Path, out: Path, overwrite: bool) -> None:
+    """Check input and output.
+
+    Args:
+        path: Label volume or surface.
+        out: Folder to make.
+        overwrite: Whether a folder that exists may be replaced.
+
+    Raises:
+        ImportArgumentError: The input is no file of a known kind, or the folder cannot be made.
+    """
+    check_input(path)
+    if out.exists():
+        _check_replaceable(path, out, overwrite)
+    parent = next(folder for folder in out.absolute().parents if folder.exists())
+    if not parent.is_dir():
+        raise ImportArgumentError(f"{out} cannot be made: {parent} is a file", "Pass a folder below another folder.")
+    if not os.access(parent, os.W_OK | os.X_OK):
+        raise ImportArgumentError(f"{out} cannot be made: {parent} is not writable", "Pass a folder elsewhere.")
+
+
+def check_input(path: Path) -> None:
+    """Check that an input is a file of a known kind.
+
+    Raises:
+        ImportArgumentError: It does not exist, is a folder, or its name has an unknown ending.
+    """
+    known = ", ".join(VOLUME_SUFFIXES + SURFACE_SUFFIXES)
+    if path.is_dir():
+        raise ImportArgumentError(f"{path} is a folder", f"Pass one file that ends in {known}.")
+    if not path.is_file():
+        raise ImportArgumentError(f"{path} does not exist", "Pass a label volume or a surface.")
+    if not path.name.lower().endswith(VOLUME_SUFFIXES + SURFACE_SUFFIXES):
+        raise ImportArgumentError(f"{path} is of no known kind", f"Pass a file that ends in {known}.")
+
+
+def _check_replaceable(path: Path, out: Path, overwrite: bool) -> None:
+    """Check that an existing folder may be deleted: asked for, empty or made by an import, and not the input's."""
+    if not overwrite:
+        raise ImportArgumentError(f"{out} exists", "Pass another folder, or --overwrite.")
+    whole = out.resolve()
+    own = out.is_dir() and (not any(out.iterdir()) or all((out / name).is_file() for name in _OWN_FILES))
+    if not own or whole in path.resolve().parents or whole in (Path.cwd(), *Path.cwd().parents):
+        raise ImportArgumentError(
+            f"{out} is not replaced: it is neither empty nor a folder made by an import, or it is in use",
+            "Pass another folder, or remove it.",
+        )
