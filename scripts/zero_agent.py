@@ -1,11 +1,9 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Run a task with raw actions that are zero, to see that it works and what a policy has to beat."""
+"""Run a task with raw actions that are zero; the same as ``arcgym zero``."""
 
-from __future__ import annotations
-
-from arcgym.rl import cli
+from arcgym.cli.main import run_script
 
 if __name__ == "__main__":
-    cli.run_untrained("Run a task with raw actions that are zero.", "zero_policy")
+    raise SystemExit(run_script("zero"))

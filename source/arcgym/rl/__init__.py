@@ -13,9 +13,12 @@ import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from arcgym.rl.device import place as place
     from arcgym.rl.exporter import export_policy_as_jit as export_policy_as_jit
     from arcgym.rl.exporter import export_policy_as_onnx as export_policy_as_onnx
     from arcgym.rl.interrupt import TrainingInterrupted as TrainingInterrupted
+    from arcgym.rl.make_env import VideoOptions as VideoOptions
+    from arcgym.rl.make_env import make_env as make_env
     from arcgym.rl.models import ByteCnnModel as ByteCnnModel
     from arcgym.rl.periodic_video import PeriodicVideo as PeriodicVideo
     from arcgym.rl.run_folder import create_run_folder as create_run_folder
@@ -32,8 +35,10 @@ if TYPE_CHECKING:
     from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper as RslRlVecEnvWrapper
 
 _MODULES = {
+    "device": ("place",),
     "exporter": ("export_policy_as_jit", "export_policy_as_onnx"),
     "interrupt": ("TrainingInterrupted",),
+    "make_env": ("VideoOptions", "make_env"),
     "models": ("ByteCnnModel",),
     "periodic_video": ("PeriodicVideo",),
     "rollout_memory": ("describe_rollout", "rollout_bytes"),

@@ -71,6 +71,10 @@ def random_policy(env: RslRlVecEnvWrapper) -> Policy:
     return lambda obs: 2.0 * torch.rand(env.num_envs, env.num_actions, device=env.device) - 1.0
 
 
+UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {"zero": zero_policy, "random": random_policy}
+"""Policies that need no checkpoint, by name."""
+
+
 def run_policy(env: RslRlVecEnvWrapper, policy: Policy, steps: int) -> RolloutResult:
     """Run ``policy`` for ``steps`` control steps in every world."""
     start = time.perf_counter()

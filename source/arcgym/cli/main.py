@@ -1,0 +1,84 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""The command ``arcgym``: finds the subcommand's module, parses its arguments, runs it."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from arcgym.cli.parser import CommandParser
+from arcgym.utils.errors import UsageError
+from arcgym.utils.string import did_you_mean
+
+COMMANDS = {
+    "train": ("arcgym.cli.train", "train a policy with rsl_rl"),
+    "play": ("arcgym.cli.play", "run a trained policy, record it and export it"),
+    "list": ("arcgym.cli.list_tasks", "list the registered tasks"),
+    "zero": ("arcgym.cli.zero", "run a task with raw actions that are zero"),
+    "random": ("arcgym.cli.random_actions", "run a task with uniform random actions"),
+}
+"""Module and one line of help by subcommand. A name may have two words, such as ``bench soak``."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run ``arcgym <subcommand> …`` and return its exit status.
+
+    Args:
+        argv: Arguments without the program's name; None takes those of the process.
+
+    Raises:
+        SystemExit: With status 2 after a mistake in the arguments.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    name = " ".join(words[:2]) if " ".join(words[:2]) in COMMANDS else "".join(words[:1])
+    if name in COMMANDS:
+        return run_command(name, words[len(name.split()) :])
+    if not words or words[0] in ("-h", "--help"):
+        print(_overview())
+        return 0
+    if words[0] == "--version":
+        from arcgym import __version__
+
+        print(f"arcgym {__version__}")
+        return 0
+    group = [command for command in COMMANDS if command.startswith(f"{name} ")]
+    given = " ".join(words[:2]) if group and len(words) > 1 else name
+    if group and words[1:] in ([], ["-h"], ["--help"]):
+        print(_overview(group))
+        return 0
+    CommandParser("arcgym", None).error(f"unknown subcommand '{given}'. {did_you_mean(given, group or COMMANDS)}")
+
+
+def run_command(name: str, argv: Sequence[str] | None = None, prog: str | None = None) -> int:
+    """Run one subcommand and return its exit status.
+
+    Args:
+        name: A key of :data:`COMMANDS`.
+        argv: Its arguments; None takes those of the process.
+        prog: Name to show in messages; None takes ``arcgym <name>``.
+    """
+    module = importlib.import_module(COMMANDS[name][0])
+    parser = CommandParser(prog or f"arcgym {name}", module.__doc__, getattr(module, "TAKES_OVERRIDES", False))
+    module.add_arguments(parser)
+    args = parser.parse(sys.argv[1:] if argv is None else argv)
+    try:
+        return int(module.run(args) or 0)
+    except UsageError as error:
+        parser.error(str(error))
+
+
+def run_script(name: str) -> int:
+    """Run a subcommand as the script that the process was started with, such as ``train.py``."""
+    return run_command(name, prog=Path(sys.argv[0]).name)
+
+
+def _overview(names: Sequence[str] | None = None) -> str:
+    """Return the help of ``arcgym`` itself, or of the group that the subcommands ``names`` make."""
+    shown = list(COMMANDS if names is None else names)
+    width = max(map(len, shown))
+    rows = [f"  {name:<{width}}  {COMMANDS[name][1]}" for name in shown]
+    return "\n".join(["usage: arcgym <subcommand> [--help] …", "", *rows])

@@ -1,0 +1,55 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Run a trained policy, record it and export it.
+
+    arcgym play --task ARC-Splenic-Proximal --video --record logs/episodes
+
+Uses the -Play variant of the task. The video goes to videos/play of the run, the policy to exported. --policy zero and
+--policy random need no checkpoint. --record writes every episode's trajectory to a file.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass, replace
+
+from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.task import load_cfgs
+
+TAKES_OVERRIDES = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlayArguments(RunArguments):
+    """Arguments of ``arcgym play``."""
+
+    policy: str = argument("source of the actions (default: trained)", "trained", choices=("trained", "zero", "random"))
+    steps: int | None = argument("control steps (default: the video's, else one episode)", None, type=positive)
+    record: str | None = argument("record trajectories: a folder, or a file ending in .hdf5", None, metavar="PATH")
+    json: bool = argument("print the figures as JSON on the last line", False)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_fields(parser, PlayArguments)
+
+
+def run(namespace: argparse.Namespace) -> None:
+    """Play, and print the figures and where the files are."""
+    from arcgym.utils.registry import list_tasks
+
+    args = read_fields(PlayArguments, namespace)
+    if f"{args.task}-Play" in list_tasks(prefix=""):
+        args = replace(args, task=f"{args.task}-Play")
+    env_cfg, agent_cfg = load_cfgs(args)
+
+    from arcgym.rl.playing import PlayOptions, play
+
+    video_length = args.video_length if args.video else None
+    play(
+        args.task,
+        env_cfg,
+        agent_cfg,
+        PlayOptions(args.policy, args.device, args.steps, video_length, args.record, args.json),
+    )

@@ -1,0 +1,50 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Train a policy with rsl_rl.
+
+    arcgym train --task ARC-Splenic-Proximal --num_envs 64 --max_iterations 300
+
+The run goes to logs/rsl_rl/<experiment>/<time>[_<run name>]. Ctrl-C or a kill leaves a checkpoint there; go on with
+--resume.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+
+from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.task import load_cfgs
+
+TAKES_OVERRIDES = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrainArguments(RunArguments):
+    """Arguments of ``arcgym train``."""
+
+    max_iterations: int | None = argument("updates to run, on top of those of a resumed run", None, type=positive)
+    run_name: str | None = argument("suffix of the run's folder", None)
+    resume: bool = argument("go on from a checkpoint (--load_run, --checkpoint)", False)
+    logger: str | None = argument("where curves go", None, choices=("tensorboard", "wandb", "neptune"))
+    log_project_name: str | None = argument("project for wandb and neptune", None)
+    distributed: bool = argument("one process a GPU, started by torchrun", False)
+    video_interval: int = argument("control steps between videos (default: 2000)", 2000, type=positive, group="video")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_fields(parser, TrainArguments)
+
+
+def run(namespace: argparse.Namespace) -> int:
+    """Train, and return the exit status: 0, or 128 and the signal's number after Ctrl-C or a kill."""
+    args = read_fields(TrainArguments, namespace)
+    env_cfg, agent_cfg = load_cfgs(args)
+
+    from arcgym.rl.training import TrainOptions, train
+
+    interval = args.video_interval if args.video else None
+    options = TrainOptions(args.device, args.distributed, interval, args.video_length)
+    return train(args.task, env_cfg, agent_cfg, options)

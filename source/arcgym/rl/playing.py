@@ -1,0 +1,102 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""A policy shown at work: figures, video, trajectories, exported files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rsl_rl.utils import resolve_callable
+
+from arcgym.rl.device import place
+from arcgym.rl.exporter import export_policy_as_jit, export_policy_as_onnx
+from arcgym.rl.make_env import VideoOptions, make_env
+from arcgym.rl.rollout import UNTRAINED, Policy, run_policy
+from arcgym.rl.run_folder import LOG_ROOT, find_checkpoint
+from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
+
+
+@dataclass(frozen=True)
+class PlayOptions:
+    """Settings of :func:`play` that are no part of the configurations."""
+
+    policy: str = "trained"
+    """``trained``, or a key of :data:`arcgym.rl.rollout.UNTRAINED`."""
+
+    device: str | None = None
+    """``cpu``, ``cuda`` or ``cuda:<n>``; None takes the first GPU, or the CPU where there is none."""
+
+    steps: int | None = None
+    """Control steps; None takes the video's, or those of an episode."""
+
+    video_length: int | None = None
+    """Control steps of a video; None records none."""
+
+    record: str | None = None
+    """Folder for trajectories, or a file ending in ``.hdf5``; None records none."""
+
+    json: bool = False
+    """Whether the figures are printed as JSON on the last line."""
+
+
+def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOptions()) -> None:
+    """Build the environment, run the policy, and say how it did and where the files are."""
+    checkpoint = None
+    if options.policy == "trained":
+        checkpoint = find_checkpoint(agent_cfg.experiment_name, agent_cfg.load_run, agent_cfg.load_checkpoint)
+    folder = checkpoint.parent if checkpoint else LOG_ROOT / agent_cfg.experiment_name / options.policy
+    device = place(env_cfg, agent_cfg, options.device)
+    records = _record_to(options.record, env_cfg)
+    video = None
+    if options.video_length:
+        video = VideoOptions(folder.resolve() / "videos" / "play", options.video_length)
+    env = make_env(task, env_cfg, agent_cfg, video)
+    try:
+        policy = load_policy(env, agent_cfg, checkpoint, device) if checkpoint else UNTRAINED[options.policy](env)
+        result = run_policy(env, policy, options.steps or options.video_length or int(env.max_episode_length))
+        print(result)
+    finally:
+        env.close()
+    for path in getattr(env.env, "paths", []) if video else []:
+        print(f"video: {path}")
+    if records and options.record:
+        print(f"recorded: {_finish_records(task, options.record, records)}")
+    if options.json:
+        print(result.to_json())
+
+
+def load_policy(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path, device: str) -> Policy:
+    """Return the trained policy, exported beside its checkpoint."""
+    runner = resolve_callable(agent_cfg.class_name)(env, agent_cfg.to_dict(), log_dir=None, device=device)
+    runner.load(str(checkpoint), load_cfg={"actor": True})
+    policy = runner.get_inference_policy(device)
+    print(f"checkpoint: {checkpoint}")
+    for export in (export_policy_as_jit, export_policy_as_onnx):
+        print(f"exported: {export(policy, checkpoint.parent / 'exported')}")
+    return policy
+
+
+def _record_to(record: str | None, env_cfg: Any) -> Path | None:
+    """Switch recording on where it is asked for, and return the folder of the episodes."""
+    if not record:
+        return None
+    from arcgym.envs import mdp
+
+    path = Path(record).resolve()
+    folder = path.with_suffix("") if path.suffix == ".hdf5" else path
+    env_cfg.recorders = env_cfg.recorders or mdp.TrajectoryRecorderCfg()
+    env_cfg.recorders.dataset_export_dir_path = str(folder)
+    return folder
+
+
+def _finish_records(task: str, record: str, folder: Path) -> str:
+    """Copy the episodes into one file where it is asked for, and say where they are."""
+    from arcgym.managers import episode_paths, export_hdf5
+
+    count = len(episode_paths(folder))
+    if record.endswith(".hdf5"):
+        count = export_hdf5(folder, record, {"env_name": task, "type": "arcgym"})
+    return f"{count} episodes in {record}"
