@@ -11,7 +11,7 @@ from arcgym.sim.contact import contact_kernels as kernels
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import LumenTopology
 
-SPAN = 4
+MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
 
@@ -53,12 +53,12 @@ class ContactSearch:
         self.links.radius = wp.array(radius, dtype=float, device=device)
         self.law = self._law(cfg)
         self.law.wall_radius += surface_offset
-        self.law.widest = 2.0 * topology.radius + cfg.search_gap
+        self.law.max_distance = 2.0 * topology.radius + cfg.search_gap
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
-        self.away = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
+        self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         shape = (num_envs, self.link_count, topology.candidates(cfg.search_reach))
         self.distance = wp.zeros(shape, dtype=float, device=device)
         self.records = self._records(cfg.capacity)
@@ -83,7 +83,7 @@ class ContactSearch:
         records.count = wp.zeros(rows, dtype=int, device=self.device)
         records.face = wp.zeros(rows * capacity, dtype=int, device=self.device)
         records.corners = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
-        records.way = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+        records.direction = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
         records.bary = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(rows * capacity, dtype=float, device=self.device))
@@ -103,7 +103,12 @@ class ContactSearch:
     def track(self, body_q: wp.array) -> None:
         """Follow each link's ring; links whose ring is -1 are searched along the whole colon."""
         shape = (self.num_envs, self.link_count)
-        wp.launch(kernels.track_rings, shape, [self.centers, body_q, SPAN, self.ring, self.away], device=self.device)
+        wp.launch(
+            kernels.track_rings,
+            shape,
+            [self.centers, body_q, MAX_RING_SHIFT, self.ring, self.ring_distance],
+            device=self.device,
+        )
 
     def detect(self, x: wp.array, body_q: wp.array) -> None:
         """Fill the contact records for wall positions ``x`` (V, W) and link poses ``body_q`` (W*L,)."""
@@ -112,19 +117,19 @@ class ContactSearch:
         wp.launch(
             kernels.face_distances,
             self.distance.shape,
-            [x, body_q, self.links, self.surface, self.law, self.ring, self.away, self.distance],
+            [x, body_q, self.links, self.surface, self.law, self.ring, self.ring_distance, self.distance],
             device=self.device,
         )
         links = (self.num_envs, self.link_count)
         args = [self.surface, self.ring, self.distance, self.records]
         wp.launch(kernels.select_contacts, links, args, device=self.device)
         args = [x, body_q, self.links, self.surface, self.records]
-        wp.launch(kernels.place_contacts, (*links, self.records.capacity), args, device=self.device)
-        wp.launch(kernels.clear_contacts, links, [self.links, self.records], device=self.device)
+        wp.launch(kernels.locate_contacts, (*links, self.records.capacity), args, device=self.device)
+        wp.launch(kernels.use_directions_as_normals, links, [self.links, self.records], device=self.device)
         self.records.vertex_head.fill_(-1)
         self.records.ring_head.fill_(-1)
         wp.launch(
-            kernels.build_lists,
+            kernels.build_contact_lists,
             self.num_envs,
             [self.vertex_ring, self.link_count, self.records],
             device=self.device,

@@ -12,17 +12,17 @@ from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
-BLUR = wp.constant(5.0e-5)
-"""How much farther than the closest point another point of a face may be and still draw the contact to it [m]."""
-RIM = wp.constant(0.1)
-"""Barycentric coordinate under which the face beyond the opposite edge shares a contact."""
-BEHIND = wp.constant(-0.5)
-"""Cosine between the way from axis to wall and the wall's normal, under which the axis is behind the wall."""
-SHARE = wp.constant(0.45)
+SMOOTHING = wp.constant(5.0e-5)
+"""Length over which the contact point is a mean of a face's nearest points, weighted by exp(-distance / length) [m]."""
+EDGE_BAND = wp.constant(0.1)
+"""Barycentric coordinate under which the face across the opposite edge takes part in a contact."""
+BEHIND_COSINE = wp.constant(-0.5)
+"""Cosine between the direction from axis to wall and the wall's normal, under which the axis is behind the wall."""
+EDGE_WEIGHT = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
-HARDEST = wp.constant(3.0)
+MAX_HARDENING = wp.constant(3.0)
 """Depth beyond which a contact does not harden any more, in multiples of its hardening depth."""
-CLEAR = wp.constant(0.25)
+CLEARANCE = wp.constant(0.25)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
 
 
@@ -59,7 +59,7 @@ class ContactRecords:
     bary: wp.array(dtype=wp.vec3)
     distance: wp.array(dtype=float)  # of the link's axis from the face [m]
     weight: wp.array(dtype=float)  # share of the contact stiffness
-    way: wp.array(dtype=wp.vec3)  # unit vector there from the link's axis
+    direction: wp.array(dtype=wp.vec3)  # unit vector there from the link's axis
     normal: wp.array(dtype=wp.vec3)  # outward normal of the wall there at detection
     vertex_head: wp.array2d(dtype=int)  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array(dtype=int)  # shape (3*W*L*capacity,)
@@ -77,7 +77,7 @@ class ContactLaw:
     slip_velocity: float  # speed under which friction is viscous [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
     search_gap: float  # distance up to which records are kept [m]
-    widest: float  # links farther than this from the centre of their ring touch nothing [m]
+    max_distance: float  # links farther than this from the centre of their ring touch nothing [m]
 
 
 @wp.kernel
@@ -95,13 +95,15 @@ def ring_centers(x: wp.array2d(dtype=wp.vec3), surface: LumenSurface, centers: w
 def track_rings(
     centers: wp.array2d(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
-    span: int,
+    max_shift: int,
     ring: wp.array2d(dtype=int),
-    away: wp.array2d(dtype=float),
+    ring_distance: wp.array2d(dtype=float),
 ):
-    """Ring nearest to each link among ``span`` on either side of the last one, all of them where it is -1; and how far.
+    """Find the ring nearest to each link, and its distance [m]. Launch (W, L).
 
-    A link whose centre is out of the anus, before the first ring, is FAR, for the wall has no outside. Launch (W, L).
+    Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1.
+
+    A link whose centre is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
     """
     w, link = wp.tid()
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
@@ -109,8 +111,8 @@ def track_rings(
     lo = int(0)
     hi = centers.shape[1]
     if last >= 0:
-        lo = wp.max(0, last - span)
-        hi = wp.min(hi, last + span + 1)
+        lo = wp.max(0, last - max_shift)
+        hi = wp.min(hi, last + max_shift + 1)
     best = float(FAR)
     found = last
     for r in range(lo, hi):
@@ -119,9 +121,9 @@ def track_rings(
             best = d
             found = r
     ring[w, link] = found
-    away[w, link] = wp.sqrt(best)
+    ring_distance[w, link] = wp.sqrt(best)
     if found == 0 and wp.dot(p - centers[w, 0], centers[w, 1] - centers[w, 0]) < 0.0:
-        away[w, link] = FAR
+        ring_distance[w, link] = FAR
 
 
 @wp.func
@@ -139,12 +141,12 @@ def face_distances(
     surface: LumenSurface,
     law: ContactLaw,
     ring: wp.array2d(dtype=int),
-    away: wp.array2d(dtype=float),
+    ring_distance: wp.array2d(dtype=float),
     distance: wp.array3d(dtype=float),
 ):
     """Distance from each link's axis to each candidate face, or FAR. Launch (W, L, M)."""
     w, link, m = wp.tid()
-    if away[w, link] > law.widest + links.half_length[link] + links.radius[link]:
+    if ring_distance[w, link] > law.max_distance + links.half_length[link] + links.radius[link]:
         distance[w, link, m] = FAR
         return
     nr = surface.ring_start.shape[0] - 1
@@ -177,23 +179,24 @@ def face_normal(surface: LumenSurface, face: int, x: wp.array2d(dtype=wp.vec3), 
 
 
 @wp.func
-def rim_share(u: float) -> float:
-    """0 away from the edge opposite to a corner with barycentric coordinate ``u``, 1 on it."""
-    return 1.0 - wp.clamp(u / RIM, 0.0, 1.0)
+def edge_proximity(u: float) -> float:
+    """Return 1 on the edge opposite to a corner with barycentric coordinate ``u``, falling to 0 off it."""
+    return 1.0 - wp.clamp(u / EDGE_BAND, 0.0, 1.0)
 
 
 @wp.func
 def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d(dtype=wp.vec3), w: int) -> wp.vec3:
     """Normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
 
-    The face's own normal may be at more than a right angle to the way off a sharp fold, and then tells the wrong side
+    At a sharp fold the face's own normal may be at more than a right angle to the direction to the link, and its sign
+    would be wrong
     (Baerentzen and Aanaes 2005, "Signed distance computation using the angle weighted pseudonormal").
     """
     normal = face_normal(surface, face, x, w)
     for k in range(3):
         other = surface.neighbors[face, k]
-        if u[k] < RIM and other >= 0:
-            normal += rim_share(u[k]) * face_normal(surface, other, x, w)
+        if u[k] < EDGE_BAND and other >= 0:
+            normal += edge_proximity(u[k]) * face_normal(surface, other, x, w)
     return wp.normalize(normal)
 
 
@@ -204,16 +207,16 @@ def face_corners(surface: LumenSurface, face: int) -> wp.vec3i:
 
 
 @wp.struct
-class Place:
-    """Where a face comes closest to a link."""
+class ClosestPoint:
+    """Point of a face that is closest to a link."""
 
-    bary: wp.vec3
+    bary: wp.vec3  # barycentric coordinates
     normal: wp.vec3  # of the wall there
-    way: wp.vec3  # unit vector there from the link's axis
+    direction: wp.vec3  # unit vector there from the link's axis
 
 
 @wp.func
-def place_on(
+def closest_point(
     surface: LumenSurface,
     face: int,
     x: wp.array2d(dtype=wp.vec3),
@@ -221,15 +224,17 @@ def place_on(
     center: wp.vec3,
     axis: wp.vec3,
     distance: float,
-) -> Place:
-    """Place on ``face`` closest to the link from ``center`` - ``axis`` to ``center`` + ``axis``."""
+) -> ClosestPoint:
+    """Return the point of ``face`` closest to the link from ``center`` - ``axis`` to ``center`` + ``axis``."""
     f = face_corners(surface, face)
-    out = Place()
-    out.bary = segment_triangle_mean(center - axis, center + axis, x[f[0], w], x[f[1], w], x[f[2], w], distance, BLUR)
+    out = ClosestPoint()
+    out.bary = segment_triangle_mean(
+        center - axis, center + axis, x[f[0], w], x[f[1], w], x[f[2], w], distance, SMOOTHING
+    )
     out.normal = surface_normal(surface, face, out.bary, x, w)
     p = corner_point(x, f, out.bary, w)
     t = segment_parameter(p, center - axis, center + axis)
-    out.way = wp.normalize(p - center - (2.0 * t - 1.0) * axis)
+    out.direction = wp.normalize(p - center - (2.0 * t - 1.0) * axis)
     return out
 
 
@@ -269,7 +274,7 @@ def select_contacts(
 
 
 @wp.kernel
-def place_contacts(
+def locate_contacts(
     x: wp.array2d(dtype=wp.vec3),
     body_q: wp.array(dtype=wp.transform),
     links: LinkShapes,
@@ -286,36 +291,36 @@ def place_contacts(
     center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     face = records.face[slot]
-    place = place_on(surface, face, x, w, center, axis, records.distance[slot])
-    u = place.bary
+    point = closest_point(surface, face, x, w, center, axis, records.distance[slot])
+    u = point.bary
     records.corners[slot] = face_corners(surface, face)
     records.bary[slot] = u
-    records.weight[slot] = wp.pow(SHARE, rim_share(u[0]) + rim_share(u[1]) + rim_share(u[2]))
-    records.normal[slot] = place.normal
-    records.way[slot] = place.way
+    records.weight[slot] = wp.pow(EDGE_WEIGHT, edge_proximity(u[0]) + edge_proximity(u[1]) + edge_proximity(u[2]))
+    records.normal[slot] = point.normal
+    records.direction[slot] = point.direction
 
 
 @wp.kernel
-def clear_contacts(links: LinkShapes, records: ContactRecords):
-    """Keep the wall off from all sides of a link that is clear of it. Launch (W, L).
+def use_directions_as_normals(links: LinkShapes, records: ContactRecords):
+    """Replace the normals of a link that is clear of the wall by the directions to the contacts. Launch (W, L).
 
     A link whose axis is clear of the wall has not gone through and will not in this step. The far side of a fold, whose
-    normal tells nothing, pushes it on then, too.
+    normal points away from the link, pushes it back then, too.
     """
     w, link = wp.tid()
     row = w * links.radius.shape[0] + link
     nearest = float(FAR)
     for k in range(records.count[row]):
         nearest = wp.min(nearest, records.distance[row * records.capacity + k])
-    if nearest > CLEAR * links.radius[link]:
+    if nearest > CLEARANCE * links.radius[link]:
         for k in range(records.count[row]):
             slot = row * records.capacity + k
-            records.normal[slot] = records.way[slot]
+            records.normal[slot] = records.direction[slot]
 
 
 @wp.kernel
-def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRecords):
-    """Thread each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
+def build_contact_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRecords):
+    """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
 
     One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
     """
@@ -338,26 +343,28 @@ def build_lists(vertex_ring: wp.array(dtype=int), links: int, records: ContactRe
 
 
 @wp.func
-def contact_push(law: ContactLaw, depth: float) -> wp.vec2:
-    """Normal force k d (1 + min(d / h, 3)^2) of a full contact [N] at a depth d > 0, and its stiffness [N/m]."""
-    hard = wp.min(depth / law.hardening, HARDEST)
+def normal_force(law: ContactLaw, depth: float) -> wp.vec2:
+    """Return normal force k d (1 + min(d / h, 3)^2) [N] and stiffness [N/m] of a contact of weight 1 at depth d > 0."""
+    hard = wp.min(depth / law.hardening, MAX_HARDENING)
     secant = 1.0 + hard * hard
-    if hard >= HARDEST:
+    if hard >= MAX_HARDENING:
         return law.stiffness * wp.vec2(depth * secant, secant)
     return law.stiffness * wp.vec2(depth * secant, 1.0 + 3.0 * hard * hard)
 
 
 @wp.struct
-class Touch:
-    """Gap [m] (negative inside), unit normal from the scope into the wall, and axis point of one contact."""
+class ContactGeometry:
+    """Gap and normal of one contact."""
 
-    gap: float
-    normal: wp.vec3
+    gap: float  # between the surfaces of link and wall, negative where they overlap [m]
+    normal: wp.vec3  # unit vector from the scope into the wall
 
 
 @wp.func
-def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: float, radius: float) -> Touch:
-    """Signed gap of wall point ``p`` to a capsule.
+def contact_geometry(
+    p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: float, radius: float
+) -> ContactGeometry:
+    """Return the signed gap between wall point ``p`` and a capsule, and its normal.
 
     A point on the lumen side of the axis, judged by the wall's own normal, counts as behind it: the gap is then
     negative however far the link has gone through, so that a link is always pushed back inside.
@@ -367,11 +374,11 @@ def touch(p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: flo
     t = segment_parameter(p, center - axis, center + axis)
     r = p - center - (2.0 * t - 1.0) * axis
     d = wp.length(r)
-    out = Touch()
+    out = ContactGeometry()
     out.normal = wall_normal
     if d > 1.0e-6:
         out.normal = r / d
-    if wp.dot(out.normal, wall_normal) < BEHIND:
+    if wp.dot(out.normal, wall_normal) < BEHIND_COSINE:
         out.normal = -out.normal
         d = -d
     out.gap = d - radius

@@ -6,16 +6,16 @@
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import (
-    CLEAR,
+    CLEARANCE,
     ContactLaw,
     ContactRecords,
     LinkShapes,
-    contact_push,
+    contact_geometry,
+    normal_force,
     slip_scale,
-    touch,
 )
 from arcgym.sim.geometry_kernels import corner_point
-from arcgym.sim.scope.scope_kernels import Articulated, LinkLoads, moved
+from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -29,14 +29,14 @@ def contact_load(
     lin: wp.vec3,
     wall_v: wp.vec3,
     dt: float,
-) -> Articulated:
+) -> ArticulatedBody:
     """Load of one contact, a ``share`` of a full one, at its point, which moves at ``lin``; the wall's at ``wall_v``.
 
     The normal spring and damper act with their values at the end of the step, the spring's stiffness as a secant that
     lets it not pull. Friction is a damper that gives Coulomb's
     force at the present slip: it brakes and holds at any friction coefficient, and creeps below the slip velocity.
     """
-    out = Articulated()
+    out = ArticulatedBody()
     end = gap - dt * wp.dot(normal, lin)
     if end < 0.0:
         relative = lin - wall_v
@@ -45,9 +45,9 @@ def contact_load(
         if approach > 0.0:
             damping = share * law.damping
         slip = relative - approach * normal
-        now = share * contact_push(law, wp.max(-gap, 0.0))
+        now = share * normal_force(law, wp.max(-gap, 0.0))
         drag = friction * now[0] * slip_scale(wp.length(slip), law.slip_velocity)
-        push = share * contact_push(law, -end)
+        push = share * normal_force(law, -end)
         stiffness = wp.max(-push[0] / end, 0.5 * push[1])
         out.force = (damping * approach + push[0]) * normal + drag * slip
         along = wp.outer(normal, normal)
@@ -78,7 +78,7 @@ def load_contacts(
     row = w * loads.wrench.shape[0] + link
     pose = body_q[row]
     center = wp.transform_point(pose, com[link])
-    total = Articulated()
+    total = ArticulatedBody()
     for k in range(records.count[row]):
         slot = row * records.capacity + k
         f = records.corners[slot]
@@ -86,11 +86,13 @@ def load_contacts(
         wall_v = corner_point(v, f, u, w)
         p = corner_point(x, f, u, w)
         radius = links.radius[link] + law.wall_radius
-        c = touch(p, records.normal[slot], pose, links.half_length[link], radius)
-        if c.gap + radius < CLEAR * links.radius[link]:
+        c = contact_geometry(p, records.normal[slot], pose, links.half_length[link], radius)
+        if c.gap + radius < CLEARANCE * links.radius[link]:
             pierced[w] = 1
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - center)
-        one = moved(contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - center)
+        one = shift_origin(
+            contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - center
+        )
         total.ll += one.ll
         total.la += one.la
         total.aa += one.aa

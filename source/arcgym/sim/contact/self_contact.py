@@ -13,17 +13,17 @@ from arcgym.sim.contact import self_contact_kernels as kernels
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall.wall_topology import ring_mean
 
-BACK_TO_BACK = 1.25 * math.pi
-"""Way along the colon between rings that may touch, over their mean radius: a tube that turns back on itself touches
+MIN_ARC_RATIO = 1.25 * math.pi
+"""Least arc length between rings that may touch, over their mean radius: a tube that turns back on itself touches
 itself half a turn of its own radius further on, pi; a quarter more, since a bend's own folds do not count."""
-LARGEST_STRETCH = 1.63
+MAX_STRETCH = 1.63
 """Stretch along the colon that the search reckons with: human colon tears there (Christensen et al. 2015)."""
-LARGEST_SWELLING = 1.25
+MAX_DILATION = 1.25
 """How much wider than its widest ring at rest the search takes any ring to be."""
 
 
-class LoopContact:
-    """Keeps loops of the wall from passing through each other.
+class SelfContact:
+    """Contact of the wall with itself: keeps loops of the colon from passing through each other.
 
     Rings push on rings, so contact is as coarse as the rings are long, and there is no friction between loops: the
     outside of the bowel is wet and smooth. Rings that overlap at rest may go on doing so; folds of one stretch, and a
@@ -56,54 +56,56 @@ class LoopContact:
         center = ring_mean(points, ring)
         away = np.linalg.norm(points - center[ring], axis=1)
         spacing = np.linalg.norm(np.diff(center, axis=0), axis=1)
-        half_bend = 0.5 * BACK_TO_BACK * ring_mean(away, ring)
-        may_touch = _may_touch(spacing, half_bend)
+        half_min_arc = 0.5 * MIN_ARC_RATIO * ring_mean(away, ring)
+        may_touch = _may_touch(spacing, half_min_arc)
         self.active = cfg.self_contact and bool(may_touch.any())
-        self.shape = kernels.LoopShape()
-        self.shape.members = wp.array(members, dtype=int, device=device)
-        self.shape.allowed = wp.array(np.where(may_touch, 0.0, kernels.NEVER), dtype=float, device=device)
-        self.shape.thickness, self.shape.stiffness = thickness, cfg.self_contact_stiffness
-        self.shape.half_bend = wp.array(half_bend, dtype=float, device=device)
-        self.shape.next_touch = wp.array(_next_touch(may_touch), dtype=int, device=device)
-        self.shape.widest = LARGEST_SWELLING * float(away.max())
-        self.shape.pitch = LARGEST_STRETCH * float(spacing.max(initial=1.0e-3))
-        self.balls = self._balls(num_envs)
-        self.press = kernels.LoopPress()
-        self.press.plane = wp.zeros((len(points), num_envs), dtype=wp.vec4, device=device)
-        self.press.stiffness = wp.zeros((len(points), num_envs), dtype=float, device=device)
-        self.press.touched = wp.zeros((count, num_envs), dtype=int, device=device)
+        self.rings = kernels.WallRings()
+        self.rings.members = wp.array(members, dtype=int, device=device)
+        self.rings.min_gap = wp.array(np.where(may_touch, 0.0, kernels.NO_CONTACT), dtype=float, device=device)
+        self.rings.thickness, self.rings.stiffness = thickness, cfg.self_contact_stiffness
+        self.rings.half_min_arc = wp.array(half_min_arc, dtype=float, device=device)
+        self.rings.next_candidate = wp.array(_next_candidate(may_touch), dtype=int, device=device)
+        self.rings.max_radius = MAX_DILATION * float(away.max())
+        self.rings.max_spacing = MAX_STRETCH * float(spacing.max(initial=1.0e-3))
+        self.spheres = self._spheres(num_envs)
+        self.force = kernels.SelfContactForce()
+        self.force.plane = wp.zeros((len(points), num_envs), dtype=wp.vec4, device=device)
+        self.force.stiffness = wp.zeros((len(points), num_envs), dtype=float, device=device)
+        self.force.in_contact = wp.zeros((count, num_envs), dtype=int, device=device)
         if self.active:
             self._measure_rest(points)
 
-    def _balls(self, num_envs: int) -> kernels.RingBalls:
-        balls = kernels.RingBalls()
-        balls.ball = wp.zeros((self.count, num_envs), dtype=wp.vec4, device=self.device)
-        balls.near = wp.zeros((self.count, num_envs), dtype=int, device=self.device)
-        return balls
+    def _spheres(self, num_envs: int) -> kernels.RingSpheres:
+        spheres = kernels.RingSpheres()
+        spheres.sphere = wp.zeros((self.count, num_envs), dtype=wp.vec4, device=self.device)
+        spheres.near = wp.zeros((self.count, num_envs), dtype=int, device=self.device)
+        return spheres
 
     def _measure_rest(self, points: np.ndarray) -> None:
         x = wp.array(points[:, None], dtype=wp.vec3, device=self.device)
-        args = [x, self.shape, self._balls(1)]
-        wp.launch(kernels.measure_balls, (self.count, 1), args, device=self.device)
-        wp.launch(kernels.rest_gaps, (self.count, self.count), args, device=self.device)
+        args = [x, self.rings, self._spheres(1)]
+        wp.launch(kernels.measure_spheres, (self.count, 1), args, device=self.device)
+        wp.launch(kernels.allow_rest_overlaps, (self.count, self.count), args, device=self.device)
 
-    def measure(self, x: wp.array) -> kernels.LoopPress:
-        """Self-contact at wall positions ``x`` [m], shape (V, W), for the coming step."""
+    def measure(self, x: wp.array) -> kernels.SelfContactForce:
+        """Measure self-contact at wall positions ``x`` [m], shape (V, W), for the coming step."""
         if self.active:
-            shape = self.press.touched.shape
-            wp.launch(kernels.measure_balls, shape, [x, self.shape, self.balls], device=self.device)
-            wp.launch(kernels.find_near, shape, [self.shape, self.balls], device=self.device)
-            wp.launch(kernels.press_loops, shape, [x, self.shape, self.balls, self.press], device=self.device)
-        return self.press
+            shape = self.force.in_contact.shape
+            wp.launch(kernels.measure_spheres, shape, [x, self.rings, self.spheres], device=self.device)
+            wp.launch(kernels.find_near_rings, shape, [self.rings, self.spheres], device=self.device)
+            wp.launch(
+                kernels.measure_self_contact, shape, [x, self.rings, self.spheres, self.force], device=self.device
+            )
+        return self.force
 
 
-def _may_touch(spacing: np.ndarray, half_bend: np.ndarray) -> np.ndarray:
-    """Which pairs of rings are far enough apart along the colon, shape (R, R), bool."""
+def _may_touch(spacing: np.ndarray, half_min_arc: np.ndarray) -> np.ndarray:
+    """Return which pairs of rings are far enough apart along the colon, shape (R, R), bool."""
     arc = np.concatenate([[0.0], np.cumsum(spacing)])
-    return np.abs(np.subtract.outer(arc, arc)) > np.add.outer(half_bend, half_bend)
+    return np.abs(np.subtract.outer(arc, arc)) > np.add.outer(half_min_arc, half_min_arc)
 
 
-def _next_touch(may_touch: np.ndarray) -> np.ndarray:
-    """First ring after each that it may touch, or the number of rings, shape (R,)."""
+def _next_candidate(may_touch: np.ndarray) -> np.ndarray:
+    """Return the first ring after each that it may touch, or the number of rings, shape (R,)."""
     later = np.triu(may_touch)
     return np.where(later.any(axis=1), later.argmax(axis=1), len(later)).astype(np.int32)

@@ -13,146 +13,152 @@ import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
 
-NEVER = wp.constant(-1.0e9)
-"""Gap allowed to rings of the same stretch, which do not touch each other [m]."""
+NO_CONTACT = wp.constant(-1.0e9)
+"""Stands for the smallest gap of a pair of rings that never push on each other [m]."""
 REST_MARGIN = wp.constant(1.0e-4)
-"""How much closer than at rest rings must come that touch at rest [m]."""
-DEEPEST = wp.constant(0.005)
+"""Distance that rings which touch at rest must come closer before they push [m]."""
+MAX_OVERLAP = wp.constant(0.005)
 """Overlap beyond which a pair pushes no harder [m]: a crumpled wall may overlap deeply from one step to the next."""
-NESTED = wp.constant(0.5)
-"""Distance of two centres over how far the rings reach, under which one is inside the other and nothing pushes."""
-ONSET = wp.constant(0.25)
-"""Range of that ratio, and of the way between rings over its least, within which the stiffness grows to its whole."""
-FAINT = wp.constant(1.0e-9)
+NESTED_RATIO = wp.constant(0.5)
+"""Distance of two centres over the extent of the rings, under which one is inside the other and nothing pushes."""
+STIFFNESS_RAMP = wp.constant(0.25)
+"""Range of that ratio, and of arc length over its least, within which the stiffness grows to its full value."""
+MIN_FORCE = wp.constant(1.0e-9)
 """Force under which a vertex counts as untouched [N]."""
 
 
 @wp.struct
-class LoopShape:
+class WallRings:
     """Rings of one world's wall, shared by all worlds."""
 
     members: wp.array2d(dtype=int)  # vertices of each ring, -1 padded, shape (R, S)
-    half_bend: wp.array(dtype=float)  # half the least way along the colon between two such rings that touch, shape (R,)
-    next_touch: wp.array(dtype=int)  # first ring after each that may touch it, shape (R,)
-    allowed: wp.array2d(dtype=float)  # smallest gap of each pair, negative where they overlap at rest [m], shape (R, R)
+    half_min_arc: wp.array(dtype=float)  # half the least arc length at which two such rings may touch [m], shape (R,)
+    next_candidate: wp.array(dtype=int)  # first ring after each that may touch it, shape (R,)
+    min_gap: wp.array2d(
+        dtype=float
+    )  # gap below which a pair pushes, negative where it overlaps at rest [m], shape (R, R)
     thickness: float  # distance between vertices of walls that touch [m]
-    widest: float  # no ring reaches farther from its centre than this [m]
-    pitch: float  # no two neighbouring rings are farther apart than this [m]
+    max_radius: float  # no ring reaches farther from its centre than this [m]
+    max_spacing: float  # no two neighbouring rings are farther apart than this [m]
     stiffness: float  # of a pair [N/m]
 
 
 @wp.struct
-class LoopPress:
-    """Self-contact measured at the start of a step: on a vertex at x it pushes along n by c - k n.x until its end.
+class SelfContactForce:
+    """Self-contact measured at the start of a step: force (c - k n.x) n on a vertex at x, until the end of the step.
 
-    Were the push to stop within the step where that is negative, light vertices would jump in and out of contact. The
-    other side is taken to give way as much, which doubles the stiffness k.
+    Clamping the force at zero within the step would make light vertices jump in and out of contact. The other side is
+    taken to move back as much, which doubles the stiffness k.
     """
 
     plane: wp.array2d(dtype=wp.vec4)  # n and c [N], shape (V, W)
     stiffness: wp.array2d(dtype=float)  # k [N/m], zero where nothing touches, shape (V, W)
-    touched: wp.array2d(dtype=int)  # 1 where a ring touches another, shape (R, W)
+    in_contact: wp.array2d(dtype=int)  # 1 where a ring touches another, shape (R, W)
 
 
 @wp.struct
-class RingBalls:
-    """The spheres that rings fill, in each world."""
+class RingSpheres:
+    """Bounding spheres of the rings, in each world."""
 
-    ball: wp.array2d(dtype=wp.vec4)  # centre and distance of the farthest vertex from there [m], shape (R, W)
+    sphere: wp.array2d(dtype=wp.vec4)  # centre and distance of the farthest vertex from there [m], shape (R, W)
     near: wp.array2d(dtype=int)  # 1 where a sphere meets that of a ring that may touch, shape (R, W)
 
 
 @wp.kernel
-def measure_balls(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls):
-    """Sphere of each ring. Launch (R, W)."""
+def measure_spheres(x: wp.array2d(dtype=wp.vec3), rings: WallRings, spheres: RingSpheres):
+    """Measure the bounding sphere of each ring. Launch (R, W)."""
     r, w = wp.tid()
     center = wp.vec3(0.0)
     count = float(0.0)
-    for k in range(shape.members.shape[1]):
-        i = shape.members[r, k]
+    for k in range(rings.members.shape[1]):
+        i = rings.members[r, k]
         if i >= 0:
             center += x[i, w]
             count += 1.0
     center /= count
     farthest = float(0.0)
-    for k in range(shape.members.shape[1]):
-        i = shape.members[r, k]
+    for k in range(rings.members.shape[1]):
+        i = rings.members[r, k]
         if i >= 0:
             farthest = wp.max(farthest, wp.length_sq(x[i, w] - center))
-    balls.ball[r, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(farthest))
-    balls.near[r, w] = 0
+    spheres.sphere[r, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(farthest))
+    spheres.near[r, w] = 0
 
 
 @wp.func
-def center_of(ball: wp.vec4) -> wp.vec3:
-    """Centre of a ring [m]."""
-    return wp.vec3(ball[0], ball[1], ball[2])
+def xyz(sphere: wp.vec4) -> wp.vec3:
+    """Return the first three components, such as the centre of a sphere."""
+    return wp.vec3(sphere[0], sphere[1], sphere[2])
 
 
 @wp.func
-def share_of(x: wp.vec3, ball: wp.vec4, n: wp.vec3) -> float:
-    """How much a vertex at ``x`` is on the side ``n`` of its ring, 0 to 1: the eighth power of a cosine."""
-    side = wp.max(wp.dot(x - center_of(ball), n) / ball[3], 0.0)
+def facing_weight(x: wp.vec3, sphere: wp.vec4, n: wp.vec3) -> float:
+    """Return the weight of a vertex at ``x`` on the side ``n`` of its ring, 0 to 1: the eighth power of a cosine."""
+    side = wp.max(wp.dot(x - xyz(sphere), n) / sphere[3], 0.0)
     square = side * side
     return square * square * square * square
 
 
 @wp.func
-def facing(shape: LoopShape, x: wp.array2d(dtype=wp.vec3), r: int, w: int, ball: wp.vec4, n: wp.vec3) -> wp.vec2:
-    """How far ring ``r`` reaches towards ``n`` [m], weighted by share, and the sum of its vertices' shares."""
+def facing_extent(
+    rings: WallRings, x: wp.array2d(dtype=wp.vec3), r: int, w: int, sphere: wp.vec4, n: wp.vec3
+) -> wp.vec2:
+    """Return the weighted extent of ring ``r`` towards ``n`` [m], and the sum of its vertices' weights."""
     reach = float(0.0)
     total = float(1.0e-12)
-    for k in range(shape.members.shape[1]):
-        i = shape.members[r, k]
+    for k in range(rings.members.shape[1]):
+        i = rings.members[r, k]
         if i >= 0:
-            share = share_of(x[i, w], ball, n)
-            reach += share * wp.dot(x[i, w] - center_of(ball), n)
+            share = facing_weight(x[i, w], sphere, n)
+            reach += share * wp.dot(x[i, w] - xyz(sphere), n)
             total += share
     return wp.vec2(reach / total, total)
 
 
 @wp.func
 def pair_gap(
-    shape: LoopShape, x: wp.array2d(dtype=wp.vec3), r: int, s: int, w: int, own: wp.vec4, other: wp.vec4, n: wp.vec3
+    rings: WallRings, x: wp.array2d(dtype=wp.vec3), r: int, s: int, w: int, own: wp.vec4, other: wp.vec4, n: wp.vec3
 ) -> float:
-    """Distance between the outer surfaces of rings ``r`` and ``s`` along ``n``, negative where they overlap [m]."""
-    reach = facing(shape, x, r, w, own, n)[0] + facing(shape, x, s, w, other, -n)[0]
-    return wp.length(center_of(other) - center_of(own)) - reach - shape.thickness
+    """Return the gap between the outer surfaces of rings ``r`` and ``s`` along ``n``, negative in overlap [m]."""
+    reach = facing_extent(rings, x, r, w, own, n)[0] + facing_extent(rings, x, s, w, other, -n)[0]
+    return wp.length(xyz(other) - xyz(own)) - reach - rings.thickness
 
 
 @wp.kernel
-def rest_gaps(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls):
+def allow_rest_overlaps(x: wp.array2d(dtype=wp.vec3), rings: WallRings, spheres: RingSpheres):
     """Allow the pairs that overlap at rest to do so. Launch (R, R)."""
     r, s = wp.tid()
-    if shape.allowed[r, s] > NEVER:
-        n = wp.normalize(center_of(balls.ball[s, 0]) - center_of(balls.ball[r, 0]))
-        gap = pair_gap(shape, x, r, s, 0, balls.ball[r, 0], balls.ball[s, 0], n)
-        shape.allowed[r, s] = wp.min(gap - REST_MARGIN, 0.0)
+    if rings.min_gap[r, s] > NO_CONTACT:
+        n = wp.normalize(xyz(spheres.sphere[s, 0]) - xyz(spheres.sphere[r, 0]))
+        gap = pair_gap(rings, x, r, s, 0, spheres.sphere[r, 0], spheres.sphere[s, 0], n)
+        rings.min_gap[r, s] = wp.min(gap - REST_MARGIN, 0.0)
 
 
 @wp.func
-def way_between(balls: RingBalls, r: int, s: int, w: int, longest: float) -> float:
-    """Way along the deformed colon between two rings, counted up to ``longest`` [m]."""
-    way = float(0.0)
+def arc_between(spheres: RingSpheres, r: int, s: int, w: int, longest: float) -> float:
+    """Return the arc length along the deformed colon between two rings, counted up to ``longest`` [m]."""
+    arc = float(0.0)
     k = wp.min(r, s)
-    while k < wp.max(r, s) and way < longest:
-        way += wp.length(center_of(balls.ball[k + 1, w]) - center_of(balls.ball[k, w]))
+    while k < wp.max(r, s) and arc < longest:
+        arc += wp.length(xyz(spheres.sphere[k + 1, w]) - xyz(spheres.sphere[k, w]))
         k += 1
-    return way
+    return arc
 
 
 @wp.func
-def pair_stiffness(shape: LoopShape, balls: RingBalls, r: int, s: int, w: int, apart: float, overlap: float) -> float:
-    """Stiffness of a pair, centres ``apart`` [m], in N/m: none where one stretch of wall is gathered on the shaft."""
-    least = shape.half_bend[r] + shape.half_bend[s]
-    around = way_between(balls, r, s, w, (1.0 + ONSET) * least) / least - 1.0
-    beside = apart / (apart + overlap) - NESTED
-    return shape.stiffness * wp.clamp(wp.min(around, beside) / ONSET, 0.0, 1.0)
+def pair_stiffness(
+    rings: WallRings, spheres: RingSpheres, r: int, s: int, w: int, apart: float, overlap: float
+) -> float:
+    """Return the stiffness of a pair, centres ``apart`` [m], in N/m: zero where wall is gathered on the shaft."""
+    least = rings.half_min_arc[r] + rings.half_min_arc[s]
+    around = arc_between(spheres, r, s, w, (1.0 + STIFFNESS_RAMP) * least) / least - 1.0
+    beside = apart / (apart + overlap) - NESTED_RATIO
+    return rings.stiffness * wp.clamp(wp.min(around, beside) / STIFFNESS_RAMP, 0.0, 1.0)
 
 
 @wp.func
 def add_pair(
-    shape: LoopShape,
+    rings: WallRings,
     x: wp.array2d(dtype=wp.vec3),
     r: int,
     w: int,
@@ -161,80 +167,82 @@ def add_pair(
     push: float,
     stiffness: float,
     first: bool,
-    press: LoopPress,
+    out: SelfContactForce,
 ):
-    """Share a force ``push`` [N] along -n between the vertices of ring ``r``; ``first`` clears what was there."""
-    total = facing(shape, x, r, w, own, n)[1]
-    for k in range(shape.members.shape[1]):
-        i = shape.members[r, k]
+    """Distribute a force ``push`` [N] along -n over the vertices of ring ``r``; ``first`` clears earlier ones."""
+    total = facing_extent(rings, x, r, w, own, n)[1]
+    for k in range(rings.members.shape[1]):
+        i = rings.members[r, k]
         if i >= 0:
-            share = share_of(x[i, w], own, n) / total
+            share = facing_weight(x[i, w], own, n) / total
             force = (-share * push) * n
             if first:
-                press.plane[i, w] = wp.vec4(force[0], force[1], force[2], 0.0)
-                press.stiffness[i, w] = 2.0 * share * stiffness
+                out.plane[i, w] = wp.vec4(force[0], force[1], force[2], 0.0)
+                out.stiffness[i, w] = 2.0 * share * stiffness
             else:
-                press.plane[i, w] = press.plane[i, w] + wp.vec4(force[0], force[1], force[2], 0.0)
-                press.stiffness[i, w] = press.stiffness[i, w] + 2.0 * share * stiffness
+                out.plane[i, w] = out.plane[i, w] + wp.vec4(force[0], force[1], force[2], 0.0)
+                out.stiffness[i, w] = out.stiffness[i, w] + 2.0 * share * stiffness
 
 
 @wp.func
-def finish_ring(shape: LoopShape, x: wp.array2d(dtype=wp.vec3), r: int, w: int, touched: int, press: LoopPress):
+def finish_ring(rings: WallRings, x: wp.array2d(dtype=wp.vec3), r: int, w: int, in_contact: int, out: SelfContactForce):
     """Turn the forces on ring ``r`` into planes, or clear the ring."""
-    for k in range(shape.members.shape[1]):
-        i = shape.members[r, k]
+    for k in range(rings.members.shape[1]):
+        i = rings.members[r, k]
         if i >= 0:
-            force = center_of(press.plane[i, w])
+            force = xyz(out.plane[i, w])
             size = wp.length(force)
-            if touched == 1 and size > FAINT:
+            if in_contact == 1 and size > MIN_FORCE:
                 n = force / size
-                c = size + press.stiffness[i, w] * wp.dot(n, x[i, w])
-                press.plane[i, w] = wp.vec4(n[0], n[1], n[2], c)
+                c = size + out.stiffness[i, w] * wp.dot(n, x[i, w])
+                out.plane[i, w] = wp.vec4(n[0], n[1], n[2], c)
             else:
-                press.stiffness[i, w] = 0.0
+                out.stiffness[i, w] = 0.0
 
 
 @wp.func
-def rings_to_skip(shape: LoopShape, own: wp.vec4, distance: float) -> int:
-    """How many rings after one at ``distance`` [m] cannot reach ``own``, however far the tube is stretched."""
-    return int(wp.max(0.0, (distance - own[3] - shape.thickness - shape.widest) / shape.pitch))
+def rings_to_skip(rings: WallRings, own: wp.vec4, distance: float) -> int:
+    """Return how many rings after one at ``distance`` [m] cannot reach ``own``, however far the tube is stretched."""
+    return int(wp.max(0.0, (distance - own[3] - rings.thickness - rings.max_radius) / rings.max_spacing))
 
 
 @wp.kernel
-def find_near(shape: LoopShape, balls: RingBalls):
+def find_near_rings(rings: WallRings, spheres: RingSpheres):
     """Mark the rings whose spheres meet. Launch (R, W)."""
     r, w = wp.tid()
-    own = balls.ball[r, w]
-    s = shape.next_touch[r]
-    while s < shape.members.shape[0]:
-        other = balls.ball[s, w]
-        d = wp.length(center_of(other) - center_of(own))
-        if d < own[3] + other[3] + shape.thickness:
-            balls.near[r, w] = 1
-            balls.near[s, w] = 1
-        s += 1 + rings_to_skip(shape, own, d)
+    own = spheres.sphere[r, w]
+    s = rings.next_candidate[r]
+    while s < rings.members.shape[0]:
+        other = spheres.sphere[s, w]
+        d = wp.length(xyz(other) - xyz(own))
+        if d < own[3] + other[3] + rings.thickness:
+            spheres.near[r, w] = 1
+            spheres.near[s, w] = 1
+        s += 1 + rings_to_skip(rings, own, d)
 
 
 @wp.kernel
-def press_loops(x: wp.array2d(dtype=wp.vec3), shape: LoopShape, balls: RingBalls, press: LoopPress):
+def measure_self_contact(x: wp.array2d(dtype=wp.vec3), rings: WallRings, spheres: RingSpheres, out: SelfContactForce):
     """Measure the contact of each ring with all others. Launch (R, W)."""
     r, w = wp.tid()
-    if balls.near[r, w] == 0 and press.touched[r, w] == 0:
+    if spheres.near[r, w] == 0 and out.in_contact[r, w] == 0:
         return
-    own = balls.ball[r, w]
-    touched = int(0)
+    own = spheres.sphere[r, w]
+    in_contact = int(0)
     s = int(0)
-    while s < shape.members.shape[0]:
-        other = balls.ball[s, w]
-        way = center_of(other) - center_of(own)
-        d = wp.length(way)
-        if d < own[3] + other[3] + shape.thickness and shape.allowed[r, s] > NEVER and d > 0.0:
-            n = way / d
-            depth = shape.allowed[r, s] - pair_gap(shape, x, r, s, w, own, other, n)
+    while s < rings.members.shape[0]:
+        other = spheres.sphere[s, w]
+        offset = xyz(other) - xyz(own)
+        d = wp.length(offset)
+        if d < own[3] + other[3] + rings.thickness and rings.min_gap[r, s] > NO_CONTACT and d > 0.0:
+            n = offset / d
+            depth = rings.min_gap[r, s] - pair_gap(rings, x, r, s, w, own, other, n)
             if depth > 0.0:
-                stiffness = pair_stiffness(shape, balls, r, s, w, d, depth)
-                add_pair(shape, x, r, w, own, n, stiffness * wp.min(depth, DEEPEST), stiffness, touched == 0, press)
-                touched = 1
-        s += 1 + rings_to_skip(shape, own, d)
-    finish_ring(shape, x, r, w, touched, press)
-    press.touched[r, w] = touched
+                stiffness = pair_stiffness(rings, spheres, r, s, w, d, depth)
+                add_pair(
+                    rings, x, r, w, own, n, stiffness * wp.min(depth, MAX_OVERLAP), stiffness, in_contact == 0, out
+                )
+                in_contact = 1
+        s += 1 + rings_to_skip(rings, own, d)
+    finish_ring(rings, x, r, w, in_contact, out)
+    out.in_contact[r, w] = in_contact

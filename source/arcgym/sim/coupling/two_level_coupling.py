@@ -63,9 +63,9 @@ class TwoLevelCoupling:
             actuation: Commands and drives.
             contact: Contact search.
             wall: Wall solver.
-            x: Wall positions [m], shape (W*V,).
-            v: Wall velocities [m/s], shape (W*V,).
-            wall_force: Sum of mean link forces [N], shape (W*L,).
+            x: Wall positions [m], shape (V, W), vec3.
+            v: Wall velocities [m/s], shape (V, W), vec3.
+            wall_force: Sum of mean link forces [N], shape (W*L,), vec3.
             pierced: Set to 1 where the axis of a link is about to get behind the wall, or there, shape (W,).
         """
         self.cfg, self.model, self.control = cfg, model, control

@@ -9,13 +9,13 @@ each joint its acceleration. W worlds, L links, D degrees of freedom a world.
 
 import warp as wp
 
-from arcgym.sim.scope.scope_kernels import Articulated, Chain, ChainWork, moved
+from arcgym.sim.scope.scope_kernels import ArticulatedBody, Chain, ChainWork, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.func
-def without_joint(chain: Chain, work: ChainWork, d: int, w: int, body: Articulated) -> Articulated:
-    """The body seen through degree of freedom ``d``, which gives way; stores what recovers its acceleration."""
+def eliminate_joint(chain: Chain, work: ChainWork, d: int, w: int, body: ArticulatedBody) -> ArticulatedBody:
+    """Eliminate degree of freedom ``d``; stores the gains and offset from which its acceleration is recovered."""
     axis = work.axis[d, w]
     u_lin = body.la * axis
     u_ang = body.aa * axis
@@ -42,7 +42,7 @@ def without_joint(chain: Chain, work: ChainWork, d: int, w: int, body: Articulat
     work.gain_lin[d, w] = g_lin
     work.gain_ang[d, w] = g_ang
     work.offset[d, w] = offset
-    out = Articulated()
+    out = ArticulatedBody()
     out.ll = body.ll - wp.outer(u_lin, g_lin)
     out.la = body.la - wp.outer(u_lin, g_ang)
     out.aa = body.aa - wp.outer(u_ang, g_ang)
@@ -52,12 +52,12 @@ def without_joint(chain: Chain, work: ChainWork, d: int, w: int, body: Articulat
 
 
 @wp.func
-def gather(chain: Chain, work: ChainWork, w: int) -> Articulated:
-    """Walk from the tip to the base; returns the whole chain as seen from the root's anchor."""
-    carried = Articulated()
+def inward_pass(chain: Chain, work: ChainWork, w: int) -> ArticulatedBody:
+    """Walk from the tip to the base; return the articulated body of the whole chain at the root's anchor."""
+    carried = ArticulatedBody()
     for step in range(chain.links):
         link = chain.links - 1 - step
-        body = Articulated()
+        body = ArticulatedBody()
         body.ll = carried.ll + work.ll[link, w]
         body.la = carried.la + work.la[link, w]
         body.aa = carried.aa + work.aa[link, w]
@@ -67,12 +67,12 @@ def gather(chain: Chain, work: ChainWork, w: int) -> Articulated:
             first = chain.dof_start[link]
             count = chain.dof_start[link + 1] - first
             for k in range(count):
-                body = without_joint(chain, work, first + count - 1 - k, w, body)
+                body = eliminate_joint(chain, work, first + count - 1 - k, w, body)
             drift_lin = work.drift_lin[link, w]
             drift_ang = work.drift_ang[link, w]
             body.force += body.ll * drift_lin + body.la * drift_ang
             body.torque += drift_lin * body.la + body.aa * drift_ang
-            carried = moved(body, work.arm[link, w])
+            carried = shift_origin(body, work.arm[link, w])
         else:
             carried = body
     return carried
@@ -173,7 +173,7 @@ def solve_chain(
     ``joint_q`` and ``joint_qd`` are moved on in place.
     """
     w = wp.tid()
-    whole = gather(chain, work, w)
+    whole = inward_pass(chain, work, w)
     lin = wp.vec3(0.0)
     ang = wp.vec3(0.0)
     now = LinkMotion()

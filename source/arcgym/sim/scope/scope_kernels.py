@@ -82,7 +82,7 @@ class ChainWork:
 
 
 @wp.struct
-class Articulated:
+class ArticulatedBody:
     """Force [N] and torque [N m] at a point as functions of its linear a and angular acceleration b.
 
     force = ll a + la b + force, torque = la^T a + aa b + torque.
@@ -102,9 +102,9 @@ def skew_times(r: wp.vec3, m: wp.mat33) -> wp.mat33:
 
 
 @wp.func
-def moved(body: Articulated, r: wp.vec3) -> Articulated:
-    """The same body seen from a point that ``r`` leads away from."""
-    out = Articulated()
+def shift_origin(body: ArticulatedBody, r: wp.vec3) -> ArticulatedBody:
+    """Return the same body with its reference point moved by ``-r``."""
+    out = ArticulatedBody()
     out.ll = body.ll
     out.la = body.la + wp.transpose(skew_times(r, body.ll))
     out.aa = body.aa + skew_times(r, out.la) + wp.transpose(skew_times(r, body.la))
@@ -123,8 +123,8 @@ def anchor(chain: Chain, link: int, pose: wp.transform) -> wp.vec3:
 
 @wp.func
 def link_inertia(
-    chain: Chain, link: int, pose: wp.transform, omega: wp.vec3, lever: wp.vec3, load: Articulated
-) -> Articulated:
+    chain: Chain, link: int, pose: wp.transform, omega: wp.vec3, lever: wp.vec3, load: ArticulatedBody
+) -> ArticulatedBody:
     """A link with its loads (about the centre of mass), seen from its anchor."""
     rot = wp.quat_to_matrix(wp.transform_get_rotation(pose))
     inertia = rot * chain.inertia[link] * wp.transpose(rot)
@@ -134,13 +134,13 @@ def link_inertia(
     out.aa += inertia
     out.force += out.ll * centripetal
     out.torque += wp.transpose(out.la) * centripetal + wp.cross(omega, inertia * omega)
-    return moved(out, lever)
+    return shift_origin(out, lever)
 
 
 @wp.func
-def contact_load(loads: LinkLoads, link: int, w: int) -> Articulated:
-    """Load of the contacts on one link."""
-    out = Articulated()
+def load_on_link(loads: LinkLoads, link: int, w: int) -> ArticulatedBody:
+    """Return the loads on one link as an articulated body."""
+    out = ArticulatedBody()
     out.ll = loads.ll[link, w]
     out.la = loads.la[link, w]
     out.aa = loads.aa[link, w]
@@ -211,7 +211,7 @@ def prepare_links(
     omega = wp.spatial_bottom(body_qd[row])
     here = anchor(chain, link, pose)
     lever = wp.transform_point(pose, chain.com[link]) - here
-    load = contact_load(loads, link, w)
+    load = load_on_link(loads, link, w)
     load.ll += wp.diag(wp.spatial_top(resistance[link, w]))
     load.aa += wp.diag(wp.spatial_bottom(resistance[link, w]))
     load.force -= wp.spatial_top(body_f[row])

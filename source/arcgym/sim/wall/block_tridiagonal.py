@@ -10,7 +10,7 @@ from arcgym.sim.wall import block_tridiagonal_kernels as kernels
 from arcgym.sim.wall.ring_modes import MODES
 
 
-class ChainSolver:
+class BlockTridiagonalSolver:
     """Cyclic reduction: log2(rows) levels, each parallel over worlds and rows, always summed in the same order.
 
     Fill :attr:`diagonal`, :attr:`upper` and :attr:`rhs`, call :meth:`solve`, read the solution from :attr:`rhs`.

@@ -5,17 +5,19 @@
 
 The modes turn with their ring, so the elastic matrix is the rest matrix for every pose; inertia and isotropic anchors
 do not turn at all. Anchors with slack are taken at the shift of the ring's centre. Only the contacts at hand, with
-the scope and with other loops, are added in each step. Launch dimensions: R rings, V wall vertices, W worlds last.
+the scope and of the wall with itself, are added in each step.
+
+Launch dimensions: R rings, V wall vertices, W worlds last.
 """
 
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactRecords
-from arcgym.sim.contact.self_contact_kernels import LoopPress
+from arcgym.sim.contact.self_contact_kernels import SelfContactForce
 from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.sim.wall.anchor_kernels import secant_share
 from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
-from arcgym.sim.wall.wall_kernels import Pressing, Tissue
+from arcgym.sim.wall.wall_kernels import MeasuredContacts, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -74,10 +76,10 @@ def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int) -> wp.
 
 
 @wp.func
-def contact_push(pressing: Pressing, slot: int, move: wp.vec3) -> wp.vec3:
-    """Stiffness of a contact times a move of its point."""
-    n = pressing.normal[slot]
-    k = pressing.stiffness[slot]
+def apply_contact_stiffness(measured: MeasuredContacts, slot: int, move: wp.vec3) -> wp.vec3:
+    """Return the stiffness of a contact times a displacement of its point [N]."""
+    n = measured.normal[slot]
+    k = measured.stiffness[slot]
     return ((k[0] - k[1]) * wp.dot(n, move)) * n + k[1] * move
 
 
@@ -107,15 +109,17 @@ def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int)
 
 
 @wp.func
-def loop_row(space: RingSpace, loops: LoopPress, back: wp.mat33, r: int, a: int, w: int) -> Unknowns:
+def self_contact_row(
+    space: RingSpace, self_contact: SelfContactForce, back: wp.mat33, r: int, a: int, w: int
+) -> Unknowns:
     """Stiffness of the contact of ring ``r`` with other loops between its mode ``a`` and all of its modes [N/m]."""
     out = Unknowns()
     for k in range(space.members.shape[1]):
         v = space.members[r, k]
         if v >= 0:
-            stiffness = loops.stiffness[v, w]
+            stiffness = self_contact.stiffness[v, w]
             if stiffness > 0.0:
-                plane = loops.plane[v, w]
+                plane = self_contact.plane[v, w]
                 n = back * wp.vec3(plane[0], plane[1], plane[2])
                 pull = stiffness * wp.dot(space.basis[v, a], n)
                 for c in range(MODES):
@@ -133,8 +137,8 @@ def assemble(
     inv_dt2: float,
     regularisation: float,
     records: ContactRecords,
-    pressing: Pressing,
-    loops: LoopPress,
+    measured: MeasuredContacts,
+    self_contact: SelfContactForce,
     diagonal: wp.array4d(dtype=float),
     upper: wp.array4d(dtype=float),
     rhs: wp.array3d(dtype=float),
@@ -150,8 +154,8 @@ def assemble(
         own_row += moduli[part] * space.stiffness[part, r, a]
         next_row += moduli[part] * space.coupling[part, r, a]
     own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
-    if loops.touched[r, w] == 1:
-        own_row += loop_row(space, loops, back, r, a, w)
+    if self_contact.in_contact[r, w] == 1:
+        own_row += self_contact_row(space, self_contact, back, r, a, w)
     total = float(0.0)
     for k in range(space.members.shape[1]):
         v = space.members[r, k]
@@ -164,10 +168,10 @@ def assemble(
         if lowest >= 0:
             slot = records.ring_head[lowest, w]
         while slot >= 0:
-            if pressing.stiffness[slot][0] > 0.0:
+            if measured.stiffness[slot][0] > 0.0:
                 f = records.corners[slot]
                 u = records.bary[slot]
-                push = contact_push(pressing, slot, rotation[r, w] * point_move(space, f, u, r, a))
+                push = apply_contact_stiffness(measured, slot, rotation[r, w] * point_move(space, f, u, r, a))
                 own_row += ring_share(space, f, u, r, back * push)
                 if which == 0 and r + 1 < rings:
                     next_row += ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * push)

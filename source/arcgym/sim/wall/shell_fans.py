@@ -31,31 +31,31 @@ def hinge_of_edges(geometry: ShellGeometry) -> np.ndarray:
     return out
 
 
-def fan_blades(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
+def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
     """Each corner's view of its triangle and of two of the hinges there.
 
     Args:
         geometry: Rest geometry.
         corner: Corners, 3 * triangle + corner, shape (n,).
-        dtype: Of :class:`arcgym.sim.wall.shell_kernels.Blade`, whose fields are filled.
+        dtype: Of :class:`arcgym.sim.wall.shell_kernels.VertexTriangle`, whose fields are filled.
 
     Returns:
-        The blades, shape (n,).
+        The fan, shape (n,).
     """
-    blades: Any = np.zeros(len(corner), dtype)
+    fan: Any = np.zeros(len(corner), dtype)
     owner, turned = corner // 3, (corner[:, None] + np.arange(3)) % 3  # corners of the triangle, this one first
     vertex, rest, edges = geometry.triangles[owner[:, None], turned], triangle_rest(geometry), hinge_of_edges(geometry)
-    blades["first"], blades["second"], blades["triangle"] = vertex[:, 1], vertex[:, 2], owner
-    blades["rest"] = np.column_stack([rest[owner[:, None], turned], rest[owner, 3]])
+    fan["first"], fan["second"], fan["index"] = vertex[:, 1], vertex[:, 2], owner
+    fan["rest"] = np.column_stack([rest[owner[:, None], turned], rest[owner, 3]])
     for name, edge, start in (("rim", 0, 1), ("spoke", 2, 0)):
         hinge = edges[owner, turned[:, edge]]
         beyond = (geometry.sides[hinge, 0] == owner).astype(int)  # which of the hinge's sides is not this triangle
-        blades[name] = np.maximum(hinge, 0)
-        blades[f"{name}_vertex"] = geometry.hinges[hinge, beyond]
-        blades[f"{name}_triangle"] = geometry.sides[hinge, beyond]
+        fan[name] = np.maximum(hinge, 0)
+        fan[f"{name}_vertex"] = geometry.hinges[hinge, beyond]
+        fan[f"{name}_triangle"] = geometry.sides[hinge, beyond]
         foot = geometry.foot[hinge[:, None], np.stack([1 - beyond, beyond], axis=1)]
         backwards = geometry.hinges[hinge, 2] != vertex[:, start]
         foot[backwards] = 1.0 - foot[backwards]
         stiffness = np.where(hinge >= 0, geometry.weight[hinge], 0.0)
-        blades[f"{name}_shape"] = np.column_stack([geometry.length[hinge], foot, stiffness])
-    return blades
+        fan[f"{name}_shape"] = np.column_stack([geometry.length[hinge], foot, stiffness])
+    return fan

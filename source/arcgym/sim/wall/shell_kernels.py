@@ -27,8 +27,8 @@ tears (0.87 MPa at 63 %, Christensen et al. 2015); without it, a quarter."""
 
 
 @wp.struct
-class Blade:
-    """A triangle as one of its vertices sees it: one blade of the fan around that vertex.
+class VertexTriangle:
+    """A triangle as one of its vertices sees it: one of the fan of triangles around that vertex.
 
     Its *rim* is the hinge at the edge opposite to the vertex, its *spoke* the hinge at the edge to ``first``. A hinge
     that is not there, at a border, has no stiffness.
@@ -36,7 +36,7 @@ class Blade:
 
     first: int  # the other two vertices, in the triangle's order
     second: int
-    triangle: int
+    index: int  # triangle
     rest: wp.vec4  # ``ShellElements.rest`` of the triangle, beginning with this vertex
     rim: int  # hinge
     rim_vertex: int  # vertex beyond it
@@ -57,13 +57,15 @@ class ShellElements:
     edges: wp.array(dtype=wp.vec3i)  # hinge opposite to each corner or -1, shape (F,)
     hinges: wp.array(dtype=wp.vec4i)  # two opposite vertices, then the edge from start to end, shape (H,)
     rest_angle: wp.array(dtype=float)  # dihedral angle at rest [rad], shape (H,)
-    lever: wp.array(dtype=float)  # stiffness over flexural rigidity and length [1/m], shape (H,)
-    fan_start: wp.array(dtype=int)  # first blade of each vertex, shape (V + 1,)
-    fan: wp.array(dtype=Blade)  # shape (3*F,)
-    fan_corner: wp.array(dtype=int)  # 3 * triangle + corner of each blade, shape (3*F,)
-    tilt: wp.array2d(dtype=wp.vec3)  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
+    hinge_stiffness: wp.array(dtype=float)  # stiffness over flexural rigidity and length [1/m], shape (H,)
+    fan_start: wp.array(dtype=int)  # first triangle of each vertex's fan, shape (V + 1,)
+    fan: wp.array(dtype=VertexTriangle)  # shape (3*F,)
+    fan_corner: wp.array(dtype=int)  # 3 * triangle + corner of each, shape (3*F,)
+    scaled_normal: wp.array2d(
+        dtype=wp.vec3
+    )  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
     corner_force: wp.array2d(dtype=wp.vec3)  # force on each corner [N], shape (3*F, W)
-    bend: wp.array2d(dtype=float)  # angle of each hinge from rest [rad], shape (H, W)
+    angle_change: wp.array2d(dtype=float)  # angle of each hinge from rest [rad], shape (H, W)
 
 
 @wp.struct
@@ -78,8 +80,8 @@ class Stretch:
 
 
 @wp.func
-def stretch_of(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> Stretch:
-    """Stress S = shear Id + spread C^-1 of a triangle with the edges ``d1`` and ``d2`` from its first corner.
+def membrane_stretch(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> Stretch:
+    """Stress S = shear Id + spread C^-1 of a triangle with the edges ``d1`` and ``d2`` from its first triangle.
 
     I is the sum of the squared edges, each times the cotangent of the corner opposite over 2 A.
     """
@@ -139,15 +141,15 @@ def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: i
 def measure_hinges(shell: ShellElements, x: wp.array2d(dtype=wp.vec3)):
     """Angle of every hinge from rest. Launch (H, W)."""
     h, w = wp.tid()
-    shell.bend[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
+    shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
 
 
 @wp.func
-def hinge_pull(shell: ShellElements, h: int, w: int) -> float:
+def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
     """Moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
     if h < 0:
         return 0.0
-    return shell.lever[h] * shell.bend[h, w]
+    return shell.hinge_stiffness[h] * shell.angle_change[h, w]
 
 
 @wp.kernel
@@ -163,15 +165,15 @@ def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d(dtype=
     d1 = x[corners[1], w] - x0
     d2 = x[corners[2], w] - x0
     normal = wp.cross(d1, d2)
-    tilt = normal / wp.max(wp.length_sq(normal), 1.0e-20)
-    shell.tilt[t, w] = tilt
+    scaled_normal = normal / wp.max(wp.length_sq(normal), 1.0e-20)
+    shell.scaled_normal[t, w] = scaled_normal
     rest = shell.rest[t]
     edges = shell.edges[t]
-    pull = edge_tensions(stretch_of(d1, d2, rest, tissue.moduli[w]), rest)
-    bend = (4.0 * rest[3] * rest[3] * tissue.moduli[w][2]) * tilt
-    u0 = hinge_pull(shell, edges[0], w)
-    u1 = hinge_pull(shell, edges[1], w)
-    u2 = hinge_pull(shell, edges[2], w)
+    pull = edge_tensions(membrane_stretch(d1, d2, rest, tissue.moduli[w]), rest)
+    bend = (4.0 * rest[3] * rest[3] * tissue.moduli[w][2]) * scaled_normal
+    u0 = hinge_moment(shell, edges[0], w)
+    u1 = hinge_moment(shell, edges[1], w)
+    u2 = hinge_moment(shell, edges[2], w)
     one = (rest[2] * (u1 - u0) + rest[0] * (u1 - u2)) * bend - (pull[2] + pull[0]) * d1 + pull[0] * d2
     two = (rest[0] * (u2 - u1) + rest[1] * (u2 - u0)) * bend - (pull[1] + pull[0]) * d2 + pull[0] * d1
     shell.corner_force[3 * t, w] = -one - two
@@ -187,7 +189,7 @@ def add_stretching(block: VertexBlock, rest: wp.vec4, d1: wp.vec3, d2: wp.vec3, 
     Hessian is A times s (Id - n n^T) + (lambda + mu - lambda ln J) h h^T + (s + (lambda ln J - mu) m.C^-1 m) n n^T
     + 4 b mu (I - 2) g g^T; negative factors, of a compressed triangle that would buckle, count as zero.
     """
-    now = stretch_of(d1, d2, rest, moduli)
+    now = membrane_stretch(d1, d2, rest, moduli)
     pull = edge_tensions(now, rest)
     h = now.dots[2] * d1 + now.dots[1] * d2
     g = rest[2] * d1 + rest[1] * d2
@@ -219,31 +221,31 @@ def add_elements(
 ) -> VertexBlock:
     """Add the terms of the triangles and hinges around vertex ``i`` of world ``w``.
 
-    A hinge's angle is the measured one less, for both of its triangles, length times tilt times the way that the vertex
-    opposite has come from the foot of its height. That way had no part along the tilt when it was measured.
+    A hinge's angle is the measured one less, for both of its triangles, its length times the product of the scaled
+    normal with the displacement of the vertex opposite from the foot of its height, which was zero when measured.
     """
     out = block
     here = x[i, w]
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
-        blade = shell.fan[k]
-        d1 = x[blade.first, w] - here
-        d2 = x[blade.second, w] - here
-        out = add_stretching(out, blade.rest, d1, d2, moduli)
-        tilt = shell.tilt[blade.triangle, w]
-        rise1 = wp.dot(tilt, d1)
-        rise2 = wp.dot(tilt, d2)
+        triangle = shell.fan[k]
+        d1 = x[triangle.first, w] - here
+        d2 = x[triangle.second, w] - here
+        out = add_stretching(out, triangle.rest, d1, d2, moduli)
+        scaled_normal = shell.scaled_normal[triangle.index, w]
+        rise1 = wp.dot(scaled_normal, d1)
+        rise2 = wp.dot(scaled_normal, d2)
 
-        shape = blade.rim_shape
-        away = x[blade.rim_vertex, w] - here - (1.0 - shape[2]) * d1 - shape[2] * d2
-        lift = wp.dot(shell.tilt[blade.rim_triangle, w], away) - (1.0 - shape[1]) * rise1 - shape[1] * rise2
-        angle = shell.bend[blade.rim, w] - shape[0] * lift
-        out = add_hinge(out, -shape[0] * tilt, angle, moduli[2] * shape[3])
+        shape = triangle.rim_shape
+        away = x[triangle.rim_vertex, w] - here - (1.0 - shape[2]) * d1 - shape[2] * d2
+        lift = wp.dot(shell.scaled_normal[triangle.rim_triangle, w], away) - (1.0 - shape[1]) * rise1 - shape[1] * rise2
+        angle = shell.angle_change[triangle.rim, w] - shape[0] * lift
+        out = add_hinge(out, -shape[0] * scaled_normal, angle, moduli[2] * shape[3])
 
-        shape = blade.spoke_shape
-        other = shell.tilt[blade.spoke_triangle, w]
-        lift = rise2 - shape[1] * rise1 + wp.dot(other, x[blade.spoke_vertex, w] - here - shape[2] * d1)
-        angle = shell.bend[blade.spoke, w] - shape[0] * lift
-        turn = shape[0] * ((1.0 - shape[1]) * tilt + (1.0 - shape[2]) * other)
+        shape = triangle.spoke_shape
+        other = shell.scaled_normal[triangle.spoke_triangle, w]
+        lift = rise2 - shape[1] * rise1 + wp.dot(other, x[triangle.spoke_vertex, w] - here - shape[2] * d1)
+        angle = shell.angle_change[triangle.spoke, w] - shape[0] * lift
+        turn = shape[0] * ((1.0 - shape[1]) * scaled_normal + (1.0 - shape[2]) * other)
         out = add_hinge(out, turn, angle, moduli[2] * shape[3])
     return out
 

@@ -7,16 +7,16 @@ import warp as wp
 
 from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.sim.wall.wall_kernels import (
-    Pressing,
+    MeasuredContacts,
     Tissue,
     VertexBlock,
     WallContacts,
     WallNodes,
     add_contact,
-    add_loops,
-    contact_force,
+    add_self_contact,
+    converged,
     inertia_and_anchor,
-    quiet,
+    vertex_contact_force,
 )
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -48,12 +48,12 @@ def sweep_kernels(
         """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
         k, w = wp.tid()
         i = color[k]
-        if tissue.rigid[w] == 1 or quiet(force[i, w], x[i, w] - inertial[i, w]):
+        if tissue.rigid[w] == 1 or converged(force[i, w], x[i, w] - inertial[i, w]):
             return
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
         block = add_elements(block, elements, x, i, w, tissue.moduli[w])
         block = add_contact(block, contacts, x, i, w)
-        block = add_loops(block, contacts.loops, x[i, w], i, w)
+        block = add_self_contact(block, contacts.self_contact, x[i, w], i, w)
         x[i, w] = x[i, w] + clamp_length(wp.inverse(block.hessian) * block.force, largest_move)
 
     @wp.kernel(module="unique")
@@ -63,7 +63,7 @@ def sweep_kernels(
         tissue: Tissue,
         inertial: wp.array2d(dtype=wp.vec3),
         contacts: WallContacts,
-        pressing: Pressing,
+        measured: MeasuredContacts,
         x: wp.array2d(dtype=wp.vec3),
         force: wp.array2d(dtype=wp.vec3),
     ):
@@ -73,8 +73,8 @@ def sweep_kernels(
         if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
             block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
             block = add_forces(block, elements, x, i, w, tissue.moduli[w])
-            block.force += contact_force(contacts.records, pressing, i, w)
-            block = add_loops(block, contacts.loops, x[i, w], i, w)
+            block.force += vertex_contact_force(contacts.records, measured, i, w)
+            block = add_self_contact(block, contacts.self_contact, x[i, w], i, w)
         force[i, w] = block.force
 
     return sweep_color, residual

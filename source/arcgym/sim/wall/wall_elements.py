@@ -11,7 +11,7 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.wall import shell_kernels, solid_kernels
-from arcgym.sim.wall.shell_fans import fan_blades, hinge_of_edges, triangle_rest
+from arcgym.sim.wall.shell_fans import hinge_of_edges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_parameters import ShellParameters, WallParameters
@@ -84,7 +84,7 @@ class Shell:
             device: Warp device.
         """
         self.device, self.num_envs = device, num_envs
-        blade: Any = shell_kernels.Blade
+        vertex_triangle: Any = shell_kernels.VertexTriangle
         self.data = data = shell_kernels.ShellElements()
         triangles, hinges = geometry.triangles, geometry.hinges
         start, corner = vertex_entries(triangles, vertices)
@@ -94,19 +94,19 @@ class Shell:
             "edges": (hinge_of_edges(geometry), wp.vec3i),
             "hinges": (hinges, wp.vec4i),
             "rest_angle": (geometry.rest_angle, float),
-            "lever": (geometry.weight / geometry.length, float),
+            "hinge_stiffness": (geometry.weight / geometry.length, float),
             "fan_start": (start, int),
-            "fan": (fan_blades(geometry, corner, blade.numpy_dtype()), blade),
+            "fan": (vertex_triangles(geometry, corner, vertex_triangle.numpy_dtype()), vertex_triangle),
             "fan_corner": (corner, int),
         }
         for name, (values, dtype) in copies.items():
             setattr(data, name, wp.array(values, dtype=dtype, device=device))
-        data.tilt = wp.zeros((len(triangles), num_envs), dtype=wp.vec3, device=device)
+        data.scaled_normal = wp.zeros((len(triangles), num_envs), dtype=wp.vec3, device=device)
         data.corner_force = wp.zeros((3 * len(triangles), num_envs), dtype=wp.vec3, device=device)
-        data.bend = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
+        data.angle_change = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data = self.data
-        wp.launch(shell_kernels.measure_hinges, data.bend.shape, [data, x], device=self.device)
-        wp.launch(shell_kernels.measure_triangles, data.tilt.shape, [data, tissue, x], device=self.device)
+        wp.launch(shell_kernels.measure_hinges, data.angle_change.shape, [data, x], device=self.device)
+        wp.launch(shell_kernels.measure_triangles, data.scaled_normal.shape, [data, tissue, x], device=self.device)

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""What the walls of both kinds share: vertices with mass and anchor, contact, the start and the end of a step.
+"""Parts common to walls of both kinds: vertices with mass and anchor, contact, the start and the end of a step.
 
 W worlds, V wall vertices; arrays of vertices have the shape (V, W), so that neighbouring GPU threads, which work on
 neighbouring worlds, read neighbouring memory.
@@ -9,8 +9,15 @@ neighbouring worlds, read neighbouring memory.
 
 import warp as wp
 
-from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes, contact_push, slip_scale, touch
-from arcgym.sim.contact.self_contact_kernels import LoopPress
+from arcgym.sim.contact.contact_kernels import (
+    ContactLaw,
+    ContactRecords,
+    LinkShapes,
+    contact_geometry,
+    normal_force,
+    slip_scale,
+)
+from arcgym.sim.contact.self_contact_kernels import SelfContactForce
 from arcgym.sim.geometry_kernels import corner_point
 from arcgym.sim.wall.anchor_kernels import Anchors, anchor_hessian, anchor_pull
 from arcgym.utils import warp_setup  # noqa: F401
@@ -42,16 +49,19 @@ class VertexBlock:
     hessian: wp.mat33
 
 
-QUIET_FORCE = wp.constant(1.0e-3)
-"""Force under which a vertex that the ring correction has left alone is not swept [N]: noise of single precision."""
-QUIET_MOVE = wp.constant(1.0e-7)
-"""Move by the ring correction under which it counts as left alone [m]."""
+FORCE_TOLERANCE = wp.constant(1.0e-3)
+"""Force under which a vertex that the ring correction did not move is not swept [N]: noise of single precision."""
+MOVE_TOLERANCE = wp.constant(1.0e-7)
+"""Move by the ring correction under which it counts as not moved [m]."""
 
 
 @wp.func
-def quiet(force: wp.vec3, moved: wp.vec3) -> bool:
-    """Whether a vertex with this force and this move by the ring correction needs no sweep."""
-    return wp.length_sq(force) < QUIET_FORCE * QUIET_FORCE and wp.length_sq(moved) < QUIET_MOVE * QUIET_MOVE
+def converged(force: wp.vec3, correction: wp.vec3) -> bool:
+    """Return whether a vertex with this force [N] and this move by the ring correction [m] needs no sweep."""
+    return (
+        wp.length_sq(force) < FORCE_TOLERANCE * FORCE_TOLERANCE
+        and wp.length_sq(correction) < MOVE_TOLERANCE * MOVE_TOLERANCE
+    )
 
 
 @wp.func
@@ -74,7 +84,7 @@ class WallContacts:
     records: ContactRecords
     links: LinkShapes
     law: ContactLaw
-    loops: LoopPress
+    self_contact: SelfContactForce
     friction: wp.array(dtype=float)  # Coulomb coefficient, shape (W,)
     dt: float  # physics step [s]
     x_prev: wp.array2d(dtype=wp.vec3)  # wall positions at the start of the step [m], shape (V, W)
@@ -83,34 +93,33 @@ class WallContacts:
 
 
 @wp.struct
-class Press:
-    """One contact as the wall feels it.
+class ContactForce:
+    """Force of one contact on the wall: ``normal_force * normal - friction * slip``."""
 
-    Normal force [N] and its stiffness [N/m], friction's secant stiffness [N/m], slip in this step [m].
-    """
-
-    push: float
-    stiffness: float
-    drag: float
-    normal: wp.vec3
-    slip: wp.vec3
+    normal_force: float  # [N]
+    stiffness: float  # along the normal [N/m]
+    friction: float  # secant stiffness across the normal [N/m]
+    normal: wp.vec3  # unit vector from the scope into the wall
+    slip: wp.vec3  # of link against wall in this step, across the normal [m]
 
 
 @wp.func
-def press_of(contacts: WallContacts, slot: int, x: wp.array2d(dtype=wp.vec3), w: int) -> Press:
-    """Contact in ``slot`` of world ``w`` at wall positions ``x``; both forces are zero where nothing touches."""
-    out = Press()
+def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d(dtype=wp.vec3), w: int) -> ContactForce:
+    """Return the force of the contact in ``slot`` at the positions ``x`` of world ``w``; zero where nothing touches."""
+    out = ContactForce()
     row = slot // contacts.records.capacity
     link = row % contacts.links.radius.shape[0]
     f = contacts.records.corners[slot]
     u = contacts.records.bary[slot]
     p = corner_point(x, f, u, w)
     radius = contacts.links.radius[link] + contacts.law.wall_radius
-    c = touch(p, contacts.records.normal[slot], contacts.body_q[row], contacts.links.half_length[link], radius)
+    c = contact_geometry(
+        p, contacts.records.normal[slot], contacts.body_q[row], contacts.links.half_length[link], radius
+    )
     if c.gap < 0.0:
         share = contacts.records.weight[slot]
-        push = share * contact_push(contacts.law, -c.gap)
-        out.push = push[0]
+        push = share * normal_force(contacts.law, -c.gap)
+        out.normal_force = push[0]
         out.stiffness = push[1]
         out.normal = c.normal
         local = wp.transform_point(wp.transform_inverse(contacts.body_q[row]), p)
@@ -118,11 +127,11 @@ def press_of(contacts: WallContacts, slot: int, x: wp.array2d(dtype=wp.vec3), w:
         opening = wp.dot(c.normal, slip)
         if opening < 0.0:
             damping = share * contacts.law.damping / contacts.dt
-            out.push -= damping * opening
+            out.normal_force -= damping * opening
             out.stiffness += damping
         out.slip = slip - c.normal * opening
         limit = contacts.law.slip_velocity * contacts.dt
-        out.drag = contacts.friction[w] * out.push * slip_scale(wp.length(out.slip), limit)
+        out.friction = contacts.friction[w] * out.normal_force * slip_scale(wp.length(out.slip), limit)
     return out
 
 
@@ -137,17 +146,17 @@ def add_contact(
     while entry >= 0:
         slot = entry // 3
         weight = contacts.records.bary[slot][entry - 3 * slot]
-        c = press_of(contacts, slot, x, w)
-        if c.push > 0.0:
+        c = contact_force_at(contacts, slot, x, w)
+        if c.normal_force > 0.0:
             along = wp.outer(c.normal, c.normal)
-            out.force += weight * (c.push * c.normal - c.drag * c.slip)
-            out.hessian += (weight * weight) * (c.stiffness * along + c.drag * (eye - along))
+            out.force += weight * (c.normal_force * c.normal - c.friction * c.slip)
+            out.hessian += (weight * weight) * (c.stiffness * along + c.friction * (eye - along))
         entry = contacts.records.vertex_next[entry]
     return out
 
 
 @wp.struct
-class Pressing:
+class MeasuredContacts:
     """Contacts measured at the start of a wall solve, by record slot; zero where nothing touches."""
 
     force: wp.array(dtype=wp.vec3)  # on the wall [N]
@@ -156,37 +165,37 @@ class Pressing:
 
 
 @wp.kernel
-def measure_contacts(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), pressing: Pressing):
+def measure_contacts(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), measured: MeasuredContacts):
     """Measure every contact at wall positions ``x``. Launch (L, W)."""
     link, w = wp.tid()
     row = w * contacts.links.radius.shape[0] + link
     for k in range(contacts.records.count[row]):
         slot = row * contacts.records.capacity + k
-        c = press_of(contacts, slot, x, w)
-        pressing.force[slot] = c.push * c.normal - c.drag * c.slip
-        pressing.normal[slot] = c.normal
-        pressing.stiffness[slot] = wp.vec2(c.stiffness, c.drag)
+        c = contact_force_at(contacts, slot, x, w)
+        measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip
+        measured.normal[slot] = c.normal
+        measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
 
 
 @wp.func
-def contact_force(records: ContactRecords, pressing: Pressing, i: int, w: int) -> wp.vec3:
+def vertex_contact_force(records: ContactRecords, measured: MeasuredContacts, i: int, w: int) -> wp.vec3:
     """Sum of the measured contacts on vertex ``i`` of world ``w`` [N]."""
     out = wp.vec3(0.0)
     entry = records.vertex_head[i, w]
     while entry >= 0:
         slot = entry // 3
-        out += records.bary[slot][entry - 3 * slot] * pressing.force[slot]
+        out += records.bary[slot][entry - 3 * slot] * measured.force[slot]
         entry = records.vertex_next[entry]
     return out
 
 
 @wp.func
-def add_loops(block: VertexBlock, loops: LoopPress, x: wp.vec3, i: int, w: int) -> VertexBlock:
-    """Add the push of other loops of the colon on vertex ``i`` of world ``w`` at ``x``."""
+def add_self_contact(block: VertexBlock, self_contact: SelfContactForce, x: wp.vec3, i: int, w: int) -> VertexBlock:
+    """Add the contact of the wall with itself on vertex ``i`` of world ``w`` at ``x``."""
     out = block
-    k = loops.stiffness[i, w]
+    k = self_contact.stiffness[i, w]
     if k > 0.0:
-        plane = loops.plane[i, w]
+        plane = self_contact.plane[i, w]
         n = wp.vec3(plane[0], plane[1], plane[2])
         out.force += (plane[3] - k * wp.dot(n, x)) * n
         out.hessian += k * wp.outer(n, n)

@@ -10,10 +10,10 @@ import numpy as np
 import warp as wp
 
 from arcgym.sim.contact.contact import ContactSearch
-from arcgym.sim.contact.self_contact import LoopContact
+from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall import coarse_kernels, wall_kernels
-from arcgym.sim.wall.block_tridiagonal import ChainSolver
+from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.block_tridiagonal_kernels import Unknowns
 from arcgym.sim.wall.ring_modes import MODES, RingModes
 from arcgym.sim.wall.wall_elements import wall_elements
@@ -90,16 +90,16 @@ class WallSolver:
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
-        self.pressing = self._pressing(contact_slots)
-        self.chain = ChainSolver(num_envs, self.ring_count, device)
-        self.loops = LoopContact(cfg, wall.points, wall.ring, modes.members, wall.thickness, num_envs, device)
+        self.measured = self._measured_contacts(contact_slots)
+        self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
+        self.self_contact = SelfContact(cfg, wall.points, wall.ring, modes.members, wall.thickness, num_envs, device)
 
-    def _pressing(self, slots: int) -> wall_kernels.Pressing:
-        pressing = wall_kernels.Pressing()
-        pressing.force = wp.zeros(slots, dtype=wp.vec3, device=self.device)
-        pressing.normal = wp.zeros(slots, dtype=wp.vec3, device=self.device)
-        pressing.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
-        return pressing
+    def _measured_contacts(self, slots: int) -> wall_kernels.MeasuredContacts:
+        measured = wall_kernels.MeasuredContacts()
+        measured.force = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        measured.normal = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        measured.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
+        return measured
 
     def _space(self, wall: WallParameters, modes: RingModes) -> coarse_kernels.RingSpace:
         space = coarse_kernels.RingSpace()
@@ -169,22 +169,29 @@ class WallSolver:
     def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
         """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
         self.elements.measure(x, self.tissue)
-        contacts.loops = self.loops.measure(contacts.x_prev)
+        contacts.self_contact = self.self_contact.measure(contacts.x_prev)
         links = (contacts.links.radius.shape[0], self.num_envs)
-        wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.pressing], device=self.device)
-        args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.pressing, x, force]
+        wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.measured], device=self.device)
+        args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.measured, x, force]
         wp.launch(self.elements.residual, x.shape, args, device=self.device)
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
         wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
         args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
-        args += [contacts.records, self.pressing, contacts.loops, self.chain.diagonal, self.chain.upper, self.chain.rhs]
+        args += [
+            contacts.records,
+            self.measured,
+            contacts.self_contact,
+            self.ring_system.diagonal,
+            self.ring_system.upper,
+            self.ring_system.rhs,
+        ]
         wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
-        self.chain.solve()
+        self.ring_system.solve()
         wp.launch(
             coarse_kernels.prolong,
             shape,
-            [self.space, self.rotation, self.chain.rhs, self.cfg.largest_move, x],
+            [self.space, self.rotation, self.ring_system.rhs, self.cfg.largest_move, x],
             device=self.device,
         )

@@ -17,7 +17,7 @@ from tiny_sim import TinySim
 
 from arcgym.anatomy import write_colon
 from arcgym.sim import Simulation, WallSolverCfg
-from arcgym.sim.contact.self_contact import LoopContact
+from arcgym.sim.contact.self_contact import SelfContact
 
 LIMB, WIDTH, RADIUS = 0.09, 0.04, 0.012
 """Length of each limb, their distance and the radius of the lumen [m]."""
@@ -81,8 +81,8 @@ def distance_of_limbs(sim: Simulation) -> float:
 
 def push(sim: Simulation) -> np.ndarray:
     """Self-contact on each vertex where it is now [N], shape (V, 3)."""
-    press = sim.wall.loops.measure(sim.nodal_pos)
-    plane, stiffness = press.plane.numpy()[:, 0], press.stiffness.numpy()[:, 0]
+    contact = sim.wall.self_contact.measure(sim.nodal_pos)
+    plane, stiffness = contact.plane.numpy()[:, 0], contact.stiffness.numpy()[:, 0]
     along = plane[:, 3] - stiffness * (plane[:, :3] * sim.nodal_pos.numpy()[:, 0]).sum(axis=1)
     return np.where(stiffness > 0.0, along, 0.0)[:, None] * plane[:, :3]
 
@@ -119,12 +119,12 @@ def two_tubes(distance: float) -> tuple[np.ndarray, np.ndarray]:
 
 def test_rings_that_overlap_at_rest_push_only_when_closer() -> None:
     points, ring = two_tubes(0.036)
-    loops = LoopContact(WallSolverCfg(), points, ring, np.arange(192).reshape(16, 12), 0.002, 1, "cpu")
+    self_contact = SelfContact(WallSolverCfg(), points, ring, np.arange(192).reshape(16, 12), 0.002, 1, "cpu")
     # 20 mm to each side, 36 mm apart, walls of 2 mm; the mean over the facing vertices of a ring is 5 % less than 20.
-    assert loops.shape.allowed.numpy()[0, 15] == pytest.approx(-0.004, abs=0.0001)
+    assert self_contact.rings.min_gap.numpy()[0, 15] == pytest.approx(-0.004, abs=0.0001)
     for distance, pushes in ((0.036, False), (0.035, True)):
-        press = loops.measure(wp.array(two_tubes(distance)[0][:, None], dtype=wp.vec3, device="cpu"))
-        assert press.stiffness.numpy().any() == pushes
+        contact = self_contact.measure(wp.array(two_tubes(distance)[0][:, None], dtype=wp.vec3, device="cpu"))
+        assert contact.stiffness.numpy().any() == pushes
 
 
 def test_wall_gathered_on_the_shaft_does_not_push() -> None:
@@ -132,12 +132,12 @@ def test_wall_gathered_on_the_shaft_does_not_push() -> None:
     angle, height = np.arange(12) * np.pi / 6.0, 0.0125 * np.arange(24)
     ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
     rest = (ring + np.stack([0.0 * height, 0.0 * height, height], axis=1)[:, None]).reshape(-1, 3)
-    loops = LoopContact(
+    self_contact = SelfContact(
         WallSolverCfg(), rest, np.repeat(np.arange(24), 12), np.arange(288).reshape(24, 12), 0.0, 1, "cpu"
     )
     gathered = rest * [1.0, 1.0, 0.2] + rest[:, [2, 2, 0]] * [0.0, 0.0, 1.0]
-    press = loops.measure(wp.array(gathered[:, None], dtype=wp.vec3, device="cpu"))
-    assert loops.balls.near.numpy().any() and not press.stiffness.numpy().any()
+    contact = self_contact.measure(wp.array(gathered[:, None], dtype=wp.vec3, device="cpu"))
+    assert self_contact.spheres.near.numpy().any() and not contact.stiffness.numpy().any()
 
 
 def test_nothing_changes_where_nothing_touches(sim_in: HairpinSim) -> None:
@@ -154,6 +154,6 @@ def test_worlds_do_not_touch_each_other(sim_in: HairpinSim) -> None:
     sim = sim_in("capsule", colon=COLON, num_envs=2)
     mobile = of_rings(sim, UPPER)
     sim.colon.data.nodal_pos_w[1, mobile, 1] -= 0.05
-    press = sim.wall.loops.measure(sim.nodal_pos)
-    touched = press.touched.numpy()
+    contact = sim.wall.self_contact.measure(sim.nodal_pos)
+    touched = contact.in_contact.numpy()
     assert touched[:, 1].any() and not touched[:, 0].any()

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from arcgym.sim.wall.block_tridiagonal import ChainSolver
+from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.ring_modes import MODES
 
 
@@ -31,10 +31,10 @@ def test_solution_agrees_with_a_dense_solver(rows: int) -> None:
     upper = np.zeros((rows, MODES, MODES, 2))
     for r in range(rows - 1):
         upper[r] = blocks[r, :, r + 1]
-    chain = ChainSolver(2, rows, "cpu")
-    chain.diagonal.assign(np.stack([blocks[r, :, r] for r in range(rows)]))
-    chain.upper.assign(upper)
-    chain.rhs.assign(np.stack([rhs.reshape(rows, MODES) for _, rhs in systems], axis=-1))
-    chain.solve()
+    system = BlockTridiagonalSolver(2, rows, "cpu")
+    system.diagonal.assign(np.stack([blocks[r, :, r] for r in range(rows)]))
+    system.upper.assign(upper)
+    system.rhs.assign(np.stack([rhs.reshape(rows, MODES) for _, rhs in systems], axis=-1))
+    system.solve()
     expected = np.stack([np.linalg.solve(matrix, rhs).reshape(rows, MODES) for matrix, rhs in systems], axis=-1)
-    np.testing.assert_allclose(chain.rhs.numpy(), expected, atol=2e-5 * np.abs(expected).max())
+    np.testing.assert_allclose(system.rhs.numpy(), expected, atol=2e-5 * np.abs(expected).max())
