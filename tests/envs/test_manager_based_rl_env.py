@@ -191,5 +191,7 @@ def test_wrong_action_shape_names_both(env) -> None:
 
 
 def test_tables_list_every_manager(env) -> None:
-    text = str(env)
+    text = env.summary()
     assert "RewardManager (1 terms)" in text and "policy.rgb: (9, 2, 2) torch.uint8" in text
+    assert "CurriculumManager" not in text  # It has no terms.
+    assert str(env) == repr(env) == "ManagerBasedRLEnv(num_envs=2, device=cpu)"

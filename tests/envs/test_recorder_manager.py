@@ -60,7 +60,7 @@ def recording(cfg, tmp_path: Path):
         for name, value in changes.items():
             setattr(recorders, name, value)
         cfg.recorders = recorders
-        cfg.terminations["success"] = TerminationTermCfg(func=beyond, params={"limit": 5.0})
+        cfg.terminations["beyond"] = TerminationTermCfg(func=beyond, params={"limit": 5.0}, success=True)
         cfg.metrics = {"top": MetricsTermCfg(func=lambda env: env.scene["counter"].position, reduce="max")}
         env = ManagerBasedRLEnv(cfg)
         env.reset()
@@ -90,7 +90,7 @@ def test_an_episode_is_written_when_it_ends(recording, tmp_path) -> None:
 def test_info_says_how_it_ended(recording, tmp_path) -> None:
     run(recording(), 5)
     first, second = (episode.info for episode in load_episodes(tmp_path))
-    assert (first["env_id"], first["length"], first["success"], first["ended_by"]) == (1, 3, True, ["success"])
+    assert (first["env_id"], first["length"], first["success"], first["ended_by"]) == (1, 3, True, ["beyond"])
     assert (second["env_id"], second["length"], second["time_out"], second["terminated"]) == (0, 5, True, False)
     assert second["complete"] and not second["success"]
     assert first["metrics"] == {"top": 6.0} and first["step_dt"] == pytest.approx(0.1)

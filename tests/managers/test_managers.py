@@ -39,7 +39,12 @@ class TestRewards:
             {"a": RewardTermCfg(func=value, weight=2.0), "b": RewardTermCfg(func=value, weight=-1.0)}, env
         )
         assert manager.compute(dt=0.5).tolist() == [0.5, 1.5]
-        assert manager.step_values["a"].tolist() == [1.0, 3.0]
+        assert manager.step_parts["a"].tolist() == [1.0, 3.0]
+
+    def test_step_values_are_rates(self, env) -> None:
+        manager = RewardManager({"a": RewardTermCfg(func=value, weight=2.0)}, env)
+        manager.compute(dt=0.5)
+        assert manager.step_values["a"].tolist() == [2.0, 6.0]
 
     def test_log_is_the_mean_episode_sum_over_the_longest_episode(self, env) -> None:
         manager = RewardManager({"a": RewardTermCfg(func=value)}, env)

@@ -13,9 +13,7 @@ from arcgym.rl.rollout import run_policy, zero_policy
 
 
 def wrap(env, success: list[bool] | None = None) -> RslRlVecEnvWrapper:
-    terms = [] if success is None else ["success"]
-    get_term = {"success": torch.tensor(success or [False, False])}.__getitem__
-    env.termination_manager = SimpleNamespace(active_terms=terms, get_term=get_term)
+    env.termination_manager = SimpleNamespace(success=torch.tensor(success or [False, False]))
     return RslRlVecEnvWrapper(env)
 
 

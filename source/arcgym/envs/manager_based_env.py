@@ -67,14 +67,20 @@ class ManagerBasedEnv(gym.Env):
         self.event_manager.apply("startup")
         self._refresh_all()
         self.obs_buf: dict[str, Observation] = {}
-        logger.info("%s", self)
 
-    def __str__(self) -> str:
-        """Lists clocks and managers."""
+    def __repr__(self) -> str:
+        """Return class, number of worlds and device in a few words; :meth:`summary` says more."""
+        return f"{type(self).__name__}(num_envs={self.num_envs}, device={self.device})"
+
+    __str__ = __repr__
+
+    def summary(self) -> str:
+        """Return clocks and a table of every manager's terms, to print once before a run."""
         clocks = (
-            f"{type(self).__name__}: {self.num_envs} worlds, physics {self.physics_dt:.6f} s, step {self.step_dt:.4f} s"
+            f"{type(self).__name__}: {self.num_envs} worlds on {self.device}, "
+            f"physics {self.physics_dt:.6f} s, step {self.step_dt:.4f} s"
         )
-        return "\n".join([clocks, *(str(manager) for manager in self._managers())])
+        return "\n\n".join([clocks, *(str(manager) for manager in self._managers() if manager.active_terms)])
 
     @property
     def num_envs(self) -> int:

@@ -144,7 +144,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         dt = self.step_dt if self.cfg.scale_rewards_by_dt else 1.0
         self.reward_buf = self.reward_manager.compute(dt)
         self.extras["cost"] = self.cost_manager.compute(dt)
-        self.extras["costs"] = self.cost_manager.step_values
+        self.extras["costs"] = self.cost_manager.step_parts
         self.extras["time_outs"] = self.reset_time_outs
         self.metrics_manager.compute()
 

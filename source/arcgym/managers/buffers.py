@@ -8,15 +8,19 @@ import torch
 
 from arcgym.utils.worlds import fill_worlds
 
+Store = bool | torch.Tensor
+"""Whether a buffer takes a value in: all worlds, none, or those whose indices (int64, shape (n,)) are given."""
+
 
 class FrameBuffer:
     """Keeps the last frames of every world; the first frame after a reset fills them all.
 
-    Every result is new memory, so what was handed out never changes.
+    Every result is new memory that is read once more, to be shifted into the next: it may be kept and must not be
+    written to. A frame is copied straight from the memory of whoever made it, in whatever order its strides have.
     """
 
     def __init__(self, length: int, num_envs: int, device: str) -> None:
-        """Makes an empty buffer.
+        """Make an empty buffer.
 
         Args:
             length: Number of frames L.
@@ -25,33 +29,42 @@ class FrameBuffer:
         """
         self._length = length
         self._frames: torch.Tensor | None = None
-        self._is_empty = torch.ones(num_envs, dtype=torch.bool, device=device)
+        self._worlds = torch.arange(num_envs, device=device)
+        self._empty = [self._worlds]
 
-    def append(self, value: torch.Tensor, store: bool = True) -> torch.Tensor:
-        """Returns the frames with ``value`` as the newest, oldest first.
+    def append(self, value: torch.Tensor, store: Store = True) -> torch.Tensor:
+        """Return the frames with ``value`` as the newest, oldest first.
 
         Args:
             value: Newest frame, shape (N, ...).
-            store: Whether to keep it; otherwise the buffer stays as it was.
+            store: Whether to keep it, or the worlds that do; otherwise the buffer stays as it was.
 
         Returns:
             Frames, shape (N, L, ...).
         """
-        newest = value.unsqueeze(1)
-        filled = newest.expand(-1, self._length, *value.shape[1:])
-        if self._frames is None:
-            frames = filled.clone()
-        else:
-            shifted = torch.cat((self._frames[:, 1:], newest), dim=1)
-            frames = torch.where(self._is_empty.view(-1, *[1] * value.dim()), filled, shifted)
-        if store:
-            self._frames = frames
-            self._is_empty.zero_()
+        frames = torch.empty((value.shape[0], self._length, *value.shape[1:]), dtype=value.dtype, device=value.device)
+        frames[:, -1] = value
+        if self._frames is not None:
+            frames[:, :-1] = self._frames[:, 1:]
+        for worlds in self._empty:
+            frames[worlds] = value[worlds].unsqueeze(1)
+        self._keep(frames, store)
         return frames
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
-        """Empties the buffers of some worlds."""
-        fill_worlds(self._is_empty, env_ids, True)
+        """Empty the buffers of some worlds."""
+        self._empty.append(self._worlds[env_ids])
+
+    def _keep(self, frames: torch.Tensor, store: Store) -> None:
+        """Take the frames of all worlds or of some as the new past."""
+        if isinstance(store, torch.Tensor):
+            past = frames.clone() if self._frames is None else self._frames.clone()
+            past[store] = frames[store]
+            self._frames = past
+            self._empty = [worlds[~torch.isin(worlds, store)] for worlds in self._empty]
+        elif store:
+            self._frames = frames
+            self._empty = []
 
 
 class DelayBuffer:
@@ -90,21 +103,18 @@ class DelayBuffer:
         self._worlds = torch.arange(num_envs, device=device)
         self._lag = self._draw()
 
-    def append(self, value: torch.Tensor, store: bool = True) -> torch.Tensor:
-        """Takes the newest observation and returns a late one.
+    def append(self, value: torch.Tensor, store: Store = True) -> torch.Tensor:
+        """Take the newest observation and return a late one.
 
         Args:
             value: Newest observation, shape (N, ...).
-            store: Whether to keep it; otherwise the buffer stays as it was.
+            store: Whether to keep it, or the worlds that do; otherwise the buffer stays as it was.
 
         Returns:
             Observation from ``lag`` steps ago, shape (N, ...).
         """
-        if store:
-            self._age += 1
-            draw = self._draw()
-            is_due = (self._age % self._period == 0) & (self._uniform() >= self._hold_prob)
-            self._lag.copy_(torch.where(is_due, draw, self._lag))
+        if store is not False:
+            self._age_lags(self._worlds if store is True else store)
         frames = self._frames.append(value, store)
         return frames[self._worlds, self._lag_range[1] - self._lag]
 
@@ -114,6 +124,13 @@ class DelayBuffer:
         fill_worlds(self._age, env_ids, 0)
         if self._per_env:
             self._lag[env_ids] = self._draw()[env_ids]
+
+    def _age_lags(self, worlds: torch.Tensor) -> None:
+        """Count a control step in some worlds and give those that are due a new lag."""
+        self._age[worlds] += 1
+        draw = self._draw()
+        is_due = (self._age % self._period == 0) & (self._uniform() >= self._hold_prob)
+        self._lag[worlds] = torch.where(is_due, draw, self._lag)[worlds]
 
     def _draw(self) -> torch.Tensor:
         size = self._num_envs if self._per_env else 1

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.managers.buffers import DelayBuffer, FrameBuffer
+from arcgym.managers.buffers import DelayBuffer, FrameBuffer, Store
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ObservationGroupCfg, ObservationTermCfg
 from arcgym.utils.worlds import finite
@@ -57,32 +57,37 @@ class ObservationPipeline:
     def is_plain(self) -> bool:
         """Whether nothing but the group's policy for values that are not finite lies between function and learner."""
         steps = (self._noise, self.cfg.clip, self._scale, self._delay, self._history)
-        return self._nan_policy == "sanitize" and self.dtype.is_floating_point and all(step is None for step in steps)
+        is_sanitized = self._nan_policy == "sanitize" or not self.dtype.is_floating_point
+        return is_sanitized and all(step is None for step in steps)
 
     def read(self) -> torch.Tensor:
-        """Returns what the term's function returns, shape (N, ...)."""
+        """Return what the term's function returns, shape (N, ...); it may be memory that the next step overwrites."""
         return self.cfg.func(self._env, **self.cfg.params)
 
-    def compute(self, store: bool = True) -> torch.Tensor:
-        """Returns the observation in memory of its own, shape (N, ...).
+    def compute(self, store: Store = True) -> torch.Tensor:
+        """Return the observation in memory that no later step writes to, shape (N, ...).
+
+        Integers, as of images, are copied once: into the history where there is one, else into the result.
 
         Args:
-            store: Whether delay and history take the value in; otherwise they stay as they were.
+            store: Whether delay and history take the value in, or the worlds where they do.
         """
         value = self.read()
-        value = self._finite(value) if value.is_floating_point() else value.clone()
+        is_copied = value.is_floating_point()
+        if is_copied:
+            value = self._finite(value)
         if self._noise is not None:
             value = self._noise.apply(value)
         if self.cfg.clip is not None:
-            value = value.clamp(*self.cfg.clip)
+            value, is_copied = value.clamp(*self.cfg.clip), True
         if self._scale is not None:
             value = value * self._scale
         if self._delay is not None:
-            value = self._delay.append(value, store)
+            value, is_copied = self._delay.append(value, store), True
         if self._history is not None:
             value = self._history.append(value, store)
-            value = value.flatten(1, 2) if self._flattens else value
-        return value
+            return value.flatten(1, 2) if self._flattens else value
+        return value if is_copied else value.clone(memory_format=torch.contiguous_format)
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
         """Forgets the past of some worlds."""
@@ -165,11 +170,11 @@ class ObservationGroup:
         joined[self.cfg.concatenate_dim] = sum(shape[self.cfg.concatenate_dim] for shape in shapes)
         return tuple(joined)
 
-    def compute(self, store: bool = True) -> torch.Tensor | dict[str, torch.Tensor]:
-        """Returns the group: one tensor, shape (N, ...), or a dict of them."""
+    def compute(self, store: Store = True) -> torch.Tensor | dict[str, torch.Tensor]:
+        """Return the group: one tensor, shape (N, ...), or a dict of them."""
         pipelines = self.pipelines.values()
         if self.cfg.concatenate_terms and all(pipeline.is_plain for pipeline in pipelines):
-            return finite(torch.cat([pipeline.read() for pipeline in pipelines], dim=self._dim))
+            return self._join([pipeline.read() for pipeline in pipelines])
         values = {name: pipeline.compute(store) for name, pipeline in self.pipelines.items()}
         if not self.cfg.concatenate_terms:
             return values
@@ -180,6 +185,13 @@ class ObservationGroup:
         """Forgets the past of some worlds."""
         for pipeline in self.pipelines.values():
             pipeline.reset(env_ids)
+
+    def _join(self, values: list[torch.Tensor]) -> torch.Tensor:
+        """Return plain values side by side in new, contiguous memory; what is not finite becomes zero."""
+        if values[0].is_floating_point():
+            return finite(torch.cat(values, dim=self._dim))
+        joined = torch.empty((len(values[0]), *self.shape), dtype=values[0].dtype, device=values[0].device)
+        return torch.cat(values, dim=self._dim, out=joined)
 
     def _check_concatenation(self) -> None:
         """Compares each term with the first: same type, same shape but for the joined dimension."""

@@ -9,6 +9,7 @@ from typing import Any
 
 import torch
 
+from arcgym.managers.buffers import Store
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.observation_group import ObservationGroup
 from arcgym.managers.term_cfg import ObservationGroupCfg, ObservationTermCfg
@@ -40,16 +41,17 @@ class ObservationManager(ManagerBase):
             name: group.shape if group.cfg.concatenate_terms else group.shapes for name, group in self.groups.items()
         }
 
-    def compute(self, update_history: bool = True) -> dict[str, Observation]:
-        """Returns all groups, in memory of their own.
+    def compute(self, update_history: Store = True) -> dict[str, Observation]:
+        """Return all groups, in memory that no later call writes to: they may be kept, but not written to.
 
         Args:
-            update_history: Whether delays and histories take the values in. Set once a control step; False looks
-                without leaving a trace, as for final observations.
+            update_history: Whether delays and histories take the values in, or the indices of the worlds where they
+                do, int64, shape (n,). Set once a control step; False looks without leaving a trace, as for final
+                observations.
         """
         return {name: group.compute(update_history) for name, group in self.groups.items()}
 
-    def compute_group(self, name: str, update_history: bool = False) -> Observation:
+    def compute_group(self, name: str, update_history: Store = False) -> Observation:
         """Returns one group; see :meth:`compute`."""
         self.get_term_cfg(name)
         return self.groups[name].compute(update_history)

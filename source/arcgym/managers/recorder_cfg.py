@@ -34,8 +34,8 @@ class RecorderManagerBaseCfg:
     """Start of each file's name: ``<dataset_filename>_000000.npz`` and so on."""
 
     dataset_export_mode: Literal["all", "succeeded_only", "none"] = "all"
-    """Which episodes are written: all, also those cut short by a reset or :meth:`close`; those that the termination
-    term ``success`` ended; or none, which records nothing."""
+    """Which episodes are written: all, also those cut short by a reset or :meth:`close`; those that a termination
+    term with ``success=True`` ended; or none, which records nothing."""
 
     env_ids: tuple[int, ...] | None = None
     """Worlds to record; None for all. Name a few when training with thousands."""

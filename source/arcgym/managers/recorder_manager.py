@@ -147,7 +147,7 @@ class RecorderManager(ManagerBase):
         figures = {name: float(metrics.get_value(name)[world]) for name in metrics.active_terms} if metrics else {}
         return {
             "complete": any(done.values()),
-            "success": "success" in ended_by,
+            "success": bool(judge.success[world]) if judge else False,
             **done,
             "ended_by": ended_by,
             "metrics": figures,

@@ -53,6 +53,9 @@ class TerminationTermCfg(ManagerTermBaseCfg):
     time_out: bool = False
     """Whether the episode is cut short rather than lost, so that its value is bootstrapped. True for time limits."""
 
+    success: bool = False
+    """Whether an episode that this term ends has reached its goal. Success rates and recorders count these."""
+
 
 @configclass
 class MetricsTermCfg(ManagerTermBaseCfg):

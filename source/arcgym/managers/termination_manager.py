@@ -44,6 +44,12 @@ class TerminationManager(ManagerBase):
         """Worlds that were cut short, bool, shape (N,)."""
         return self._time_outs
 
+    @property
+    def success(self) -> torch.Tensor:
+        """Worlds that a term with ``success=True`` ended in the last step, bool, shape (N,); none without one."""
+        rows = [row for row, name in enumerate(self._order) if self._terms[name].success]
+        return self._dones[rows].any(dim=0)
+
     def compute(self) -> torch.Tensor:
         """Evaluates all terms and returns :attr:`dones`."""
         if self._terms:
@@ -80,7 +86,7 @@ class TerminationManager(ManagerBase):
         return torch.zeros(self.num_envs, dtype=torch.bool, device=self.device)
 
     def _columns(self) -> list[str]:
-        return ["index", "name", "time_out"]
+        return ["index", "name", "time_out", "success"]
 
     def _rows(self) -> list[list[Any]]:
-        return [[index, name, term.time_out] for index, (name, term) in enumerate(self._terms.items())]
+        return [[index, name, term.time_out, term.success] for index, (name, term) in enumerate(self._terms.items())]

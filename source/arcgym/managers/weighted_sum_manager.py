@@ -31,11 +31,17 @@ class WeightedSumManager(ManagerBase):
         self._zero = torch.zeros(self.num_envs, device=self.device)
         self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
         self._sums = torch.zeros_like(self._values)
+        self._dt = 1.0
         self._scales: list[float] = []
         self._scales_on_device = torch.zeros(0, 1, device=self.device)
 
     @property
     def step_values(self) -> dict[str, torch.Tensor]:
+        """Weight times value of each term in the last step, shape (N,): a rate, which ``dt`` is not part of."""
+        return dict(zip(self._terms, self._values / self._dt, strict=True))
+
+    @property
+    def step_parts(self) -> dict[str, torch.Tensor]:
         """What each term added in the last step, shape (N,); they add up to the sum."""
         return dict(zip(self._terms, self._values, strict=True))
 
@@ -55,6 +61,7 @@ class WeightedSumManager(ManagerBase):
         """
         if not self._terms:
             return torch.zeros(self.num_envs, device=self.device)
+        self._dt = dt
         values = [self._evaluate(name) if term.weight else self._zero for name, term in self._terms.items()]
         self._values = finite_rows(values) * self._scale(dt)
         self._sums += self._values

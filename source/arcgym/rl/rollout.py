@@ -37,7 +37,7 @@ class RolloutResult:
     """Mean sum of rewards of the episodes that ended; NaN when none did."""
 
     success_rate: float
-    """Fraction of the ended episodes that the task's ``success`` term ended; NaN when none ended."""
+    """Fraction of the ended episodes that a termination term with ``success=True`` ended; NaN when none ended."""
 
     wall_time: float
     """Duration [s]."""
@@ -90,7 +90,7 @@ def run_policy(env: RslRlVecEnvWrapper, policy: Policy, steps: int) -> RolloutRe
             returns += rewards
             total += rewards.sum()
             ended += done.sum()
-            succeeded += (_success(env) & done).sum()
+            succeeded += (env.unwrapped.termination_manager.success & done).sum()
             ended_returns += (returns * done).sum()
             returns[done] = 0.0
     episodes = int(ended)
@@ -110,11 +110,3 @@ def _add_metrics(sums: dict[str, float], log: dict[str, Any], episodes: int) -> 
     for name, value in log.items():
         if name.startswith("Episode_Metrics/") and episodes:
             sums[name] = sums.get(name, 0.0) + float(value) * episodes
-
-
-def _success(env: RslRlVecEnvWrapper) -> torch.Tensor:
-    """Worlds that the last step's ``success`` term ended, shape (N,); none when the task has no such term."""
-    manager = env.unwrapped.termination_manager
-    if "success" not in manager.active_terms:
-        return torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
-    return manager.get_term("success")

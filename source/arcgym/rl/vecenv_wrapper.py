@@ -16,8 +16,8 @@ from tensordict import TensorDict
 class RslRlVecEnvWrapper(VecEnv):
     """Shows a manager-based environment to rsl_rl.
 
-    It resets the environment once, because rsl_rl's runner never does. Observations are copies: rsl_rl keeps a
-    reference to them across :meth:`step`, and the camera draws into the same buffer each time.
+    It resets the environment once, because rsl_rl's runner never does. Observations are handed on as they are: rsl_rl
+    keeps a reference to them across :meth:`step`, and the environment writes each step's into new memory.
     """
 
     def __init__(self, env: gym.Env, clip_actions: float | None = None):
@@ -95,5 +95,4 @@ class RslRlVecEnvWrapper(VecEnv):
                 f"Observation group '{nested[0]}' is a {type(obs[nested[0]]).__name__}, expected one tensor; rsl_rl "
                 "reads whole groups. Set concatenate_terms=True on it or split it into groups."
             )
-        copies = {name: value.clone() for name, value in obs.items()}
-        return TensorDict(copies, batch_size=[self.num_envs], device=self.device)
+        return TensorDict(dict(obs), batch_size=[self.num_envs], device=self.device)

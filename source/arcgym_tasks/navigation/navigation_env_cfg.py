@@ -98,7 +98,7 @@ class TerminationsCfg:
     """When an episode ends."""
 
     time_out = DoneTerm(func=mdp.time_out, time_out=True)
-    success = DoneTerm(func=mdp.segment_passed)
+    success = DoneTerm(func=mdp.segment_passed, success=True)
     stuck = DoneTerm(func=mdp.stuck, time_out=True, params={"window_s": 6.0, "min_progress": 0.003})
     withdrawn = DoneTerm(func=mdp.withdrawn)
     pierced = DoneTerm(func=mdp.pierced)

@@ -31,9 +31,8 @@ _ENDOSCOPE = SceneEntityCfg("endoscope")
 
 
 def rgb(env: ManagerBasedEnv, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
-    """Colour image, shape (N, 3, H, W), uint8. A copy: the camera draws into the same buffer each time."""
-    image = env.scene[sensor_cfg.name].data.output["rgb"].permute(0, 3, 1, 2)
-    return image.clone(memory_format=torch.contiguous_format)
+    """Color image, shape (N, 3, H, W), uint8: a view of the camera's memory, from which the observation is copied."""
+    return env.scene[sensor_cfg.name].data.output["rgb"].permute(0, 3, 1, 2)
 
 
 def depth(env: ManagerBasedEnv, far: float = 0.1, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:

@@ -33,19 +33,19 @@ class PreStepObservationsRecorder(RecorderTerm):
 
 
 class PostStepRewardsRecorder(RecorderTerm):
-    """``rewards/total`` and ``rewards/<term>``, shape (T,)."""
+    """``rewards/total`` and ``rewards/<term>``, weight times value of each term before the control step, shape (T,)."""
 
     def record_post_step(self) -> Record:
-        """Return the reward and what each term added to it."""
+        """Return the reward and the rate of each term."""
         env: Any = self._env
         return "rewards", {"total": env.reward_buf, **env.reward_manager.step_values}
 
 
 class PostStepCostsRecorder(RecorderTerm):
-    """``costs/<term>``, shape (T,)."""
+    """``costs/<term>``, weight times value of each term before the control step, shape (T,)."""
 
     def record_post_step(self) -> Record:
-        """Return what each term added to the cost."""
+        """Return the rate of each term."""
         env: Any = self._env
         return "costs", env.cost_manager.step_values
 
