@@ -108,12 +108,10 @@ def test_rigidity_has_its_probability(env, probability: float) -> None:
     assert value.dtype == torch.bool and value.float().mean().item() == probability
 
 
-def test_widen_reset_moves_linearly(env) -> None:
+def test_a_parameter_moves_linearly(env) -> None:
     cfg = EventTermCfg(func=mdp.perturb_tip, mode="reset", params={"std": 0.0})
     env.event_manager = SimpleNamespace(get_term_cfg={"aim": cfg}.get)
     values = []
     for env.common_step_counter in (0, 500, 2000):
-        values.append(
-            mdp.widen_reset(env, torch.tensor([0]), event="aim", param="std", start=0.1, end=0.3, num_steps=1000)
-        )
+        values.append(mdp.move_param(env, torch.tensor([0]), "event", "aim", "std", start=0.1, end=0.3, num_steps=1000))
     assert values == pytest.approx([0.1, 0.2, 0.3]) and cfg.params["std"] == pytest.approx(0.3)

@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from arcgym.envs import mdp
-from arcgym.managers import MetricsTermCfg
+from arcgym.managers import MetricsTermCfg, RewardTermCfg, SceneEntityCfg
 
 
 @pytest.fixture
@@ -29,9 +29,10 @@ def loaded(env):
 
 
 def test_observations_are_in_newtons(loaded) -> None:
-    torch.testing.assert_close(mdp.tip_force(loaded), torch.tensor([[3.0], [20.0]]))
-    torch.testing.assert_close(mdp.link_forces(loaded), torch.tensor([[4.0, 0.0, 3.0], [0.0, 0.0, 20.0]]))
-    assert mdp.wall_strain(loaded).shape == mdp.anchor_tension(loaded).shape == (2, 6)
+    torch.testing.assert_close(mdp.load_parts(loaded, "tip_force"), torch.tensor([[3.0], [20.0]]))
+    torch.testing.assert_close(mdp.load_parts(loaded, "wall_force"), torch.tensor([[4.0, 0.0, 3.0], [0.0, 0.0, 20.0]]))
+    assert mdp.load_parts(loaded, "wall_strain").shape == (2, 6)
+    assert mdp.load_parts(loaded, "anchor_tension").shape == (2, 6)
     assert mdp.base_force(loaded).shape == (2, 1)
 
 
@@ -43,76 +44,85 @@ def test_tip_force_vector_is_in_the_tip_frame(loaded) -> None:
 
 
 def test_penalties(loaded) -> None:
-    torch.testing.assert_close(mdp.tip_force_l2(loaded), torch.tensor([9.0, 400.0]))
-    torch.testing.assert_close(mdp.excess_tip_force(loaded), torch.tensor([1.0, 18.0]))
-    torch.testing.assert_close(mdp.excess_wall_force(loaded), torch.tensor([2.0, 18.0]))
-    torch.testing.assert_close(mdp.excess_wall_strain(loaded, limit=0.5), torch.tensor([0.0, 0.2]))
+    torch.testing.assert_close(mdp.load_l2(loaded, "tip_force"), torch.tensor([9.0, 400.0]))
+    torch.testing.assert_close(mdp.load_excess(loaded, "tip_force", "comfort"), torch.tensor([1.0, 18.0]))
+    torch.testing.assert_close(mdp.load_excess(loaded, "wall_force", "comfort"), torch.tensor([2.0, 18.0]))
+    torch.testing.assert_close(mdp.load_excess(loaded, "wall_strain", limit=0.5), torch.tensor([0.0, 0.2]))
 
 
-def test_costs_count_tiers(loaded) -> None:
-    assert mdp.tip_force_above(loaded).tolist() == [0.0, 1.0]
-    assert mdp.tip_force_above(loaded, limit="comfort").tolist() == [1.0, 1.0]
-    assert mdp.wall_force_above(loaded, limit=3.5).tolist() == [1.0, 1.0]
-    assert mdp.wall_strain_above(loaded).tolist() == [0.0, 1.0]
-    assert mdp.wall_strain_above(loaded, limit=0.75, peak=True).tolist() == [0.0, 1.0]
+def test_above_a_tier_or_a_number(loaded) -> None:
+    assert mdp.load_above(loaded, "tip_force", "unsafe").tolist() == [False, True]
+    assert mdp.load_above(loaded, "tip_force", "comfort").tolist() == [True, True]
+    assert mdp.load_above(loaded, "wall_force", 3.5).tolist() == [True, True]
+    assert mdp.load_above(loaded, "wall_strain", 0.5).tolist() == [False, True]
+    assert mdp.load_above(loaded, "wall_strain", 0.75, reduce="peak").tolist() == [False, True]
 
 
 def test_pull_on_the_anchors(loaded) -> None:
-    torch.testing.assert_close(mdp.excess_anchor_tension(loaded, limit=0.4), torch.tensor([0.6, 0.0]))
-    assert mdp.anchor_tension_above(loaded, limit=1.2).tolist() == [0.0, 0.0]
-    assert mdp.anchor_tension_above(loaded, limit=1.2, peak=True).tolist() == [1.0, 0.0]
-    assert mdp.anchors_overloaded(loaded, limit=0.4).tolist() == [True, False]
-    assert mdp.overstrained(loaded, limit=0.5).tolist() == [False, True]
+    torch.testing.assert_close(mdp.load_excess(loaded, "anchor_tension", limit=0.4), torch.tensor([0.6, 0.0]))
+    assert mdp.load_above(loaded, "anchor_tension", 1.2).tolist() == [False, False]
+    assert mdp.load_above(loaded, "anchor_tension", 1.2, reduce="peak").tolist() == [True, False]
 
 
 def test_peaks_on_request(loaded) -> None:
     loaded.scope.wall_force_peak[0, 1] = 7.0
-    torch.testing.assert_close(mdp.tip_force(loaded, peak=True), torch.tensor([[5.5], [25.0]]))
-    assert mdp.excess_tip_force(loaded, limit=5.0, peak=True).tolist() == [0.5, 20.0]
-    assert mdp.excess_wall_force(loaded, limit=5.0, peak=True).tolist() == [2.0, 0.0]
-    assert mdp.perforation(loaded, limit=22.0, peak=True).tolist() == [False, True]
-    assert mdp.excess_force(loaded, limit=6.0, peak=True).tolist() == [True, False]
+    torch.testing.assert_close(mdp.load_parts(loaded, "tip_force", "peak"), torch.tensor([[5.5], [25.0]]))
+    assert mdp.load_excess(loaded, "tip_force", 5.0, reduce="peak").tolist() == [0.5, 20.0]
+    assert mdp.load_excess(loaded, "wall_force", 5.0, reduce="peak").tolist() == [2.0, 0.0]
+    assert mdp.load_above(loaded, "wall_force", 6.0, reduce="peak").tolist() == [True, False]
 
 
-def test_perforation_is_by_the_tip_alone(loaded) -> None:
-    assert mdp.perforation(loaded).tolist() == [False, True]
+def test_tip_force_leaves_the_shaft_out(loaded) -> None:
     loaded.scope.wall_force_w[0, 0] = 30.0
-    assert mdp.perforation(loaded).tolist() == [False, True]
-    assert mdp.excess_force(loaded).tolist() == [True, True]
+    assert mdp.load_above(loaded, "tip_force", "perforation").tolist() == [False, True]
+    assert mdp.load_above(loaded, "wall_force", "perforation").tolist() == [True, True]
+
+
+def test_load_of_chosen_links(loaded) -> None:
+    tip = SceneEntityCfg("endoscope", body_ids=[2])
+    torch.testing.assert_close(mdp.load(loaded, "wall_force", asset_cfg=tip), torch.tensor([3.0, 20.0]))
+    torch.testing.assert_close(mdp.load(loaded, "wall_force"), torch.tensor([4.0, 20.0]))
+
+
+def test_a_load_of_ones_own_has_all_terms(loaded, monkeypatch) -> None:
+    monkeypatch.setitem(mdp.LOADS, "depth", mdp.Load("endoscope", "inserted_length", "inserted_length", "m"))
+    loaded.scope.inserted_length[:] = torch.tensor([0.2, 0.5])
+    torch.testing.assert_close(mdp.load_excess(loaded, "depth", 0.4), torch.tensor([0.0, 0.1]))
+    RewardTermCfg(func=mdp.load_excess, params={"kind": "depth", "limit": 0.4}).validate()
 
 
 def test_metrics_of_one_step(loaded) -> None:
-    torch.testing.assert_close(mdp.tip_impulse(loaded), torch.tensor([0.3, 2.0]))
-    torch.testing.assert_close(mdp.time_above(loaded, "unsafe"), torch.tensor([0.0, 0.1]))
-    torch.testing.assert_close(mdp.peak_tip_force(loaded), torch.tensor([5.5, 25.0]))
-    torch.testing.assert_close(mdp.max_wall_strain(loaded), torch.tensor([0.4, 0.8]))
-    torch.testing.assert_close(mdp.max_anchor_tension(loaded), torch.tensor([1.5, 0.0]))
+    torch.testing.assert_close(mdp.load_impulse(loaded, "tip_force"), torch.tensor([0.3, 2.0]))
+    torch.testing.assert_close(mdp.load_time_above(loaded, "tip_force", "unsafe"), torch.tensor([0.0, 0.1]))
+    torch.testing.assert_close(mdp.load(loaded, "tip_force", "peak"), torch.tensor([5.5, 25.0]))
+    torch.testing.assert_close(mdp.load(loaded, "wall_strain", "peak"), torch.tensor([0.4, 0.8]))
+    torch.testing.assert_close(mdp.load(loaded, "anchor_tension", "peak"), torch.tensor([1.5, 0.0]))
 
 
 def test_percentile_over_the_episode(env) -> None:
-    term = mdp.tip_force_percentile(MetricsTermCfg(func=mdp.tip_force_percentile), env)
+    term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
     for force in range(1, 21):
         env.scope.tip_force[:] = torch.tensor([float(force), 0.0])
-        value = term(env)
+        value = term(env, "tip_force")
     # 19 of 20 steps, 95 %, are at most 19 N; bins are 5 % wide.
     assert 19.0 <= float(value[0]) <= 19.0 * 1.05
     assert float(value[1]) == 0.0
 
 
 def test_percentile_forgets_at_reset(env) -> None:
-    term = mdp.tip_force_percentile(MetricsTermCfg(func=mdp.tip_force_percentile), env)
+    term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
     env.scope.tip_force[:] = 10.0
-    term(env)
+    term(env, "tip_force")
     term.reset(torch.tensor([1]))
     env.scope.tip_force[:] = 1.0
-    value = term(env, percentile=95.0)
+    value = term(env, "tip_force", percentile=95.0)
     assert value[0] > 9.9 and value[1] < 1.06
 
 
 def test_a_task_changes_the_tiers_of_all_its_terms(loaded) -> None:
     loaded.cfg.force_tiers = mdp.ForceTiersCfg(comfort=1.0, unsafe=2.5, perforation=30.0)
-    assert mdp.tip_force_above(loaded).tolist() == [1.0, 1.0]
-    assert mdp.perforation(loaded).tolist() == [False, False]
+    assert mdp.load_above(loaded, "tip_force", "unsafe").tolist() == [True, True]
+    assert mdp.load_above(loaded, "tip_force", "perforation").tolist() == [False, False]
 
 
 def test_unknown_tier_lists_the_known(env) -> None:

@@ -118,7 +118,7 @@ def test_presets_are_cached_apart() -> None:
 
 
 def test_unknown_preset_lists_the_known() -> None:
-    with pytest.raises(KeyError, match="'papper' not found.*metric.*paper"):
+    with pytest.raises(ValueError, match="no lumen preset 'papper'. Did you mean 'paper'"):
         resolve_lumen("papper")
 
 

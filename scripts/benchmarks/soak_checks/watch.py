@@ -55,8 +55,8 @@ class Watch:
         """Take in what ``env.step`` returned, and the state that it left."""
         self._step += 1
         self._last["recovered"][terminated & ~self._env.termination_manager.terminated] = self._step
-        if "pierced" in self._env.termination_manager.active_terms:
-            self._pierced += self._env.termination_manager.get_term("pierced").sum()
+        if "wall_penetrated" in self._env.termination_manager.active_terms:
+            self._pierced += self._env.termination_manager.get_term("wall_penetrated").sum()
         self._count_not_finite(obs, reward, extras)
         self._note_largest()
         if self._step % LUMEN_EVERY == 0:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from arcgym.managers.noise import NoiseCfg
 from arcgym.utils import MISSING, configclass
+from arcgym.utils.validation import check_params
 
 if TYPE_CHECKING:
     from arcgym.managers.action_manager import ActionTerm
@@ -28,6 +29,14 @@ class ManagerTermBaseCfg:
 
     params: dict[str, Any] = {}
     """Keyword arguments of the function. A :class:`SceneEntityCfg` among them is resolved once, at construction."""
+
+    def validate_config(self) -> None:
+        """Check the parameters that the term declares with :func:`arcgym.utils.validation.expects`.
+
+        Raises:
+            ValueError: If one is out of its bounds or names something unknown.
+        """
+        check_params(self, self.func, self.params)
 
 
 @configclass

@@ -89,7 +89,7 @@ class RewardsCfg:
     lumen = RewTerm(func=mdp.lumen_reward, weight=1.0)
     progress = RewTerm(func=mdp.progress, weight=100.0)
     success = RewTerm(func=mdp.success, weight=50.0)
-    wall_force = RewTerm(func=mdp.excess_wall_force, weight=-0.02, params={"limit": "comfort"})
+    wall_force = RewTerm(func=mdp.load_excess, weight=-0.02, params={"kind": "wall_force", "limit": "comfort"})
     action_rate = RewTerm(func=mdp.action_rate_l2, weight=-0.01)
 
 
@@ -98,16 +98,16 @@ class TerminationsCfg:
     """When an episode ends."""
 
     time_out = DoneTerm(func=mdp.time_out, time_out=True)
-    success = DoneTerm(func=mdp.segment_passed, success=True)
+    success = DoneTerm(func=mdp.success, success=True)
     stuck = DoneTerm(func=mdp.stuck, time_out=True, params={"window_s": 6.0, "min_progress": 0.003})
-    withdrawn = DoneTerm(func=mdp.withdrawn)
-    pierced = DoneTerm(func=mdp.pierced)
-    lumen_lost: DoneTerm | None = None
+    scope_out = DoneTerm(func=mdp.scope_out)
+    wall_penetrated = DoneTerm(func=mdp.wall_penetrated)
+    lumen_not_visible: DoneTerm | None = None
     """Off. Ends hopeless episodes early, but keeps the policy from learning to find the lumen again:
-    ``DoneTerm(func=mdp.lumen_lost, params={"threshold": -0.4, "steps": 5})``."""
+    ``DoneTerm(func=mdp.lumen_not_visible, params={"threshold": -0.4, "steps": 5})``."""
     perforation: DoneTerm | None = None
     """Off, as in the paper. Ends the episode at a tip force that may perforate, 14.1 N by default:
-    ``DoneTerm(func=mdp.perforation)``."""
+    ``DoneTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "perforation"})``."""
 
 
 @configclass
@@ -127,7 +127,7 @@ class EventsCfg:
 class CostsCfg:
     """What a constrained policy keeps low; plain PPO ignores it."""
 
-    tip_force = CostTerm(func=mdp.tip_force_above, params={"limit": "unsafe"})
+    tip_force = CostTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "unsafe"})
     view_blocked = CostTerm(func=mdp.view_blocked)
 
 
@@ -143,16 +143,24 @@ class MetricsCfg:
     centered_rate = MetricsTerm(func=mdp.centered_rate, reduce="mean")
     visible_rate = MetricsTerm(func=mdp.visible_rate, reduce="mean")
     centerline_distance = MetricsTerm(func=mdp.centerline_distance, reduce="mean")
-    max_wall_force = MetricsTerm(func=mdp.max_wall_force, reduce="max")
-    max_tip_force = MetricsTerm(func=mdp.mean_tip_force, reduce="max")
-    mean_tip_force = MetricsTerm(func=mdp.mean_tip_force, reduce="mean")
-    p95_tip_force = MetricsTerm(func=mdp.tip_force_percentile, reduce="last", params={"percentile": 95.0})
-    tip_impulse = MetricsTerm(func=mdp.tip_impulse, reduce="sum")
-    time_above_comfort = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "comfort"})
-    time_above_unsafe = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "unsafe"})
-    time_above_perforation = MetricsTerm(func=mdp.time_above, reduce="sum", params={"limit": "perforation"})
-    max_wall_strain = MetricsTerm(func=mdp.max_wall_strain, reduce="max")
-    max_anchor_tension = MetricsTerm(func=mdp.max_anchor_tension, reduce="max")
+    max_wall_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "wall_force"})
+    max_tip_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "tip_force"})
+    mean_tip_force = MetricsTerm(func=mdp.load, reduce="mean", params={"kind": "tip_force"})
+    p95_tip_force = MetricsTerm(
+        func=mdp.load_percentile, reduce="last", params={"kind": "tip_force", "percentile": 95.0}
+    )
+    tip_impulse = MetricsTerm(func=mdp.load_impulse, reduce="sum", params={"kind": "tip_force"})
+    time_above_comfort = MetricsTerm(
+        func=mdp.load_time_above, reduce="sum", params={"kind": "tip_force", "limit": "comfort"}
+    )
+    time_above_unsafe = MetricsTerm(
+        func=mdp.load_time_above, reduce="sum", params={"kind": "tip_force", "limit": "unsafe"}
+    )
+    time_above_perforation = MetricsTerm(
+        func=mdp.load_time_above, reduce="sum", params={"kind": "tip_force", "limit": "perforation"}
+    )
+    max_wall_strain = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "wall_strain", "reduce": "peak"})
+    max_anchor_tension = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "anchor_tension", "reduce": "peak"})
     inserted_length = MetricsTerm(func=mdp.inserted_scope, reduce="max")
     looping_ratio = MetricsTerm(func=mdp.looping_ratio, reduce="last")
 
@@ -211,8 +219,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """Check numbers and names.
 
         Raises:
-            ValueError: If a number is out of range or the segment is unknown.
-            KeyError: If the lumen preset is unknown.
+            ValueError: If a number is out of range, or the segment or the lumen preset is unknown.
         """
         super().validate_config()
         if self.segment not in SEGMENTS:

@@ -17,9 +17,11 @@ from arcgym.utils.worlds import fill_worlds
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
+__all__ = ["InsertionAction", "InsertionActionCfg", "TipVelocityAction", "TipVelocityActionCfg", "VelocityAction"]
+
 
 class VelocityAction(ActionTerm):
-    """Clips raw actions to [-1, 1] and scales them; a fixed axis takes no action and keeps its value.
+    """Clip raw actions to [-1, 1] and scale them; a fixed axis takes no action and keeps its value.
 
     Subclasses name the axes and hand the result to the asset.
     """

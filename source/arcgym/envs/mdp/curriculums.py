@@ -9,28 +9,38 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.utils.validation import Range, expects
+
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
 
+__all__ = ["move_param"]
 
-def widen_reset(
+
+MANAGERS = ("event", "reward", "cost", "termination")
+"""Kinds of terms whose parameters :func:`move_param` moves."""
+
+
+@expects(manager=MANAGERS, num_steps=Range(1))
+def move_param(
     env: ManagerBasedRLEnv,
     env_ids: torch.Tensor,
-    event: str,
+    manager: str,
+    term: str,
     param: str,
     start: float,
     end: float,
     num_steps: int,
 ) -> float:
-    """Move a parameter of a reset event linearly from ``start`` to ``end`` over the first ``num_steps`` control steps.
+    """Move a parameter of a term linearly from one value to another, in all worlds alike; its value is logged.
 
-    Example: begin with the scope aimed at the lumen and widen the perturbation of its start while the policy learns.
+    Examples: begin with the scope aimed at the lumen and widen the perturbation of its start while the policy learns;
+    lower the limit of a force from the unsafe to the comfortable.
 
     Args:
-        env: The environment.
-        env_ids: Worlds that are reset; the parameter is the same for all.
-        event: Name of the event term.
-        param: Name of its parameter.
+        manager: One of :data:`MANAGERS`.
+        term: Name of the term.
+        param: Name of its parameter, a number.
         start: Value at step zero.
         end: Value from ``num_steps`` on.
         num_steps: Control steps, counted by ``env.common_step_counter``.
@@ -40,5 +50,5 @@ def widen_reset(
     """
     fraction = min(env.common_step_counter / num_steps, 1.0)
     value = start + (end - start) * fraction
-    env.event_manager.get_term_cfg(event).params[param] = value
+    getattr(env, f"{manager}_manager").get_term_cfg(term).params[param] = value
     return value

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Event terms ``(env, env_ids, **params)``: where an episode starts and what differs between worlds."""
+"""Event terms ``(env, env_ids, **params)``: where an episode starts, and the differences between worlds."""
 
 from __future__ import annotations
 
@@ -11,19 +11,35 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.assets.materials import anchor_scale, tissue_preset
+from arcgym.anatomy.segments import SEGMENTS
+from arcgym.assets.materials import ANCHOR_SCALES, TISSUE_PRESETS, anchor_scale, tissue_preset
 from arcgym.envs.mdp.segments import segment_span
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
 from arcgym.sim.snapshot import SnapshotSet, find_snapshots
+from arcgym.utils.validation import FRACTION, NON_NEGATIVE, POSITIVE, expects
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
+
+__all__ = [
+    "perturb_tip",
+    "randomize_anchors",
+    "randomize_color",
+    "randomize_friction",
+    "randomize_light",
+    "randomize_rigidity",
+    "randomize_texture",
+    "randomize_tissue",
+    "randomize_tissue_stiffness",
+    "reset_to_segment_start",
+]
 
 REST_POSE = -1
 """Snapshot index of the scope straight in the anal canal."""
 
 
+@expects(segment=SEGMENTS)
 class reset_to_segment_start(ManagerTermBase):
     """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
 
@@ -35,7 +51,8 @@ class reset_to_segment_start(ManagerTermBase):
         """Find the state.
 
         Raises:
-            KeyError: If the colon or the file of snapshots does not have the segment.
+            ValueError: If the colon does not have the segment.
+            KeyError: If the file of snapshots does not have it.
             FileNotFoundError: If there is no such file.
         """
         super().__init__(cfg, env)
@@ -43,7 +60,11 @@ class reset_to_segment_start(ManagerTermBase):
         self._index = torch.tensor(self._find(env, segment), device=env.device)
 
     def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, segment: str | None = None) -> None:
-        """Write the state of ``segment``, read once at construction; None is the task's, ``env.cfg.segment``."""
+        """Write the state.
+
+        Args:
+            segment: Name of the segment, read once at construction; None takes the task's, ``env.cfg.segment``.
+        """
         env.sim.write_snapshot(self._index, env_ids)
 
     @staticmethod
@@ -58,23 +79,37 @@ class reset_to_segment_start(ManagerTermBase):
         return snapshots.index(segment)
 
 
+@expects(std=NON_NEGATIVE)
 def perturb_tip(env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1) -> None:
-    """Turn what the tip is driven to by normally distributed angles about each axis [rad], two deviations at most.
+    """Turn the target of the tip by normally distributed angles about each axis, two deviations at most.
 
     Follows a reset in the same mode. The tip turns within the first tenths of a second, as far as the wall lets it;
     turned at once, it might start behind the wall.
+
+    Args:
+        std: Standard deviation of each angle [rad].
     """
     angle = std * torch.randn(len(env_ids), 3, device=env.device).clamp(-2.0, 2.0)
     env.scene["endoscope"].turn_tip_target(angle, env_ids)
 
 
+@expects(gain=POSITIVE)
 def randomize_light(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[float, float] = (0.7, 1.4)) -> None:
-    """Scale the brightness that the automatic exposure aims at by a log-uniform factor within ``gain``."""
+    """Scale the brightness that the automatic exposure aims at by a log-uniform factor.
+
+    Args:
+        gain: Smallest and largest factor.
+    """
     env.scene["camera"].write_light_gain(_log_uniform(env, gain, len(env_ids)), env_ids)
 
 
+@expects(gain=POSITIVE)
 def randomize_color(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[float, float] = (0.9, 1.1)) -> None:
-    """Scale red, green and blue each by a log-uniform factor within ``gain``: white balance and mucosa of a patient."""
+    """Scale red, green and blue each by a log-uniform factor: white balance and mucosa of a patient.
+
+    Args:
+        gain: Smallest and largest factor.
+    """
     env.scene["camera"].write_color_gain(_log_uniform(env, gain, len(env_ids), 3), env_ids)
 
 
@@ -83,20 +118,29 @@ def randomize_texture(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
     env.scene["camera"].write_texture_offset(torch.rand(len(env_ids), 2, device=env.device), env_ids)
 
 
+@expects(scale=POSITIVE)
 def randomize_tissue_stiffness(
     env: ManagerBasedEnv, env_ids: torch.Tensor, scale: tuple[float, float] = (0.5, 2.0)
 ) -> None:
-    """Scale Young's modulus of the wall by a log-uniform factor within ``scale``."""
+    """Scale Young's modulus of the wall by a log-uniform factor.
+
+    Args:
+        scale: Smallest and largest factor.
+    """
     env.scene["colon"].write_stiffness_scale_to_sim(_log_uniform(env, scale, len(env_ids)), env_ids)
 
 
+@expects(presets=TISSUE_PRESETS)
 def randomize_tissue(
     env: ManagerBasedEnv, env_ids: torch.Tensor, presets: Sequence[str] = ("soft_nu049", "medium_nu049", "stiff_nu049")
 ) -> None:
-    """Give each world Young's modulus and Poisson's ratio of one of ``presets``, all equally likely.
+    """Give each world Young's modulus and Poisson's ratio of one of several presets, all equally likely.
 
     Thickness, density and attachments stay those of ``ColonCfg``; presets that leave the two open cannot be named. Use
     it in place of :func:`randomize_tissue_stiffness`, which sets the modulus too.
+
+    Args:
+        presets: Names of tissues, see :mod:`arcgym.assets.materials`.
     """
     tissues = [tissue_preset(name) for name in presets]
     values = [(tissue.youngs_modulus, tissue.poissons_ratio) for tissue in tissues]
@@ -104,34 +148,49 @@ def randomize_tissue(
     env.scene["colon"].write_material_to_sim(chosen[:, 0], chosen[:, 1], env_ids)
 
 
+@expects(anchors=ANCHOR_SCALES)
 def randomize_anchors(
     env: ManagerBasedEnv, env_ids: torch.Tensor, anchors: Sequence[str] = ("sparse", "default", "dense")
 ) -> None:
-    """Hold each world's colon by one of :data:`arcgym.assets.materials.ANCHOR_SCALES`, all equally likely."""
+    """Hold each world's colon as firmly as one of several presets says, all equally likely.
+
+    Args:
+        anchors: Names from :data:`arcgym.assets.materials.ANCHOR_SCALES`.
+    """
     scales = [anchor_scale(name) for name in anchors]
     env.scene["colon"].write_anchor_scale_to_sim(_choice(env, scales, len(env_ids)), env_ids)
 
 
+@expects(probability=FRACTION)
 def randomize_rigidity(env: ManagerBasedEnv, env_ids: torch.Tensor, probability: float = 0.5) -> None:
-    """Hold the wall of some worlds where it is; follows the reset in the same mode, and 1 holds all."""
+    """Hold the wall of some worlds where it is; follows the reset in the same mode.
+
+    Args:
+        probability: Share of the worlds that are held; 1 holds all.
+    """
     rigid = torch.rand(len(env_ids), device=env.device) < probability
     env.scene["colon"].write_rigid_to_sim(rigid, env_ids)
 
 
+@expects(friction=POSITIVE)
 def randomize_friction(
     env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.05, 0.2)
 ) -> None:
-    """Set the friction coefficient between scope and wall, log-uniform within ``friction``."""
+    """Set the friction coefficient between scope and wall, log-uniform.
+
+    Args:
+        friction: Smallest and largest coefficient.
+    """
     env.scene["endoscope"].write_friction_to_sim(_log_uniform(env, friction, len(env_ids)), env_ids)
 
 
 def _choice(env: ManagerBasedEnv, values: Sequence[object], count: int) -> torch.Tensor:
-    """``count`` of ``values``, drawn with replacement, shape (count, ...)."""
+    """Return ``count`` of ``values``, drawn with replacement, shape (count, ...)."""
     pool = torch.tensor(values, dtype=torch.float32, device=env.device)
     return pool[torch.randint(len(pool), (count,), device=env.device)]
 
 
 def _log_uniform(env: ManagerBasedEnv, bounds: tuple[float, float], *shape: int) -> torch.Tensor:
-    """Random numbers whose logarithm is uniform between the logarithms of ``bounds``, which must be positive."""
+    """Return numbers whose logarithm is uniform between the logarithms of ``bounds``, which must be positive."""
     low, high = (math.log(bound) for bound in bounds)
     return torch.exp(low + (high - low) * torch.rand(shape, device=env.device))

@@ -45,9 +45,22 @@ import warp as wp
 
 from arcgym.envs.mdp import lumen_kernels
 from arcgym.envs.mdp.settings import task_setting
+from arcgym.utils.string import did_you_mean
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
+
+
+__all__ = [
+    "LUMEN_PRESETS",
+    "METRIC",
+    "PAPER",
+    "LumenCfg",
+    "LumenScores",
+    "lumen_scores",
+    "resolve_lumen",
+    "score_depth",
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,7 +195,7 @@ def _constants(cfg: LumenCfg) -> lumen_kernels.LumenConstants:
 
 
 def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> LumenScores:
-    """Scores of the current images of ``scene["camera"]``, computed once for each and shared by all terms.
+    """Return the scores of the current images of ``scene["camera"]``, computed once for each and shared by all terms.
 
     New images are told by the camera's ``data.frame``: raise it after writing into them or replaying an update.
 
@@ -202,11 +215,15 @@ def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> L
 
 
 def resolve_lumen(lumen: str | LumenCfg) -> LumenCfg:
-    """The constants behind a preset's name; constants pass through."""
+    """Return the constants behind a preset's name; constants pass through.
+
+    Raises:
+        ValueError: If there is no such preset, with the nearest names.
+    """
     if isinstance(lumen, LumenCfg):
         return lumen
     if lumen not in LUMEN_PRESETS:
-        raise KeyError(f"Lumen preset '{lumen}' not found. Available: {sorted(LUMEN_PRESETS)}.")
+        raise ValueError(f"There is no lumen preset '{lumen}'. {did_you_mean(lumen, LUMEN_PRESETS)}")
     return LUMEN_PRESETS[lumen]
 
 

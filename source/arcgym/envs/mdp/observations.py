@@ -4,6 +4,7 @@
 """Observation terms ``(env, **params) -> (N, ...)``: images for the policy, privileged state for the critic.
 
 Privileged terms are scaled so that their entries are of order one; each docstring names shape and scale.
+Forces and strains as they are, in their own units, are :func:`arcgym.envs.mdp.load_parts`.
 """
 
 from __future__ import annotations
@@ -14,29 +15,58 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.envs.mdp.loads import anchor_load, link_load, strain_load, tip_load
-from arcgym.envs.mdp.lumen import LumenCfg, lumen_scores
+from arcgym.anatomy.segments import SEGMENTS
+from arcgym.envs.mdp.loads import load_parts
+from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
 from arcgym.utils.math import quat_apply_inverse
+from arcgym.utils.validation import POSITIVE, expects
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
+
+__all__ = [
+    "base_force",
+    "centerline_ahead",
+    "depth",
+    "drive_forces",
+    "inserted_length",
+    "last_action",
+    "lumen_state",
+    "rgb",
+    "tip_axis_distance",
+    "tip_bending",
+    "tip_force_vector",
+    "tip_lumen_direction",
+    "tip_progress",
+    "tip_velocity",
+    "wall_forces",
+]
 
 LOOK_AHEAD = (0.01, 0.02, 0.04, 0.08)
 """Arc lengths ahead of the tip [m] at which :class:`centerline_ahead` looks: half to four scope diameters."""
 
 _CAMERA = SceneEntityCfg("camera")
-_ENDOSCOPE = SceneEntityCfg("endoscope")
 
 
 def rgb(env: ManagerBasedEnv, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
-    """Color image, shape (N, 3, H, W), uint8: a view of the camera's memory, from which the observation is copied."""
+    """Color image, shape (N, 3, H, W), uint8: a view of the camera's memory, from which the observation is copied.
+
+    Args:
+        sensor_cfg: The camera.
+    """
     return env.scene[sensor_cfg.name].data.output["rgb"].permute(0, 3, 1, 2)
 
 
+@expects(far=POSITIVE)
 def depth(env: ManagerBasedEnv, far: float = 0.1, sensor_cfg: SceneEntityCfg = _CAMERA) -> torch.Tensor:
-    """Depth image over ``far`` [m], in [0, 1], shape (N, 1, H, W), float32."""
+    """Depth image over a far distance, in [0, 1], shape (N, 1, H, W), float32.
+
+    Args:
+        far: Depth that becomes one [m].
+        sensor_cfg: The camera.
+    """
     return (env.scene[sensor_cfg.name].data.output["depth"].unsqueeze(1) / far).clamp(0.0, 1.0)
 
 
@@ -46,10 +76,11 @@ def tip_lumen_direction(env: ManagerBasedEnv) -> torch.Tensor:
     return quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)
 
 
+@expects(distances=POSITIVE)
 class centerline_ahead(ManagerTermBase):
-    """Points of the deformed centreline ahead of the tip, in the tip frame, each over its distance, shape (N, 3 K).
+    """Points of the deformed centerline ahead of the tip, in the tip frame, each over its distance, shape (N, 3 K).
 
-    Beyond the end of the centreline its last point is taken.
+    Beyond the end of the centerline its last point is taken.
     """
 
     def __init__(self, cfg: ObservationTermCfg, env: ManagerBasedEnv) -> None:
@@ -58,7 +89,11 @@ class centerline_ahead(ManagerTermBase):
         self._ahead = torch.tensor(cfg.params.get("distances", LOOK_AHEAD), device=env.device)
 
     def __call__(self, env: ManagerBasedEnv, distances: Sequence[float] = LOOK_AHEAD) -> torch.Tensor:
-        """Return the points at ``distances`` [m] of arc length ahead, read once at construction, shape (K,)."""
+        """Return the points.
+
+        Args:
+            distances: Arc lengths ahead of the tip [m], shape (K,), read once at construction.
+        """
         colon, data = env.scene["colon"].data, env.scene["endoscope"].data
         points = points_at(colon.centerline_pos_w, colon.centerline_arc, data.tip_arc_length[:, None] + self._ahead)
         quat = data.tip_quat_w[:, None].expand(-1, len(self._ahead), -1)
@@ -66,18 +101,34 @@ class centerline_ahead(ManagerTermBase):
         return (local / self._ahead[:, None]).flatten(1)
 
 
+@expects(segment=SEGMENTS)
 def tip_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
-    """Way of the tip through the segment, 0 at its start and 1 at its end, shape (N, 1)."""
+    """Way of the tip through the segment, 0 at its start and 1 at its end, shape (N, 1).
+
+    Args:
+        segment: Name of the segment; None takes the task's, ``env.cfg.segment``.
+    """
     return segment_progress(env, segment).unsqueeze(1)
 
 
+@expects(scale=POSITIVE)
 def tip_axis_distance(env: ManagerBasedEnv, scale: float = 0.02) -> torch.Tensor:
-    """Distance of the tip from the deformed centreline over ``scale`` [m], shape (N, 1)."""
+    """Distance of the tip from the deformed centerline over a scale, shape (N, 1).
+
+    Args:
+        scale: Distance that becomes one [m].
+    """
     return env.scene["endoscope"].data.tip_centerline_distance.unsqueeze(1) / scale
 
 
+@expects(linear_scale=POSITIVE, angular_scale=POSITIVE)
 def tip_velocity(env: ManagerBasedEnv, linear_scale: float = 0.05, angular_scale: float = 2.0) -> torch.Tensor:
-    """Linear and angular velocity of the tip in its frame, over the scales [m/s] and [rad/s], shape (N, 6)."""
+    """Linear and angular velocity of the tip in its frame, each over its scale, shape (N, 6).
+
+    Args:
+        linear_scale: Speed that becomes one [m/s].
+        angular_scale: Turning rate that becomes one [rad/s].
+    """
     data = env.scene["endoscope"].data
     velocity = torch.stack((data.tip_lin_vel_w / linear_scale, data.tip_ang_vel_w / angular_scale), dim=1)
     return quat_apply_inverse(data.tip_quat_w.unsqueeze(1), velocity).flatten(1)
@@ -96,7 +147,7 @@ def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
 
 def wall_forces(env: ManagerBasedEnv) -> torch.Tensor:
     """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing link, by all, shape (N, 3)."""
-    force = env.scene["endoscope"].data.wall_force_norm
+    force = load_parts(env, "wall_force")
     return torch.log1p(torch.stack((force[:, -1], force.amax(dim=1), force.sum(dim=1)), dim=1))
 
 
@@ -106,20 +157,10 @@ def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
     return torch.log1p(torch.stack((data.base_force.abs(), data.tip_pull_force_w.norm(dim=-1)), dim=1))
 
 
-def tip_force(env: ManagerBasedEnv, peak: bool = False) -> torch.Tensor:
-    """Force between tip and wall [N], mean over the control step or its peak, shape (N, 1)."""
-    return tip_load(env, peak).unsqueeze(1)
-
-
 def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
     """Force of the wall on the tip in its frame [N], as a sensor in the tip feels it, shape (N, 3)."""
     data = env.scene["endoscope"].data
     return quat_apply_inverse(data.tip_quat_w, data.wall_force_w[:, -1])
-
-
-def link_forces(env: ManagerBasedEnv, asset_cfg: SceneEntityCfg = _ENDOSCOPE, peak: bool = False) -> torch.Tensor:
-    """Force between each link and the wall [N], mean over the control step or its peak, shape (N, L)."""
-    return link_load(env, asset_cfg, peak)
 
 
 def base_force(env: ManagerBasedEnv) -> torch.Tensor:
@@ -127,29 +168,24 @@ def base_force(env: ManagerBasedEnv) -> torch.Tensor:
     return env.scene["endoscope"].data.base_force.unsqueeze(1)
 
 
-def wall_strain(env: ManagerBasedEnv, peak: bool = False) -> torch.Tensor:
-    """Largest principal strain of each ring of the wall, mean over the control step or its peak, shape (N, R)."""
-    return strain_load(env, peak)
-
-
-def anchor_tension(env: ManagerBasedEnv, peak: bool = False) -> torch.Tensor:
-    """Pull of each ring on its anchors [N], mean over the control step or its peak, shape (N, R)."""
-    return anchor_load(env, peak)
-
-
 def last_action(env: ManagerBasedEnv) -> torch.Tensor:
     """Raw action of the last step, shape (N, A)."""
     return env.action_manager.action
 
 
+@expects(lumen=LUMEN_PRESETS)
 def lumen_state(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
-    """Parts of the lumen reward ``s_c, s_1, s_2, s_3, s_o``, of order one as they are, shape (N, 5)."""
+    """Parts of the lumen reward ``s_c, s_1, s_2, s_3, s_o``, of order one as they are, shape (N, 5).
+
+    Args:
+        lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
+    """
     scores = lumen_scores(env, lumen)
     return torch.stack((scores.s_c, scores.s_1, scores.s_2, scores.s_3, scores.s_o), dim=1)
 
 
 def points_at(points: torch.Tensor, arc: torch.Tensor, at: torch.Tensor) -> torch.Tensor:
-    """Points of each world's polyline at given arc lengths, linear between its vertices.
+    """Return points of each world's polyline at given arc lengths, linear between its vertices.
 
     Args:
         points: Vertices [m], shape (N, R, 3).

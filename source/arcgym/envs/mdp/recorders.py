@@ -13,6 +13,20 @@ from arcgym.managers import RecorderManagerBaseCfg, RecorderTerm, RecorderTermCf
 from arcgym.managers.recorder_term import Record
 from arcgym.utils.configclass import configclass
 
+__all__ = [
+    "InitialStateRecorder",
+    "PostStepCostsRecorder",
+    "PostStepForcesRecorder",
+    "PostStepPosesRecorder",
+    "PostStepRewardsRecorder",
+    "PostStepWallRecorder",
+    "PostStepWallRecorderCfg",
+    "PreStepActionsRecorder",
+    "PreStepObservationsRecorder",
+    "PreStepObservationsRecorderCfg",
+    "TrajectoryRecorderCfg",
+]
+
 
 class PreStepActionsRecorder(RecorderTerm):
     """``actions``: the raw action, shape (T, A)."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def task_setting(env: ManagerBasedEnv, name: str, value: Any = None) -> Any:
-    """A term's own parameter, or the task's field of that name where the parameter is None.
+    """Return a term's own parameter, or the task's field of that name where the parameter is None.
 
     Args:
         env: The environment.
