@@ -101,5 +101,5 @@ def test_unknown_names_are_refused() -> None:
         validate(cfg)
     cfg = SplenicProximalEnvCfg()
     cfg.lumen = "papper"
-    with pytest.raises(KeyError, match="papper.*metric.*paper"):
+    with pytest.raises(ValueError, match="papper.*metric.*paper"):
         validate(cfg)
