@@ -30,11 +30,17 @@ class TinySim:
     def colon_cfg(self, **changes: Any) -> ColonCfg:
         return ColonCfg(usd_path=str(self.colon_path), **changes)
 
-    def scope_cfg(self, kind: str = "proximal", links: int = 6, **changes: Any) -> EndoscopeCfg:
+    def scope_cfg(
+        self, kind: str = "proximal", links: int = 6, drives: dict[str, dict[str, Any]] | None = None, **changes: Any
+    ) -> EndoscopeCfg:
+        """``drives`` changes actuators by name, ``changes`` the rest."""
         path = self.folder / f"{kind}_{links}.usda"
         if not path.exists():
             write_tiny_scope(path, kind, links)
-        return replace(SCOPES[kind], usd_path=str(path), **changes)
+        cfg = replace(SCOPES[kind].copy(), usd_path=str(path), **changes)
+        for name, values in (drives or {}).items():
+            cfg.actuators[name] = cfg.actuators[name].replace(**values)
+        return cfg
 
     def __call__(
         self,

@@ -102,7 +102,9 @@ def counts(text: str) -> list[int]:
 
 def forward_axis(env: Any) -> int:
     """Raw action of a navigation task that drives the tip, or a pushed scope's base, forwards."""
-    return 0 if env.scene["endoscope"].kind == "proximal" else 2
+    manager = env.action_manager
+    names = [name for term in manager.active_terms for name in manager.get_term(term).axis_names]
+    return next(axis for axis, name in enumerate(names) if name in ("insertion", "forward"))
 
 
 def advance(env: Any, actions: Any) -> None:

@@ -32,12 +32,12 @@ from _loops import Loop, crossings, from_front, measure_loop
 from PIL import Image
 
 from arcgym.assets import PROXIMAL_CFG, ColonCfg
+from arcgym.experts import PushExpert
 from arcgym.scene import InteractiveScene, InteractiveSceneCfg
 from arcgym.sensors import SkinnedSurface
 from arcgym.sim import SimulationCfg, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
 from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
-from arcgym_tasks.navigation.scripted_expert import PushExpert
 
 STEPS = 48
 """Physics steps in a control step of 0.1 s."""

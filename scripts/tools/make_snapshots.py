@@ -17,10 +17,11 @@ import torch
 
 from arcgym.assets import CAPSULE_CFG, MAGNETIC_CFG, PROXIMAL_CFG, ColonCfg
 from arcgym.assets.materials import TISSUE_PRESETS
+from arcgym.experts import make_expert
+from arcgym.experts.lumen_ahead import tip_angle
 from arcgym.scene import InteractiveScene, InteractiveSceneCfg
 from arcgym.sim import SimulationCfg, SnapshotSet
 from arcgym.sim.snapshot import DEFAULT_MATERIAL, Snapshot, fingerprint, snapshot_path
-from arcgym_tasks.navigation.scripted_expert import make_expert, tip_angle
 
 ENDOSCOPES = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
 STEPS_PER_CONTROL = 48

@@ -29,7 +29,7 @@ def sim(tiny: TinySim) -> Simulation:
 
 def test_shapes_of_a_scope_with_a_shaft(sim: Simulation) -> None:
     scope, data = sim.endoscope, sim.endoscope.data
-    assert (scope.num_bodies, scope.num_joints, scope.kind) == (6, 9, "proximal")
+    assert (scope.num_bodies, scope.num_joints, list(scope.actuators)) == (6, 9, ["base", "bending"])
     hinges = ["hinge_1", "hinge_2", "twist_2", "hinge_3", "hinge_4", "twist_4", "hinge_5"]
     assert scope.joint_names == ["slide", "roll", *hinges]
     assert scope.body_names == [f"link_{i}" for i in range(6)]
@@ -99,15 +99,15 @@ def test_joint_positions_share_memory_with_the_simulation(sim: Simulation) -> No
 
 
 def test_a_proximal_scope_cannot_be_pulled(sim: Simulation) -> None:
-    with pytest.raises(RuntimeError, match="tip cannot be pulled; use set_insertion_command"):
+    with pytest.raises(ValueError, match=r"proximal_6.usda has no actuator 'tip'; .* has \['base', 'bending'\]"):
         sim.endoscope.set_tip_velocity_command(torch.zeros(2, 3), torch.zeros(2, 3))
 
 
 @pytest.mark.parametrize("kind", ["capsule", "magnetic"])
-@pytest.mark.parametrize("method", ["set_insertion_command", "set_bending_command"])
-def test_a_pulled_scope_cannot_be_pushed(tiny: TinySim, kind: str, method: str) -> None:
+@pytest.mark.parametrize(("method", "drive"), [("set_insertion_command", "base"), ("set_bending_command", "bending")])
+def test_a_pulled_scope_cannot_be_pushed(tiny: TinySim, kind: str, method: str, drive: str) -> None:
     scope = tiny(kind).endoscope
-    with pytest.raises(RuntimeError, match=f"is a {kind} scope .*{method}.*use set_tip_velocity_command"):
+    with pytest.raises(ValueError, match=f"has no actuator '{drive}'; .* has \\['tip'\\]"):
         getattr(scope, method)(torch.zeros(1), torch.zeros(1))
 
 
@@ -154,7 +154,7 @@ def test_torsional_rigidity_scales_the_twists(tiny: TinySim) -> None:
 
 
 def test_the_insertion_force_limit_is_the_drives(tiny: TinySim) -> None:
-    effort = tiny(scope={"insertion_force_limit": 3.0}).model.joint_effort_limit.numpy()
+    effort = tiny(scope={"drives": {"base": {"force_limit": 3.0}}}).model.joint_effort_limit.numpy()
     assert effort[:2].tolist() == [3.0, 1.0]
 
 

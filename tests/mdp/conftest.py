@@ -28,7 +28,6 @@ class FakeEndoscope:
 
     def __init__(self, num_envs: int, num_links: int) -> None:
         zeros = torch.zeros
-        self.kind = "proximal"
         self.commands: dict[str, Any] = {}
         self.data = FakeEndoscopeData(
             tip_arc_length=zeros(num_envs),
@@ -49,14 +48,10 @@ class FakeEndoscope:
             joint_pos=zeros(num_envs, 2 + num_links - 1),
         )
 
-    def set_tip_velocity_command(self, lin_vel: torch.Tensor, ang_vel: torch.Tensor) -> None:
-        self.commands["tip"] = (lin_vel.clone(), ang_vel.clone())
-
-    def set_insertion_command(self, velocity: torch.Tensor, roll_rate: torch.Tensor) -> None:
-        self.commands["insertion"] = (velocity.clone(), roll_rate.clone())
-
-    def set_bending_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
-        self.commands["bending"] = (pitch.clone(), yaw.clone())
+    def actuator(self, name: str) -> SimpleNamespace:
+        """Records what its ``set_command`` is given under its name."""
+        record = lambda *values: self.commands.update({name: tuple(value.clone() for value in values)})  # noqa: E731
+        return SimpleNamespace(set_command=record)
 
     def turn_tip_target(self, angle: torch.Tensor, env_ids: torch.Tensor) -> None:
         self.commands["turn"] = (angle.clone(), env_ids)

@@ -35,8 +35,8 @@ def test_insertion_moves_base_and_bending(env) -> None:
     term.process_actions(torch.tensor([[1.0, -0.5, 1.0, -2.0]] * 2))
     term.apply_actions()
     commands = env.scene["endoscope"].commands
-    torch.testing.assert_close(commands["insertion"][0], torch.full((2,), 0.05))
-    torch.testing.assert_close(commands["insertion"][1], torch.full((2,), -0.5))
+    torch.testing.assert_close(commands["base"][0], torch.full((2,), 0.05))
+    torch.testing.assert_close(commands["base"][1], torch.full((2,), -0.5))
     # One step of 0.1 s at 1.3 rad/s turns by 0.13 rad.
     torch.testing.assert_close(commands["bending"][0], torch.full((2,), 0.63))
     torch.testing.assert_close(commands["bending"][1], torch.full((2,), -0.63))

@@ -78,7 +78,7 @@ def block(sim: Simulation) -> None:
 
 
 def test_push_never_exceeds_the_force_limit(tiny_sim: TinySim) -> None:
-    sim = tiny_sim(colon={"mobile_until": 0.0}, scope={"insertion_force_limit": 3.0})
+    sim = tiny_sim(colon={"mobile_until": 0.0}, scope={"drives": {"base": {"force_limit": 3.0}}})
     block(sim)
     push(sim, 0.05, seconds=1.0)
     pushes = []
@@ -90,7 +90,7 @@ def test_push_never_exceeds_the_force_limit(tiny_sim: TinySim) -> None:
 
 
 def test_a_blocked_scope_withdraws_at_once(tiny_sim: TinySim) -> None:
-    sim = tiny_sim(colon={"mobile_until": 0.0}, scope={"insertion_force_limit": 3.0})
+    sim = tiny_sim(colon={"mobile_until": 0.0}, scope={"drives": {"base": {"force_limit": 3.0}}})
     block(sim)
     push(sim, 0.05, seconds=1.5)
     before = sim.endoscope.data.inserted_length.item()
@@ -99,7 +99,7 @@ def test_a_blocked_scope_withdraws_at_once(tiny_sim: TinySim) -> None:
 
 
 def test_bending_moves_at_its_rate(tiny_sim: TinySim) -> None:
-    sim = tiny_sim(scope={"bending_rate": 0.5})
+    sim = tiny_sim(scope={"drives": {"bending": {"rate": 0.5}}})
     bend(sim, 1.0, 0.0, seconds=0.4)
     assert sim.endoscope.data.bending[0, 0].item() == pytest.approx(0.2, rel=1e-3)
 
@@ -115,7 +115,7 @@ def test_bending_reaches_the_command(tiny_sim: TinySim) -> None:
 
 
 def test_bending_stops_at_the_limits(tiny_sim: TinySim) -> None:
-    sim = tiny_sim(scope={"bending_rate": 20.0})
+    sim = tiny_sim(scope={"drives": {"bending": {"rate": 20.0}}})
     bend(sim, 9.0, -9.0, seconds=0.5)
     limit = sim.endoscope.stage.hinge_limit[-3:]
     expected = torch.tensor([[limit[0] + limit[2], -limit[1]]], dtype=torch.float32)
@@ -191,7 +191,7 @@ def sideways(sim: Simulation) -> float:
 
 def test_introducer_keeps_the_shaft_outside_straight(tiny_sim: TinySim) -> None:
     # 0.1 m of a limp shaft: Euler load pi^2 * 0.005 N m^2 / (0.1 m)^2 = 5 N if its ends are guided, less if not.
-    limp = {"shaft_rigidity": 0.005, "insertion_force_limit": 6.0}
+    limp = {"shaft_rigidity": 0.005, "drives": {"base": {"force_limit": 6.0}}}
     guided, free = (
         sideways(tiny_sim("proximal", 12, colon={"mobile_until": 0.0}, scope={"introducer": guide, **limp}))
         for guide in (IntroducerCfg(), IntroducerCfg(stiffness=0.0))
@@ -200,8 +200,8 @@ def test_introducer_keeps_the_shaft_outside_straight(tiny_sim: TinySim) -> None:
 
 
 def test_gravity_weighs_the_real_masses(tiny_sim: TinySim) -> None:
-    loose = TipPullCfg(stiffness=1.0, damping=0.0)
-    sim = tiny_sim("capsule", scope={"tip_pull": loose}, gravity=(0.0, 0.0, -9.81), mass_scaling=3.0)
+    loose = {"actuators": {"tip": TipPullCfg(stiffness=1.0, damping=0.0)}}
+    sim = tiny_sim("capsule", scope=loose, gravity=(0.0, 0.0, -9.81), mass_scaling=3.0)
     sim.endoscope.data.joint_pos[0, 2] = 0.1
     sim.forward()
     sim.step(1)

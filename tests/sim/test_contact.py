@@ -179,7 +179,7 @@ def resting(tiny_sim: TinySim, along: float) -> Simulation:
     loose = TipPullCfg(stiffness=1.0e-3, damping=0.0, angular_stiffness=1.0, angular_damping=0.01, torque_limit=10.0)
     pull = tuple(9.81 * (SIDE + [0.0, 0.0, along]))
     rigid = {"mobile_until": 0.0, "wall_model": "solid"}
-    sim = tiny_sim("capsule", gravity=pull, colon=rigid, scope={"tip_pull": loose})
+    sim = tiny_sim("capsule", gravity=pull, colon=rigid, scope={"actuators": {"tip": loose}})
     place(sim, depth=1.0e-5)
     sim.step(120)
     return sim

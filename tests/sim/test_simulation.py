@@ -20,7 +20,7 @@ def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
 
 
 def build(narrow: TinySim, num_envs: int = 2, **cfg: object) -> Simulation:
-    return narrow(num_envs=num_envs, colon=SOFT, scope={"bending_rate": 4.0}, **cfg)
+    return narrow(num_envs=num_envs, colon=SOFT, scope={"drives": {"bending": {"rate": 4.0}}}, **cfg)
 
 
 def drive(sim: Simulation, calls: list[int]) -> None:
@@ -140,13 +140,13 @@ def test_reset_clears_commands_and_forces(narrow: TinySim) -> None:
     sim = build(narrow)
     drive(sim, [144])
     sim.write_snapshot(-1, [1])
-    data, actuation = sim.endoscope.data, sim.actuation
+    data, base = sim.endoscope.data, sim.endoscope.actuator("base")
     for force in (data.wall_force_w, data.wall_force_norm, data.wall_force_peak, data.base_force):
         assert force[0].any() and not force[1].any()
     sim.forward()
     torch.testing.assert_close(data.wall_force_norm, data.wall_force_w.norm(dim=-1))
-    assert actuation.insertion_velocity.numpy()[1] == 0.0
-    assert actuation.insertion_velocity.numpy()[0] == pytest.approx(0.1)
+    assert base.velocity.numpy()[1] == 0.0
+    assert base.velocity.numpy()[0] == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("broken", ["wall", "scope"])

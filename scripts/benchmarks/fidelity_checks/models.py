@@ -25,7 +25,7 @@ from arcgym.anatomy import (
 from arcgym.anatomy.generator.visual import grid_triangles, skin_to_rings, smooth_normals
 from arcgym.anatomy.generator.wall import build_wall
 from arcgym.anatomy.stage.types import TEXTURE_LENGTH
-from arcgym.assets import ColonCfg, EndoscopeCfg
+from arcgym.assets import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, ColonCfg, EndoscopeCfg, TipPullCfg
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.endoscope_spec import EndoscopeSpec, proximal_spec
@@ -179,6 +179,14 @@ def shaft_spec(links: int, **changes: Any) -> EndoscopeSpec:
     )
 
 
+def drives(spec: EndoscopeSpec) -> dict[str, ActuatorBaseCfg]:
+    """Return the actuators of a scope to write: base and bending section if its base is driven, else a pull."""
+    if spec.slide_drive is None or spec.slide_drive.stiffness == 0.0:
+        return {"tip": TipPullCfg()}
+    bending = {"bending": BendingDriveCfg()} if spec.bending_links else {}
+    return {"base": BaseDriveCfg(), **bending}
+
+
 def build(
     run: Run,
     scope: EndoscopeSpec | EndoscopeCfg,
@@ -205,6 +213,6 @@ def build(
         colon_cfg.usd_path = str(path if path.exists() else write_colon(tube_stage(tube), path))
     if isinstance(scope, EndoscopeSpec):
         path = run.folder / f"scope_{len(list(run.folder.glob('scope_*')))}.usda"  # USD keeps a file it has once read
-        scope = EndoscopeCfg(usd_path=str(write_endoscope(scope, path)))
+        scope = EndoscopeCfg(usd_path=str(write_endoscope(scope, path)), actuators=drives(scope))
     scope = replace(scope, **endoscope or {})
     return Simulation(SimulationCfg(device=run.device, **changes), Colon(colon_cfg), Endoscope(scope), num_envs)

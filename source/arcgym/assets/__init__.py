@@ -5,6 +5,7 @@
 import importlib
 from typing import TYPE_CHECKING, Any
 
+from arcgym.assets.actuators import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, TipPullCfg
 from arcgym.assets.colon_cfg import ColonCfg
 from arcgym.assets.endoscope_cfg import (
     CAPSULE_CFG,
@@ -12,7 +13,6 @@ from arcgym.assets.endoscope_cfg import (
     PROXIMAL_CFG,
     EndoscopeCfg,
     IntroducerCfg,
-    TipPullCfg,
 )
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
 
@@ -29,6 +29,9 @@ _LAZY = {
 }
 
 __all__ = [
+    "ActuatorBaseCfg",
+    "BaseDriveCfg",
+    "BendingDriveCfg",
     "CAPSULE_CFG",
     "Colon",
     "ColonCfg",

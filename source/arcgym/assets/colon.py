@@ -12,7 +12,7 @@ import numpy as np
 import torch
 import warp as wp
 
-from arcgym.anatomy.segments import SEGMENTS
+from arcgym.anatomy.segments import ANCHOR_FIXED, SEGMENTS
 from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
 from arcgym.anatomy.stage import WallMesh, read_colon
 from arcgym.assets.anchors import AnchorSprings, anchor_springs
@@ -24,9 +24,6 @@ from arcgym.utils.paths import resolve_asset
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
-
-FIXED = 2
-"""Value of the stage's anchor primvar for vertices that never move."""
 
 
 class Colon:
@@ -111,7 +108,7 @@ class Colon:
         wall = self.wall
         if self.cfg.rigid:
             return np.zeros(self.num_nodes, bool)
-        free = wall.anchor != FIXED
+        free = wall.anchor != ANCHOR_FIXED
         if self.cfg.mobile_until is not None:
             free &= wall.ring_arc[wall.ring] <= self.cfg.mobile_until
         return free

@@ -5,18 +5,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import newton
 import numpy as np
 import torch
 import warp as wp
 
+from arcgym.assets.actuators.actuator_base import ActuatorBase
 from arcgym.assets.endoscope_cfg import EndoscopeCfg
 from arcgym.assets.endoscope_data import EndoscopeData
 from arcgym.assets.endoscope_spec import capsule_half_height, shared_stiffness
 from arcgym.assets.endoscope_stage import read_endoscope
 from arcgym.assets.usd_loading import add_endoscope_usd
+from arcgym.utils.class_type import construct
+from arcgym.utils.configclass import validate
 from arcgym.utils.paths import resolve_asset
 
 if TYPE_CHECKING:
@@ -34,15 +37,15 @@ class Endoscope:
 
         Raises:
             StageError: If the stage cannot be used.
+            ValueError: If a field has no value, or an actuator cannot drive this stage.
         """
+        validate(cfg)
         self.cfg = cfg
         self.path = resolve_asset(cfg.usd_path)
         self.stage = read_endoscope(self.path)
-
-    @property
-    def kind(self) -> str:
-        """``capsule``, ``magnetic`` or ``proximal``."""
-        return self.stage.kind
+        drives = {name: drive for name, drive in cfg.actuators.items() if drive is not None}
+        self.actuators: dict[str, ActuatorBase] = {name: construct(drive, self) for name, drive in drives.items()}
+        """Drives by name, in the order in which they act."""
 
     @property
     def num_bodies(self) -> int:
@@ -100,11 +103,8 @@ class Endoscope:
             builder.body_inv_mass[body] /= mass_scaling
             builder.body_inv_inertia[body] = builder.body_inv_inertia[body] / mass_scaling
         self._override_rigidity(builder, loaded.dofs)
-        if self.kind == "proximal":
-            limits = (self.cfg.insertion_force_limit, self.cfg.roll_torque_limit)
-            for dof, limit in zip(loaded.dofs, limits, strict=False):
-                if limit is not None:
-                    builder.joint_effort_limit[dof] = limit
+        for actuator in self.actuators.values():
+            actuator.modify_model(builder, loaded.dofs)
         self._rest_height = np.array([builder.body_q[body][2] for body in loaded.bodies])
 
     def _override_rigidity(self, builder: newton.ModelBuilder, dofs: Sequence[int]) -> None:
@@ -122,62 +122,33 @@ class Endoscope:
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
-        actuation = sim.actuation
         self.camera_pose_wp: wp.array = sim.camera_pose
         self.data = EndoscopeData(self, sim)
-        self._lin = wp.to_torch(actuation.tip_lin_command)
-        self._ang = wp.to_torch(actuation.tip_ang_command)
-        self._insertion = wp.to_torch(actuation.insertion_velocity)
-        self._roll = wp.to_torch(actuation.roll_rate)
-        self._bending = wp.to_torch(actuation.bending_command)
-        self._turn = wp.to_torch(actuation.turn)
         self._sim = sim
 
-    def set_tip_velocity_command(self, lin_vel: torch.Tensor, ang_vel: torch.Tensor) -> None:
-        """Velocity for the tip to follow, in its own frame (+Z forward, +Y up), kept until changed.
-
-        Args:
-            lin_vel: Linear velocity [m/s], shape (N, 3).
-            ang_vel: Angular velocity [rad/s], shape (N, 3).
+    def actuator(self, name: str) -> Any:
+        """Return a drive by name.
 
         Raises:
-            RuntimeError: If the scope is pushed from its base.
+            ValueError: If the scope has none of that name, with those that it has.
         """
-        if self.kind == "proximal":
-            raise RuntimeError(
-                f"{self.path.name} is pushed from its base and its tip cannot be pulled; "
-                "use set_insertion_command and set_bending_command."
+        if name not in self.actuators:
+            raise ValueError(
+                f"{self.path.name} has no actuator {name!r}; EndoscopeCfg.actuators has {list(self.actuators)}."
             )
-        self._lin.copy_(lin_vel)
-        self._ang.copy_(ang_vel)
+        return self.actuators[name]
+
+    def set_tip_velocity_command(self, lin_vel: torch.Tensor, ang_vel: torch.Tensor) -> None:
+        """Set the velocity for a pulled tip to follow, see :meth:`arcgym.assets.actuators.TipPull.set_command`."""
+        self.actuator("tip").set_command(lin_vel, ang_vel)
 
     def set_insertion_command(self, velocity: torch.Tensor, roll_rate: torch.Tensor) -> None:
-        """Speed of the base, kept until changed.
-
-        Args:
-            velocity: Insertion [m/s], shape (N,).
-            roll_rate: Roll about the shaft [rad/s], shape (N,).
-
-        Raises:
-            RuntimeError: If the scope has no driven base.
-        """
-        self._require_base("set_insertion_command")
-        self._insertion.copy_(velocity)
-        self._roll.copy_(roll_rate)
+        """Set the speed of a driven base, see :meth:`arcgym.assets.actuators.BaseDrive.set_command`."""
+        self.actuator("base").set_command(velocity, roll_rate)
 
     def set_bending_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
-        """Angles of the bending section, approached at ``EndoscopeCfg.bending_rate`` and within its limits.
-
-        Args:
-            pitch: Bending about the tip's X axis [rad], shape (N,).
-            yaw: Bending about the tip's Y axis [rad], shape (N,).
-
-        Raises:
-            RuntimeError: If the scope has no driven base.
-        """
-        self._require_base("set_bending_command")
-        self._bending[:, 0] = pitch
-        self._bending[:, 1] = yaw
+        """Set the angles of a bending section, see :meth:`arcgym.assets.actuators.BendingDrive.set_command`."""
+        self.actuator("bending").set_command(pitch, yaw)
 
     def turn_tip_target(self, angle: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Turn what the tip is driven to, beyond where it is driven now.
@@ -187,19 +158,8 @@ class Endoscope:
                 pitch and yaw, and the third is left out.
             env_ids: Worlds, shape (n,); all by default.
         """
-        ids = slice(None) if env_ids is None else env_ids
-        if self.kind == "proximal":
-            self.data.bending[ids] += angle[:, :2]
-            self._bending[ids] = self.data.bending[ids]
-        else:
-            self._turn[ids] += angle
-
-    def _require_base(self, method: str) -> None:
-        if self.kind != "proximal":
-            raise RuntimeError(
-                f"{self.path.name} is a {self.kind} scope without a driven base, so {method} has nothing to move; "
-                "use set_tip_velocity_command."
-            )
+        for actuator in self.actuators.values():
+            actuator.turn_tip(angle, slice(None) if env_ids is None else env_ids)
 
     def write_friction_to_sim(self, mu: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Set the friction coefficient between scope and wall, shape (n,), in the worlds ``env_ids``."""

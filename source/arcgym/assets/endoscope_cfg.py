@@ -6,25 +6,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from arcgym.utils.configclass import configclass
-
-
-@configclass
-class TipPullCfg:
-    """Pull on the tip of a capsule or magnetic scope: a force-limited spring to a moving target, never a teleport."""
-
-    stiffness: float = 400.0
-    """[N/m]. The target leads the tip by at most ``force_limit / stiffness``."""
-    damping: float = 4.0
-    """[N s/m]."""
-    force_limit: float = 4.0
-    """Largest pull [N]. Magnetic colonoscopes reach 1 to 2 N in practice; 4 N passes the sigmoid with a soft tether."""
-    angular_stiffness: float = 0.02
-    """[N m/rad]."""
-    angular_damping: float = 1.5e-4
-    """[N m s/rad]."""
-    torque_limit: float = 0.05
-    """Largest torque [N m]."""
+from arcgym.assets.actuators import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, TipPullCfg
+from arcgym.utils.configclass import MISSING, configclass
 
 
 @configclass
@@ -49,41 +32,50 @@ class EndoscopeCfg:
 
     class_type: Any = "arcgym.assets.endoscope:Endoscope"
     """Class built from this configuration; change it to add behaviour to the asset."""
-    usd_path: str = "endoscopes/proximal.usda"
+    usd_path: str = MISSING
     """Stage of the scope: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`)."""
+    actuators: dict[str, ActuatorBaseCfg] = MISSING
+    """Drives by name, applied in this order. Action terms find theirs by name: ``base`` and ``bending`` for
+    :class:`arcgym.envs.mdp.InsertionActionCfg`, ``tip`` for :class:`arcgym.envs.mdp.TipVelocityActionCfg`."""
+    expert: Any = None
+    """Class of the scripted expert that drives this robot to the start states, or its name ``"module:Class"``, see
+    :mod:`arcgym.experts`. None: episodes can start from rest or from states made before."""
     shaft_rigidity: float | None = None
     """Bending rigidity EI of the hinges behind the bending section [N m^2], over the stage's."""
     tip_rigidity: float | None = None
     """Bending rigidity EI of the bending section [N m^2], over the stage's."""
     torsional_rigidity: float | None = None
     """Torsional rigidity GJ of the whole scope [N m^2/rad], over the stage's."""
-    insertion_force_limit: float | None = None
-    """Largest push on the base [N], over the stage's 25 N. Clinical peaks reach 43 N (Appleyard et al. 2000)."""
-    roll_torque_limit: float | None = None
-    """Largest torque on the base [N m], over the stage's."""
-    bending_rate: float = 1.3
-    """Speed of the control wheels [rad/s]."""
-    tip_pull: TipPullCfg = TipPullCfg()
-    """Pull on the tip, for scopes without a driven base."""
     introducer: IntroducerCfg = IntroducerCfg()
     """Guide outside the anus."""
 
 
-PROXIMAL_CFG = EndoscopeCfg(usd_path="endoscopes/proximal.usda")
+PROXIMAL_CFG = EndoscopeCfg(
+    usd_path="endoscopes/proximal.usda",
+    actuators={"base": BaseDriveCfg(), "bending": BendingDriveCfg()},
+    expert="arcgym.experts.push_expert:PushExpert",
+)
 """Conventional colonoscope, pushed and rolled from outside, with a bending section."""
 
-MAGNETIC_CFG = EndoscopeCfg(usd_path="endoscopes/magnetic.usda")
+MAGNETIC_CFG = EndoscopeCfg(
+    usd_path="endoscopes/magnetic.usda",
+    actuators={"tip": TipPullCfg()},
+    expert="arcgym.experts.pull_expert:PullExpert",
+)
 """Magnetic scope: its head is pulled, its soft tether follows."""
 
 CAPSULE_CFG = EndoscopeCfg(
     usd_path="endoscopes/capsule.usda",
-    tip_pull=TipPullCfg(
-        stiffness=200.0,
-        damping=1.5,
-        force_limit=1.0,
-        angular_stiffness=0.005,
-        angular_damping=1.5e-5,
-        torque_limit=0.003,
-    ),
+    actuators={
+        "tip": TipPullCfg(
+            stiffness=200.0,
+            damping=1.5,
+            force_limit=1.0,
+            angular_stiffness=0.005,
+            angular_damping=1.5e-5,
+            torque_limit=0.003,
+        )
+    },
+    expert="arcgym.experts.pull_expert:PullExpert",
 )
 """Free capsule, pulled with up to 1 N."""

@@ -25,7 +25,7 @@ class EndoscopeData:
     def __init__(self, endoscope: Endoscope, sim: Simulation):
         """Make views on the simulation's arrays."""
         n, links = sim.num_envs, endoscope.num_bodies
-        state, actuation = sim.state, sim.actuation
+        state, readings = sim.state, _readings(endoscope)
         pose = wp.to_torch(state.body_q).view(n, links, 7)
         twist = wp.to_torch(state.body_qd).view(n, links, 6)
         tip = wp.to_torch(sim.tip_pose)
@@ -68,12 +68,12 @@ class EndoscopeData:
         """Magnitude of that force [N], shape (N, L)."""
         self.wall_force_peak: torch.Tensor = wp.to_torch(sim.wall_force_peak).view(n, links)
         """Largest force of the wall on each link within the control step (mean over one physics step) [N], (N, L)."""
-        self.base_force: torch.Tensor = wp.to_torch(actuation.base_force)
-        """Push on the base, mean over the control step [N], shape (N,)."""
-        self.tip_pull_force_w: torch.Tensor = wp.to_torch(actuation.tip_force)
-        """Pull on the tip, mean over the control step [N], shape (N, 3)."""
-        self.bending: torch.Tensor = wp.to_torch(actuation.bending)
-        """Angles the bending section is driven to (pitch, yaw) [rad], shape (N, 2)."""
+        self.base_force: torch.Tensor = readings.get("base_force", torch.zeros(n, device=sim.device))
+        """Push on the base, mean over the control step [N], shape (N,); zero without a driven base."""
+        self.tip_pull_force_w: torch.Tensor = readings.get("tip_pull_force_w", torch.zeros(n, 3, device=sim.device))
+        """Pull on the tip, mean over the control step [N], shape (N, 3); zero where none pulls."""
+        self.bending: torch.Tensor = readings.get("bending", torch.zeros(n, 2, device=sim.device))
+        """Angles the bending section is driven to (pitch, yaw) [rad], shape (N, 2); zero without one."""
         self._rest_insertion = endoscope.rest_insertion
         self._has_shaft = endoscope.stage.root == "slide_roll"
         bounds = endoscope_segments(sim)
@@ -100,6 +100,23 @@ class EndoscopeData:
         """Segment that the tip is in, index into ``SEGMENTS``, shape (N,), int64."""
         place = torch.searchsorted(self._segment_ends, self.tip_arc_length.contiguous(), right=True)
         return self._segment_codes[place.clamp(max=len(self._segment_codes) - 1)]
+
+
+def _readings(endoscope: Endoscope) -> dict[str, torch.Tensor]:
+    """Readings of the actuators by name of the field.
+
+    Raises:
+        ValueError: If two actuators give the same one.
+    """
+    readings: dict[str, torch.Tensor] = {}
+    for name, actuator in endoscope.actuators.items():
+        for field, array in actuator.readings.items():
+            if field in readings:
+                raise ValueError(
+                    f"Actuator {name!r} and one before it both give {field!r}; drop it from one's readings."
+                )
+            readings[field] = wp.to_torch(array)
+    return readings
 
 
 def endoscope_segments(sim: Simulation) -> list[tuple[int, float]]:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics
@@ -18,7 +18,6 @@ from arcgym.anatomy.stage import StageError
 from arcgym.assets.endoscope_spec import (
     CameraSpec,
     DriveSpec,
-    EndoscopeKind,
     RootKind,
     capsule_half_height,
     hinge_axis,
@@ -41,8 +40,6 @@ class EndoscopeStage:
     """File it was read from."""
     name: str
     """Name of the file without its suffix."""
-    kind: EndoscopeKind
-    """``capsule``, ``magnetic`` or ``proximal``."""
     root: RootKind
     """Joint of the first link to the world: ``free`` (7 coordinates) or ``slide_roll`` (2)."""
     link_length: np.ndarray
@@ -151,7 +148,6 @@ class _Reader:
         return EndoscopeStage(
             path=self.path,
             name=self.path.stem,
-            kind=self._kind(scope),
             root="slide_roll" if slide else "free",
             link_length=length,
             link_radius=radius,
@@ -186,12 +182,6 @@ class _Reader:
                 raise self._error(shape, "axis", "not a Capsule along Z", "Make the shape a Capsule with axis 'Z'.")
             height = 2.0 * capsule_half_height(link_length, link_radius, len(length))
             self._expect(shape, "height", self._number(shape, "height"), height, "arcgym:length of its link")
-
-    def _kind(self, scope: Usd.Prim) -> EndoscopeKind:
-        kind = self._value(scope, "arcgym:kind")
-        if kind not in get_args(EndoscopeKind):
-            raise self._error(scope, "arcgym:kind", f"is '{kind}'", f"Use one of {get_args(EndoscopeKind)}.")
-        return kind
 
     def _mass(self, link: Usd.Prim) -> float:
         mass = self._number(link, "physics:mass")

@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 
-EndoscopeKind = Literal["capsule", "magnetic", "proximal"]
 RootKind = Literal["free", "slide_roll"]
 
 BASE_LINK = 0.200
@@ -74,8 +73,6 @@ class EndoscopeSpec:
 
     name: str
     """Name of the asset and of its file."""
-    kind: EndoscopeKind
-    """How it is moved: a free capsule, a tip that a magnet pulls, or a shaft pushed from outside."""
     root: RootKind
     """Joint of the first link to the world: ``free`` or ``slide_roll`` (along and about the world's Z axis)."""
     link_length: np.ndarray
@@ -199,7 +196,6 @@ def proximal_spec() -> EndoscopeSpec:
     camera, lights = _tip_optics(length[-1], radius[-1], links)
     return EndoscopeSpec(
         name="proximal",
-        kind="proximal",
         root="slide_roll",
         link_length=length,
         link_radius=radius,
@@ -237,7 +233,6 @@ def magnetic_spec() -> EndoscopeSpec:
     camera, lights = _tip_optics(length[-1], radius[-1], links)
     return EndoscopeSpec(
         name="magnetic",
-        kind="magnetic",
         root="slide_roll",
         link_length=length,
         link_radius=radius,
@@ -265,7 +260,6 @@ def capsule_spec() -> EndoscopeSpec:
     camera, lights = _tip_optics(length[0], radius[0], 1)
     return EndoscopeSpec(
         name="capsule",
-        kind="capsule",
         root="free",
         link_length=length,
         link_radius=radius,

@@ -40,7 +40,7 @@ def author_endoscopes(out_dir: Path) -> list[Path]:
 def write_endoscope(spec: EndoscopeSpec, path: str | Path) -> Path:
     """Write the USD stage of `spec` to `path`, replacing what is there.
 
-    The rest pose is straight along +Z on the world's Z axis, with the tip 5 cm above the anal verge.
+    The rest pose is straight along +Z on the world's Z axis, with the tip 2 cm above the anal verge.
     """
     layer = Sdf.Layer.CreateAnonymous(".usda")
     stage = Usd.Stage.Open(layer)
@@ -83,7 +83,6 @@ def _write_header(stage: Usd.Stage, spec: EndoscopeSpec) -> None:
     UsdPhysics.ArticulationRootAPI.Apply(root)
     root.AddAppliedSchema("NewtonArticulationRootAPI")
     _set(root, "newton:selfCollisionEnabled", Sdf.ValueTypeNames.Bool, False)
-    _set(root, "arcgym:kind", Sdf.ValueTypeNames.Token, spec.kind)
     _set(root, "arcgym:bendingLinks", Sdf.ValueTypeNames.Int, spec.bending_links)
     root.SetCustomData({"licence": "BSD-3-Clause", "sources": spec.sources})
     UsdGeom.Scope.Define(stage, LINKS_PATH)

@@ -35,6 +35,7 @@ from arcgym.assets.endoscope_stage import (
     link_name,
     twist_name,
 )
+from arcgym.assets.materials import solid_moduli
 
 PARTICLE_RADIUS = 0.0005
 """Contact radius of a wall vertex [m]; Newton's own default is 0.1 m."""
@@ -188,7 +189,7 @@ def _check_tissue(check: _Check, builder: ModelBuilder, particles: range, first_
     """Lame parameters of every tetrahedron and the mass of the whole wall."""
     material = stage.material
     tets = builder.tet_materials[first_tet:]
-    expected = lame_parameters(material.youngs_modulus, material.poissons_ratio)
+    expected = solid_moduli(material.youngs_modulus, material.poissons_ratio)[:2]
     mend = f"Bind {TISSUE_PATH} to the TetMesh with purpose 'physics' and PhysicsVolumeDeformableMaterialAPI."
     for column, value in enumerate(expected):
         found = np.asarray(tets)[:, column]
@@ -197,12 +198,6 @@ def _check_tissue(check: _Check, builder: ModelBuilder, particles: range, first_
     mass = material.density * np.linalg.det(edges.astype(float)).sum() / 6.0
     found = sum(builder.particle_mass[particles.start : particles.stop])
     check.close([TISSUE_PATH], "physics:density", [found], [mass], mend)
-
-
-def lame_parameters(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:
-    """Shear modulus mu and first parameter lambda [Pa] of an isotropic material."""
-    mu = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
-    return mu, 2.0 * mu * poissons_ratio / (1.0 - 2.0 * poissons_ratio)
 
 
 def _check_links(check: _Check, builder: ModelBuilder, indices: EndoscopeIndices, stage: EndoscopeStage) -> None:

@@ -15,7 +15,8 @@ from arcgym.scene.interactive_scene_cfg import InteractiveSceneCfg
 from arcgym.sensors import SensorBase
 from arcgym.sim.simulation import Simulation
 from arcgym.sim.simulation_cfg import SimulationCfg
-from arcgym.utils.string import did_you_mean, resolve_callable
+from arcgym.utils.class_type import construct
+from arcgym.utils.string import did_you_mean
 
 
 class InteractiveScene:
@@ -35,8 +36,8 @@ class InteractiveScene:
             StageError: If a stage cannot be used; before anything is allocated on the device.
         """
         self.cfg = cfg
-        self.colon: Colon = _build(cfg.colon)
-        self.endoscope: Endoscope = _build(cfg.endoscope)
+        self.colon: Colon = construct(cfg.colon)
+        self.endoscope: Endoscope = construct(cfg.endoscope)
         self.sensors: dict[str, SensorBase] = _build_sensors(cfg)
         self.sim = Simulation(sim_cfg, self.colon, self.endoscope, cfg.num_envs)
         self.env_origins = torch.zeros(cfg.num_envs, 3, device=self.device)
@@ -84,12 +85,7 @@ class InteractiveScene:
                 sensor.update(env_mask)
 
 
-def _build(cfg: Any) -> Any:
-    class_type = cfg.class_type
-    return (resolve_callable(class_type) if isinstance(class_type, str) else class_type)(cfg)
-
-
 def _build_sensors(cfg: InteractiveSceneCfg) -> dict[str, SensorBase]:
     names = [f.name for f in dataclasses.fields(cfg) if f.name not in ("colon", "endoscope")]
     values = {name: getattr(cfg, name) for name in names}
-    return {name: _build(value) for name, value in values.items() if hasattr(value, "class_type")}
+    return {name: construct(value) for name, value in values.items() if hasattr(value, "class_type")}

@@ -9,15 +9,6 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.func
-def clamp_length(vector: wp.vec3, max_length: float) -> wp.vec3:
-    """Return ``vector`` with its length clamped to ``max_length``."""
-    length = wp.length(vector)
-    if length > max_length:
-        return vector * (max_length / length)
-    return vector
-
-
-@wp.func
 def segment_parameter(p: wp.vec3, a: wp.vec3, b: wp.vec3) -> float:
     """Parameter in [0, 1] of the point of segment ``ab`` closest to ``p``."""
     d = b - a

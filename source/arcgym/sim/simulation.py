@@ -176,14 +176,14 @@ class Simulation:
         The first two steps ever run kernel by kernel, which compiles them; the next is captured in a graph, which is
         replayed from then on.
         """
-        averages = [self.wall_force, self.wall_force_peak, self.actuation.base_force, self.actuation.tip_force]
-        for array in (*averages, self._pierced):
+        averages = [self.wall_force, *self.actuation.averages]
+        for array in (*averages, self.wall_force_peak, self._pierced):
             array.zero_()
         self.wall_readout.clear()
         for _ in range(n):
             self._step_once()
         self.wall_readout.finish(n)
-        for array in (averages[0], averages[2], averages[3]):
+        for array in averages:
             wp.to_torch(array).mul_(1.0 / n)
         self._read_out()
 
@@ -242,9 +242,7 @@ class Simulation:
             "joint_qd": self.state.joint_qd,
             "joint_target_q": self.control.joint_target_q,
             "link_ring": self.contact.ring,
-            "bending": self.actuation.bending,
-            "lead": self.actuation.lead,
-            "turn": self.actuation.turn,
+            **self.actuation.memory,
         }
         views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()}
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
@@ -301,13 +299,8 @@ class Simulation:
 
     def _clear_step(self, ids: torch.Tensor) -> None:
         """Zero the commands and the force averages of some worlds."""
-        actuation = self.actuation
-        per_world = [actuation.insertion_velocity, actuation.roll_rate, actuation.bending_command]
-        per_world += [actuation.tip_lin_command, actuation.tip_ang_command, actuation.base_force, actuation.tip_force]
-        per_world.append(self._pierced)
         per_link = [self.step_force, self.wall_force, self.wall_force_norm, self.wall_force_peak]
-        for array in (*per_world, *per_link):
+        for array in (self._pierced, *per_link):
             fill_worlds(wp.to_torch(array).view(self.num_envs, -1), ids, 0.0)
         self.wall_readout.reset(ids)
-        bending = wp.to_torch(actuation.bending)
-        wp.to_torch(actuation.bending_command)[ids] = bending[ids]
+        self.actuation.reset(ids)

@@ -76,3 +76,21 @@ def quat_from_matrix(matrix: torch.Tensor) -> torch.Tensor:
     best = rows.diagonal(dim1=-2, dim2=-1).argmax(-1)
     quat = normalize(rows.gather(-2, best[..., None, None].expand(*best.shape, 1, 4)).squeeze(-2))
     return torch.where(quat[..., 3:] < 0.0, -quat, quat)
+
+
+def points_at(points: torch.Tensor, arc: torch.Tensor, at: torch.Tensor) -> torch.Tensor:
+    """Return points of each world's polyline at given arc lengths, linear between its vertices.
+
+    Args:
+        points: Vertices [m], shape (N, R, 3).
+        arc: Arc length of each vertex, ascending [m], shape (R,).
+        at: Arc lengths wanted, clamped to the polyline [m], shape (N, K).
+
+    Returns:
+        Points [m], shape (N, K, 3).
+    """
+    at = at.clamp(arc[0], arc[-1])
+    right = torch.searchsorted(arc, at).clamp(1, len(arc) - 1)
+    fraction = ((at - arc[right - 1]) / (arc[right] - arc[right - 1])).unsqueeze(-1)
+    index = right.unsqueeze(-1).expand(-1, -1, 3)
+    return torch.lerp(points.gather(1, index - 1), points.gather(1, index), fraction)

@@ -23,8 +23,11 @@ __all__ = ["InsertionAction", "InsertionActionCfg", "TipVelocityAction", "TipVel
 class VelocityAction(ActionTerm):
     """Clip raw actions to [-1, 1] and scale them; a fixed axis takes no action and keeps its value.
 
-    Subclasses name the axes and hand the result to the asset.
+    Subclasses name the axes and hand the result to an actuator of the asset.
     """
+
+    axes: tuple[str, ...] = ()
+    """Names of all axes, length D."""
 
     def __init__(self, cfg: ActionTermCfg, env: ManagerBasedEnv, scale: Sequence[float], fixed: dict[int, float]):
         """Allocate the action buffers.
@@ -37,7 +40,7 @@ class VelocityAction(ActionTerm):
         """
         super().__init__(cfg, env)
         free = [axis for axis in range(len(scale)) if axis not in fixed]
-        self._axes = torch.tensor(free, device=self.device)
+        self._free, self._axes = free, torch.tensor(free, device=self.device)
         self._scale = torch.tensor([scale[axis] for axis in free], device=self.device)
         self._raw = torch.zeros(self.num_envs, len(free), device=self.device)
         self._processed = torch.zeros(self.num_envs, len(scale), device=self.device)
@@ -49,6 +52,11 @@ class VelocityAction(ActionTerm):
     def action_dim(self) -> int:
         """Number of raw actions A: the axes that are not fixed."""
         return self._raw.shape[1]
+
+    @property
+    def axis_names(self) -> list[str]:
+        """Name of each raw action, length A."""
+        return [self.axes[axis] for axis in self._free]
 
     @property
     def raw_actions(self) -> torch.Tensor:
@@ -76,15 +84,17 @@ class TipVelocityAction(VelocityAction):
     """Velocity of the tip in its own frame: X, Y, forward, then rotation about X, Y and the axis; D = 6."""
 
     cfg: TipVelocityActionCfg
+    axes = ("right", "up", "forward", "pitch", "yaw", "roll")
 
     def __init__(self, cfg: TipVelocityActionCfg, env: ManagerBasedEnv) -> None:
-        """Fix the forward velocity if the configuration does."""
+        """Find the actuator, and fix the forward velocity if the configuration does."""
         scale = [cfg.linear_scale] * 3 + [cfg.angular_scale] * 3
         super().__init__(cfg, env, scale, {} if cfg.forward_velocity is None else {2: cfg.forward_velocity})
+        self._pull = self._asset.actuator(cfg.actuator_name)
 
     def apply_actions(self) -> None:
-        """Command the asset."""
-        self._asset.set_tip_velocity_command(self._processed[:, :3], self._processed[:, 3:])
+        """Command the actuator."""
+        self._pull.set_command(self._processed[:, :3], self._processed[:, 3:])
 
 
 class InsertionAction(VelocityAction):
@@ -95,11 +105,14 @@ class InsertionAction(VelocityAction):
     """
 
     cfg: InsertionActionCfg
+    axes = ("insertion", "roll", "pitch", "yaw")
 
     def __init__(self, cfg: InsertionActionCfg, env: ManagerBasedEnv) -> None:
-        """Fix the insertion velocity if the configuration does."""
+        """Find the actuators, and fix the insertion velocity if the configuration does."""
         scale = [cfg.insertion_scale, cfg.roll_scale, cfg.bending_scale, cfg.bending_scale]
         super().__init__(cfg, env, scale, {} if cfg.insertion_velocity is None else {0: cfg.insertion_velocity})
+        self._base_drive = self._asset.actuator(cfg.base_name)
+        self._bending_drive = self._asset.actuator(cfg.bending_name)
         self._bending = torch.zeros(self.num_envs, 2, device=self.device)
 
     @property
@@ -113,9 +126,9 @@ class InsertionAction(VelocityAction):
         self._bending = self._asset.data.bending + self._processed[:, 2:] * self._env.step_dt
 
     def apply_actions(self) -> None:
-        """Command the asset."""
-        self._asset.set_insertion_command(self._processed[:, 0], self._processed[:, 1])
-        self._asset.set_bending_command(self._bending[:, 0], self._bending[:, 1])
+        """Command the actuators."""
+        self._base_drive.set_command(self._processed[:, 0], self._processed[:, 1])
+        self._bending_drive.set_command(self._bending[:, 0], self._bending[:, 1])
 
 
 @configclass
@@ -127,6 +140,9 @@ class TipVelocityActionCfg(ActionTermCfg):
 
     asset_name: str = "endoscope"
     """Scene element that is commanded."""
+
+    actuator_name: str = "tip"
+    """Which of ``EndoscopeCfg.actuators`` follows, a :class:`arcgym.assets.TipPullCfg`."""
 
     linear_scale: float = 0.045
     """Speed along each axis at a raw action of one [m/s]. Insertions pass the colon at 40 to 50 mm/s; slower speeds
@@ -151,6 +167,12 @@ class InsertionActionCfg(ActionTermCfg):
     asset_name: str = "endoscope"
     """Scene element that is commanded."""
 
+    base_name: str = "base"
+    """Which of ``EndoscopeCfg.actuators`` pushes and rolls, a :class:`arcgym.assets.BaseDriveCfg`."""
+
+    bending_name: str = "bending"
+    """Which of ``EndoscopeCfg.actuators`` bends, a :class:`arcgym.assets.BendingDriveCfg`."""
+
     insertion_scale: float = 0.05
     """Insertion speed at a raw action of one [m/s]: 5 mm a step at 10 Hz."""
 
@@ -159,7 +181,7 @@ class InsertionActionCfg(ActionTermCfg):
 
     bending_scale: float = 1.3
     """Rate of pitch and yaw at a raw action of one [rad/s]: 0.13 rad a step at 10 Hz, enough to steer round every bend
-    at 45 mm/s. The control wheels follow at ``EndoscopeCfg.bending_rate``; more than that has no effect."""
+    at 45 mm/s. The control wheels follow at ``BendingDriveCfg.rate``; more than that has no effect."""
 
     insertion_velocity: float | None = None
     """Constant insertion velocity [m/s]; the insertion action is then dropped (A = 3). None leaves it to the policy

@@ -20,7 +20,7 @@ from arcgym.envs.mdp.loads import load_parts
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
-from arcgym.utils.math import quat_apply_inverse
+from arcgym.utils.math import points_at, quat_apply_inverse
 from arcgym.utils.validation import POSITIVE, expects
 
 if TYPE_CHECKING:
@@ -182,21 +182,3 @@ def lumen_state(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> to
     """
     scores = lumen_scores(env, lumen)
     return torch.stack((scores.s_c, scores.s_1, scores.s_2, scores.s_3, scores.s_o), dim=1)
-
-
-def points_at(points: torch.Tensor, arc: torch.Tensor, at: torch.Tensor) -> torch.Tensor:
-    """Return points of each world's polyline at given arc lengths, linear between its vertices.
-
-    Args:
-        points: Vertices [m], shape (N, R, 3).
-        arc: Arc length of each vertex, ascending [m], shape (R,).
-        at: Arc lengths wanted, clamped to the polyline [m], shape (N, K).
-
-    Returns:
-        Points [m], shape (N, K, 3).
-    """
-    at = at.clamp(arc[0], arc[-1])
-    right = torch.searchsorted(arc, at).clamp(1, len(arc) - 1)
-    fraction = ((at - arc[right - 1]) / (arc[right] - arc[right - 1])).unsqueeze(-1)
-    index = right.unsqueeze(-1).expand(-1, -1, 3)
-    return torch.lerp(points.gather(1, index - 1), points.gather(1, index), fraction)

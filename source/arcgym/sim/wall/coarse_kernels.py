@@ -14,11 +14,11 @@ import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactRecords
 from arcgym.sim.contact.self_contact_kernels import SelfContactForce
-from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.sim.wall.anchor_kernels import secant_share
 from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
 from arcgym.sim.wall.wall_kernels import MeasuredContacts, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.math_kernels import clamp_length
 
 
 @wp.struct

@@ -5,7 +5,6 @@
 
 import warp as wp
 
-from arcgym.sim.geometry_kernels import clamp_length
 from arcgym.sim.wall.wall_kernels import (
     MeasuredContacts,
     Tissue,
@@ -19,6 +18,7 @@ from arcgym.sim.wall.wall_kernels import (
     vertex_contact_force,
 )
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.math_kernels import clamp_length
 
 
 def sweep_kernels(

@@ -1,0 +1,90 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Drive of the bending section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import newton
+import numpy as np
+import torch
+import warp as wp
+
+from arcgym.assets.actuators import bending_drive_kernels as kernels
+from arcgym.assets.actuators.actuator_base import ActuatorBase
+from arcgym.assets.actuators.bending_drive_cfg import BendingDriveCfg
+
+if TYPE_CHECKING:
+    from arcgym.assets.endoscope import Endoscope
+
+
+class BendingDrive(ActuatorBase):
+    """Turns two control wheels, pitch and yaw, and spreads their angles over the hinges of the bending section."""
+
+    cfg: BendingDriveCfg
+
+    def __init__(self, cfg: BendingDriveCfg, endoscope: Endoscope):
+        """Check that the stage has a bending section.
+
+        Raises:
+            ValueError: If it has none.
+        """
+        super().__init__(cfg, endoscope)
+        self._links = endoscope.stage.bending_links
+        if self._links == 0:
+            raise ValueError(
+                f"BendingDriveCfg needs a bending section, and {endoscope.path.name} has none: "
+                "set EndoscopeSpec.bending_links (arcgym:bendingLinks in the stage) above 0."
+            )
+
+    def allocate(self, model: newton.Model, num_envs: int, device: str) -> None:
+        """Make command and angle."""
+        self._num_envs, self._device = num_envs, device
+        self._coords = model.joint_coord_count // num_envs
+        stage = self.endoscope.stage
+        self._first = stage.num_links - self._links
+        self._hinge_coords = wp.array(stage.bend_coords[self._first - 1 :], dtype=int, device=device)
+        self._share, self._limit = self._section()
+        self.command = wp.zeros(num_envs, dtype=wp.vec2, device=device)
+        """Commanded pitch and yaw [rad], shape (W,)."""
+        self.angle = wp.zeros(num_envs, dtype=wp.vec2, device=device)
+        """Pitch and yaw that the section is driven to [rad], shape (W,)."""
+        self.commands, self.memory, self.readings = [self.command], {"angle": self.angle}, {"bending": self.angle}
+
+    def _section(self) -> tuple[wp.vec2, wp.vec2]:
+        """Reciprocal hinge counts and total limits [rad] of (pitch, yaw)."""
+        hinge = np.arange(self._first, self._first + self._links)
+        limit = self.endoscope.stage.hinge_limit[hinge - 1]
+        odd = hinge % 2 == 1
+        share = wp.vec2(1.0 / max(odd.sum(), 1), 1.0 / max((~odd).sum(), 1))
+        return share, wp.vec2(float(limit[odd].sum()), float(limit[~odd].sum()))
+
+    def set_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
+        """Set the angles of the bending section, approached at ``cfg.rate`` and within the stage's limits.
+
+        Args:
+            pitch: Bending about the tip's X axis [rad], shape (N,).
+            yaw: Bending about the tip's Y axis [rad], shape (N,).
+        """
+        command = wp.to_torch(self.command)
+        command[:, 0] = pitch
+        command[:, 1] = yaw
+
+    def apply(self, state: newton.State, control: newton.Control, resistance: wp.array, dt: float) -> None:
+        """Turn the wheels towards the command and set the targets of the hinges."""
+        inputs = [self.command, self.cfg.rate, self._limit, dt, self._first, self._hinge_coords, self._coords]
+        inputs.append(self._share)
+        outputs = [self.angle, control.joint_target_q]
+        wp.launch(kernels.drive_bending, self._num_envs, inputs=inputs, outputs=outputs, device=self._device)
+
+    def turn_tip(self, angle: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | slice) -> None:
+        """Turn the wheels by the first two angles [rad], at once."""
+        bending = wp.to_torch(self.angle)
+        bending[env_ids] += angle[:, :2]
+        wp.to_torch(self.command)[env_ids] = bending[env_ids]
+
+    def reset(self, env_ids: torch.Tensor) -> None:
+        """Command the angles that are there."""
+        wp.to_torch(self.command)[env_ids] = wp.to_torch(self.angle)[env_ids]

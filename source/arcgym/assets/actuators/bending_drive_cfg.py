@@ -1,0 +1,29 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration of the bending section's drive."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.assets.actuators.actuator_base_cfg import ActuatorBaseCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class BendingDriveCfg(ActuatorBaseCfg):
+    """Bends the distal section, as the control wheels of a colonoscope do."""
+
+    class_type: Any = "arcgym.assets.actuators.bending_drive:BendingDrive"
+    """Class built from this configuration."""
+    rate: float = 1.3
+    """Speed of the control wheels [rad/s]. Raise it if actions command faster bending than 0.13 rad a step of 0.1 s."""
+
+    def validate_config(self) -> None:
+        """Check numbers.
+
+        Raises:
+            ValueError: If the rate is not positive.
+        """
+        if self.rate <= 0.0:
+            raise ValueError(f"BendingDriveCfg.rate is {self.rate} rad/s; expected more than 0.")

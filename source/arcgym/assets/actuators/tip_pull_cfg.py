@@ -1,0 +1,43 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration of the pull on a tip."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.assets.actuators.actuator_base_cfg import ActuatorBaseCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class TipPullCfg(ActuatorBaseCfg):
+    """Pulls the tip of a capsule or magnetic scope: a force-limited spring to a moving target, never a teleport."""
+
+    class_type: Any = "arcgym.assets.actuators.tip_pull:TipPull"
+    """Class built from this configuration."""
+    stiffness: float = 400.0
+    """[N/m]. The target leads the tip by at most ``force_limit / stiffness``."""
+    damping: float = 4.0
+    """[N s/m]."""
+    force_limit: float = 4.0
+    """Largest pull [N]. Magnetic colonoscopes reach 1 to 2 N in practice; 4 N passes the sigmoid with a soft tether."""
+    angular_stiffness: float = 0.02
+    """[N m/rad]."""
+    angular_damping: float = 1.5e-4
+    """[N m s/rad]."""
+    torque_limit: float = 0.05
+    """Largest torque [N m]."""
+
+    def validate_config(self) -> None:
+        """Check numbers.
+
+        Raises:
+            ValueError: If a stiffness or a limit is not positive, or a damping negative.
+        """
+        for name in ("stiffness", "force_limit", "angular_stiffness", "torque_limit"):
+            if getattr(self, name) <= 0.0:
+                raise ValueError(f"TipPullCfg.{name} is {getattr(self, name)}; expected more than 0.")
+        for name in ("damping", "angular_damping"):
+            if getattr(self, name) < 0.0:
+                raise ValueError(f"TipPullCfg.{name} is {getattr(self, name)}; expected at least 0.")

@@ -1,0 +1,30 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scripted experts: they drive robots to the start states and are a baseline. They see what no camera sees.
+
+``EndoscopeCfg.expert`` names the expert of a robot; one of your own is a subclass of :class:`ExpertBase`.
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from arcgym.experts.expert_base import ExpertBase, make_expert
+    from arcgym.experts.pull_expert import PullExpert
+    from arcgym.experts.push_expert import PushExpert
+
+_LAZY = {
+    "ExpertBase": "arcgym.experts.expert_base",
+    "PullExpert": "arcgym.experts.pull_expert",
+    "PushExpert": "arcgym.experts.push_expert",
+    "make_expert": "arcgym.experts.expert_base",
+}
+
+__all__ = ["ExpertBase", "PullExpert", "PushExpert", "make_expert"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import torch and Newton only when an expert is asked for."""
+    if name in _LAZY:
+        return getattr(importlib.import_module(_LAZY[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
