@@ -22,7 +22,7 @@ def triangle_point(a: wp.vec3, b: wp.vec3, c: wp.vec3, u: wp.vec3) -> wp.vec3:
 
 
 @wp.func
-def corner_point(x: wp.array2d(dtype=wp.vec3), face: wp.vec3i, u: wp.vec3, w: int) -> wp.vec3:
+def corner_point(x: wp.array2d[wp.vec3], face: wp.vec3i, u: wp.vec3, w: int) -> wp.vec3:
     """Point of world ``w``'s triangle ``face`` with barycentric coordinates ``u``; ``x`` has shape (V, W)."""
     return triangle_point(x[face[0], w], x[face[1], w], x[face[2], w], u)
 

@@ -17,7 +17,7 @@ import newton
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.sim import model_building
-from arcgym.sim.contact.contact import ContactSearch
+from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.coupling.two_level_coupling import Coupling, TwoLevelCoupling
 from arcgym.sim.scope import readout_kernels
 from arcgym.sim.scope.actuation import Actuation

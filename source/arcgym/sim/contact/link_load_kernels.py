@@ -57,18 +57,18 @@ def contact_load(
 
 @wp.kernel
 def load_contacts(
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
-    com: wp.array(dtype=wp.vec3),
-    x: wp.array2d(dtype=wp.vec3),
-    v: wp.array2d(dtype=wp.vec3),
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
+    com: wp.array[wp.vec3],
+    x: wp.array2d[wp.vec3],
+    v: wp.array2d[wp.vec3],
     links: LinkShapes,
     records: ContactRecords,
     law: ContactLaw,
-    friction: wp.array(dtype=float),
+    friction: wp.array[float],
     dt: float,
     loads: LinkLoads,
-    pierced: wp.array(dtype=int),
+    pierced: wp.array[int],
 ):
     """Sum the contacts of each link with the wall where it is. Launch (L, W).
 
@@ -107,10 +107,10 @@ def load_contacts(
 @wp.kernel
 def record_forces(
     loads: LinkLoads,
-    acc_lin: wp.array2d(dtype=wp.vec3),
-    acc_ang: wp.array2d(dtype=wp.vec3),
+    acc_lin: wp.array2d[wp.vec3],
+    acc_ang: wp.array2d[wp.vec3],
     weight: float,
-    wall_force: wp.array(dtype=wp.vec3),
+    wall_force: wp.array[wp.vec3],
 ):
     """Add ``weight`` times each link's contact force at the end of the step to ``wall_force``. Launch (L, W)."""
     link, w = wp.tid()

@@ -82,19 +82,34 @@ class SelfContact:
         return spheres
 
     def _measure_rest(self, points: np.ndarray) -> None:
-        x = wp.array(points[:, None], dtype=wp.vec3, device=self.device)
-        args = [x, self.rings, self._spheres(1)]
-        wp.launch(kernels.measure_spheres, (self.count, 1), args, device=self.device)
-        wp.launch(kernels.allow_rest_overlaps, (self.count, self.count), args, device=self.device)
+        x, spheres = wp.array(points[:, None], dtype=wp.vec3, device=self.device), self._spheres(1)
+        wp.launch(
+            kernels.measure_spheres, (self.count, 1), inputs=[x, self.rings], outputs=[spheres], device=self.device
+        )
+        wp.launch(
+            kernels.allow_rest_overlaps,
+            (self.count, self.count),
+            inputs=[x, spheres],
+            outputs=[self.rings],
+            device=self.device,
+        )
 
     def measure(self, x: wp.array) -> kernels.SelfContactForce:
-        """Measure self-contact at wall positions ``x`` [m], shape (V, W), for the coming step."""
+        """Measure self-contact for the coming step.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+        """
         if self.active:
-            shape = self.force.in_contact.shape
-            wp.launch(kernels.measure_spheres, shape, [x, self.rings, self.spheres], device=self.device)
-            wp.launch(kernels.find_near_rings, shape, [self.rings, self.spheres], device=self.device)
+            shape, rings, spheres = self.force.in_contact.shape, self.rings, self.spheres
+            wp.launch(kernels.measure_spheres, shape, inputs=[x, rings], outputs=[spheres], device=self.device)
+            wp.launch(kernels.find_near_rings, shape, inputs=[rings], outputs=[spheres], device=self.device)
             wp.launch(
-                kernels.measure_self_contact, shape, [x, self.rings, self.spheres, self.force], device=self.device
+                kernels.measure_self_contact,
+                shape,
+                inputs=[x, rings, spheres],
+                outputs=[self.force],
+                device=self.device,
             )
         return self.force
 

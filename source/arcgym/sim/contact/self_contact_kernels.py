@@ -31,9 +31,9 @@ MIN_FORCE = wp.constant(1.0e-9)
 class WallRings:
     """Rings of one world's wall, shared by all worlds."""
 
-    members: wp.array2d(dtype=int)  # vertices of each ring, -1 padded, shape (R, S)
-    half_min_arc: wp.array(dtype=float)  # half the least arc length at which two such rings may touch [m], shape (R,)
-    next_candidate: wp.array(dtype=int)  # first ring after each that may touch it, shape (R,)
+    members: wp.array2d[int]  # vertices of each ring, -1 padded, shape (R, S)
+    half_min_arc: wp.array[float]  # half the least arc length at which two such rings may touch [m], shape (R,)
+    next_candidate: wp.array[int]  # first ring after each that may touch it, shape (R,)
     min_gap: wp.array2d(
         dtype=float
     )  # gap below which a pair pushes, negative where it overlaps at rest [m], shape (R, R)
@@ -51,21 +51,21 @@ class SelfContactForce:
     taken to move back as much, which doubles the stiffness k.
     """
 
-    plane: wp.array2d(dtype=wp.vec4)  # n and c [N], shape (V, W)
-    stiffness: wp.array2d(dtype=float)  # k [N/m], zero where nothing touches, shape (V, W)
-    in_contact: wp.array2d(dtype=int)  # 1 where a ring touches another, shape (R, W)
+    plane: wp.array2d[wp.vec4]  # n and c [N], shape (V, W)
+    stiffness: wp.array2d[float]  # k [N/m], zero where nothing touches, shape (V, W)
+    in_contact: wp.array2d[int]  # 1 where a ring touches another, shape (R, W)
 
 
 @wp.struct
 class RingSpheres:
     """Bounding spheres of the rings, in each world."""
 
-    sphere: wp.array2d(dtype=wp.vec4)  # centre and distance of the farthest vertex from there [m], shape (R, W)
-    near: wp.array2d(dtype=int)  # 1 where a sphere meets that of a ring that may touch, shape (R, W)
+    sphere: wp.array2d[wp.vec4]  # centre and distance of the farthest vertex from there [m], shape (R, W)
+    near: wp.array2d[int]  # 1 where a sphere meets that of a ring that may touch, shape (R, W)
 
 
 @wp.kernel
-def measure_spheres(x: wp.array2d(dtype=wp.vec3), rings: WallRings, spheres: RingSpheres):
+def measure_spheres(x: wp.array2d[wp.vec3], rings: WallRings, spheres: RingSpheres):
     """Measure the bounding sphere of each ring. Launch (R, W)."""
     r, w = wp.tid()
     center = wp.vec3(0.0)
@@ -100,9 +100,7 @@ def facing_weight(x: wp.vec3, sphere: wp.vec4, n: wp.vec3) -> float:
 
 
 @wp.func
-def facing_extent(
-    rings: WallRings, x: wp.array2d(dtype=wp.vec3), r: int, w: int, sphere: wp.vec4, n: wp.vec3
-) -> wp.vec2:
+def facing_extent(rings: WallRings, x: wp.array2d[wp.vec3], r: int, w: int, sphere: wp.vec4, n: wp.vec3) -> wp.vec2:
     """Return the weighted extent of ring ``r`` towards ``n`` [m], and the sum of its vertices' weights."""
     reach = float(0.0)
     total = float(1.0e-12)
@@ -117,7 +115,7 @@ def facing_extent(
 
 @wp.func
 def pair_gap(
-    rings: WallRings, x: wp.array2d(dtype=wp.vec3), r: int, s: int, w: int, own: wp.vec4, other: wp.vec4, n: wp.vec3
+    rings: WallRings, x: wp.array2d[wp.vec3], r: int, s: int, w: int, own: wp.vec4, other: wp.vec4, n: wp.vec3
 ) -> float:
     """Return the gap between the outer surfaces of rings ``r`` and ``s`` along ``n``, negative in overlap [m]."""
     reach = facing_extent(rings, x, r, w, own, n)[0] + facing_extent(rings, x, s, w, other, -n)[0]
@@ -125,7 +123,7 @@ def pair_gap(
 
 
 @wp.kernel
-def allow_rest_overlaps(x: wp.array2d(dtype=wp.vec3), rings: WallRings, spheres: RingSpheres):
+def allow_rest_overlaps(x: wp.array2d[wp.vec3], spheres: RingSpheres, rings: WallRings):
     """Allow the pairs that overlap at rest to do so. Launch (R, R)."""
     r, s = wp.tid()
     if rings.min_gap[r, s] > NO_CONTACT:
@@ -159,7 +157,7 @@ def pair_stiffness(
 @wp.func
 def add_pair(
     rings: WallRings,
-    x: wp.array2d(dtype=wp.vec3),
+    x: wp.array2d[wp.vec3],
     r: int,
     w: int,
     own: wp.vec4,
@@ -185,7 +183,7 @@ def add_pair(
 
 
 @wp.func
-def finish_ring(rings: WallRings, x: wp.array2d(dtype=wp.vec3), r: int, w: int, in_contact: int, out: SelfContactForce):
+def finish_ring(rings: WallRings, x: wp.array2d[wp.vec3], r: int, w: int, in_contact: int, out: SelfContactForce):
     """Turn the forces on ring ``r`` into planes, or clear the ring."""
     for k in range(rings.members.shape[1]):
         i = rings.members[r, k]
@@ -222,7 +220,7 @@ def find_near_rings(rings: WallRings, spheres: RingSpheres):
 
 
 @wp.kernel
-def measure_self_contact(x: wp.array2d(dtype=wp.vec3), rings: WallRings, spheres: RingSpheres, out: SelfContactForce):
+def measure_self_contact(x: wp.array2d[wp.vec3], rings: WallRings, spheres: RingSpheres, out: SelfContactForce):
     """Measure the contact of each ring with all others. Launch (R, W)."""
     r, w = wp.tid()
     if spheres.near[r, w] == 0 and out.in_contact[r, w] == 0:

@@ -9,28 +9,28 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.kernel
-def to_particles(ours: wp.array2d(dtype=wp.vec3), stride: int, particles: wp.array(dtype=wp.vec3)):
+def to_particles(ours: wp.array2d[wp.vec3], stride: int, particles: wp.array[wp.vec3]):
     """Copy our array to the first particles of each world's block. Launch (V, W)."""
     i, w = wp.tid()
     particles[w * stride + i] = ours[i, w]
 
 
 @wp.kernel
-def from_particles(particles: wp.array(dtype=wp.vec3), stride: int, ours: wp.array2d(dtype=wp.vec3)):
+def from_particles(particles: wp.array[wp.vec3], stride: int, ours: wp.array2d[wp.vec3]):
     """Copy the first particles of each world's block to our array. Launch (V, W)."""
     i, w = wp.tid()
     ours[i, w] = particles[w * stride + i]
 
 
 @wp.kernel
-def damp(factor: float, velocity: wp.array(dtype=wp.vec3)):
+def damp(factor: float, velocity: wp.array[wp.vec3]):
     """Multiply all velocities by ``factor``. Launch (particles,)."""
     i = wp.tid()
     velocity[i] = factor * velocity[i]
 
 
 @wp.kernel
-def add_coupling_forces(wrench: wp.array(dtype=wp.spatial_vector), weight: float, total: wp.array(dtype=wp.vec3)):
+def add_coupling_forces(wrench: wp.array[wp.spatial_vector], weight: float, total: wp.array[wp.vec3]):
     """Add the force part of each link's coupling wrench. Launch (W*L,)."""
     i = wp.tid()
     total[i] = total[i] + weight * wp.spatial_top(wrench[i])

@@ -10,7 +10,7 @@ import newton
 import warp as wp
 
 from arcgym.sim.contact import link_load_kernels
-from arcgym.sim.contact.contact import ContactSearch
+from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.scope.actuation import Actuation
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
 from arcgym.sim.simulation_cfg import SimulationCfg

@@ -94,9 +94,9 @@ def free_motion(
     lin: wp.vec3,
     ang: wp.vec3,
     dt: float,
-    body_q: wp.array(dtype=wp.transform),
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
+    body_q: wp.array[wp.transform],
+    joint_q: wp.array[float],
+    joint_qd: wp.array[float],
 ) -> LinkMotion:
     """Integrate a free root with the accelerations ``lin`` and ``ang``."""
     out = LinkMotion()
@@ -125,8 +125,8 @@ def next_motion(
     link: int,
     w: int,
     before: LinkMotion,
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
+    joint_q: wp.array[float],
+    joint_qd: wp.array[float],
 ) -> LinkMotion:
     """Motion of a link from that of the one before it and the joint between them."""
     out = LinkMotion()
@@ -159,14 +159,14 @@ def next_motion(
 @wp.kernel
 def solve_chain(
     chain: Chain,
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
     dt: float,
     work: ChainWork,
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
-    body_q_out: wp.array(dtype=wp.transform),
-    body_qd_out: wp.array(dtype=wp.spatial_vector),
+    joint_q: wp.array[float],
+    joint_qd: wp.array[float],
+    body_q_out: wp.array[wp.transform],
+    body_qd_out: wp.array[wp.spatial_vector],
 ):
     """Accelerations of all joints, then their new places and the links' new poses. Launch (W,).
 
@@ -213,10 +213,10 @@ def solve_chain(
 @wp.kernel
 def chain_kinematics(
     chain: Chain,
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
+    joint_q: wp.array[float],
+    joint_qd: wp.array[float],
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
 ):
     """Poses and velocities of all links from the joints', as :func:`solve_chain` computes them. Launch (W,)."""
     w = wp.tid()

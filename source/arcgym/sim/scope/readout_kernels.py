@@ -13,7 +13,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.kernel
-def collect_forces(step_force: wp.array(dtype=wp.vec3), total: wp.array(dtype=wp.vec3), peak: wp.array(dtype=float)):
+def collect_forces(step_force: wp.array[wp.vec3], total: wp.array[wp.vec3], peak: wp.array[float]):
     """Add one physics step's mean force to the control step's sum and peak, and clear it. Launch (W*L,)."""
     i = wp.tid()
     f = step_force[i]
@@ -23,7 +23,7 @@ def collect_forces(step_force: wp.array(dtype=wp.vec3), total: wp.array(dtype=wp
 
 
 @wp.kernel
-def measure_forces(force: wp.array(dtype=wp.vec3), magnitude: wp.array(dtype=float)):
+def measure_forces(force: wp.array[wp.vec3], magnitude: wp.array[float]):
     """Magnitude of each link's force [N]. Launch (W*L,)."""
     i = wp.tid()
     magnitude[i] = wp.length(force[i])
@@ -31,14 +31,14 @@ def measure_forces(force: wp.array(dtype=wp.vec3), magnitude: wp.array(dtype=flo
 
 @wp.kernel
 def read_tip(
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
     links: int,
     tip_offset: wp.vec3,
     camera_offset: wp.transform,
-    tip_pose: wp.array(dtype=wp.transform),
-    tip_velocity: wp.array(dtype=wp.spatial_vector),
-    camera_pose: wp.array(dtype=wp.transform),
+    tip_pose: wp.array[wp.transform],
+    tip_velocity: wp.array[wp.spatial_vector],
+    camera_pose: wp.array[wp.transform],
 ):
     """Pose and velocity of the front of the last link, and the camera's pose. Launch (W,)."""
     w = wp.tid()
@@ -54,14 +54,14 @@ def read_tip(
 
 @wp.kernel
 def locate_tip(
-    tip_pose: wp.array(dtype=wp.transform),
-    centers: wp.array2d(dtype=wp.vec3),
-    ring_arc: wp.array(dtype=float),
-    link_ring: wp.array2d(dtype=int),
+    tip_pose: wp.array[wp.transform],
+    centers: wp.array2d[wp.vec3],
+    ring_arc: wp.array[float],
+    link_ring: wp.array2d[int],
     span: int,
-    arc: wp.array(dtype=float),
-    distance: wp.array(dtype=float),
-    direction: wp.array(dtype=wp.vec3),
+    arc: wp.array[float],
+    distance: wp.array[float],
+    direction: wp.array[wp.vec3],
 ):
     """Closest point of the deformed centreline to the tip, near the last link's ring. Launch (W,).
 
@@ -98,7 +98,7 @@ def broken(p: wp.vec3) -> bool:
 
 
 @wp.kernel
-def flag_broken_points(x: wp.array2d(dtype=wp.vec3), flag: wp.array(dtype=int)):
+def flag_broken_points(x: wp.array2d[wp.vec3], flag: wp.array[int]):
     """Mark worlds with a broken wall vertex. Launch (V, W)."""
     i, w = wp.tid()
     if broken(x[i, w]):
@@ -106,7 +106,7 @@ def flag_broken_points(x: wp.array2d(dtype=wp.vec3), flag: wp.array(dtype=int)):
 
 
 @wp.kernel
-def flag_broken_bodies(body_q: wp.array(dtype=wp.transform), per_world: int, flag: wp.array(dtype=int)):
+def flag_broken_bodies(body_q: wp.array[wp.transform], per_world: int, flag: wp.array[int]):
     """Mark worlds with a broken link. Launch (W*L,)."""
     i = wp.tid()
     if broken(wp.transform_get_translation(body_q[i])):

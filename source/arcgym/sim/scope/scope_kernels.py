@@ -23,22 +23,22 @@ class Chain:
     dofs: int  # D
     coords: int  # D, or D + 1 for a free root
     free: int  # whether the root is free
-    parent_frame: wp.array(dtype=wp.transform)  # joint in the frame of the link before, shape (L,)
-    child_frame: wp.array(dtype=wp.transform)  # joint in the link's frame, shape (L,)
-    com: wp.array(dtype=wp.vec3)  # centre of mass in the link's frame [m], shape (L,)
-    mass: wp.array(dtype=float)  # [kg], shape (L,)
-    inertia: wp.array(dtype=wp.mat33)  # about the centre of mass, link's axes [kg m^2], shape (L,)
-    dof_start: wp.array(dtype=int)  # first degree of freedom of each link's joint, shape (L + 1,)
-    linear: wp.array(dtype=int)  # whether a degree of freedom slides, shape (D,)
-    axis: wp.array(dtype=wp.vec3)  # in the joint's frame, shape (D,)
-    stiffness: wp.array(dtype=float)  # of the drive [N/m or N m/rad], shape (D,)
-    damping: wp.array(dtype=float)  # of the drive, shape (D,)
-    effort: wp.array(dtype=float)  # largest force of the drive [N or N m], shape (D,)
-    armature: wp.array(dtype=float)  # [kg or kg m^2], shape (D,)
-    lower: wp.array(dtype=float)  # [m or rad], shape (D,)
-    upper: wp.array(dtype=float)  # [m or rad], shape (D,)
-    stop_stiffness: wp.array(dtype=float)  # beyond lower and upper, shape (D,)
-    stop_damping: wp.array(dtype=float)  # shape (D,)
+    parent_frame: wp.array[wp.transform]  # joint in the frame of the link before, shape (L,)
+    child_frame: wp.array[wp.transform]  # joint in the link's frame, shape (L,)
+    com: wp.array[wp.vec3]  # centre of mass in the link's frame [m], shape (L,)
+    mass: wp.array[float]  # [kg], shape (L,)
+    inertia: wp.array[wp.mat33]  # about the centre of mass, link's axes [kg m^2], shape (L,)
+    dof_start: wp.array[int]  # first degree of freedom of each link's joint, shape (L + 1,)
+    linear: wp.array[int]  # whether a degree of freedom slides, shape (D,)
+    axis: wp.array[wp.vec3]  # in the joint's frame, shape (D,)
+    stiffness: wp.array[float]  # of the drive [N/m or N m/rad], shape (D,)
+    damping: wp.array[float]  # of the drive, shape (D,)
+    effort: wp.array[float]  # largest force of the drive [N or N m], shape (D,)
+    armature: wp.array[float]  # [kg or kg m^2], shape (D,)
+    lower: wp.array[float]  # [m or rad], shape (D,)
+    upper: wp.array[float]  # [m or rad], shape (D,)
+    stop_stiffness: wp.array[float]  # beyond lower and upper, shape (D,)
+    stop_damping: wp.array[float]  # shape (D,)
 
 
 @wp.struct
@@ -49,36 +49,36 @@ class LinkLoads:
     a link that keeps its velocity v, and a spring K and damper C add dt (C + dt K) to the inertias.
     """
 
-    wrench: wp.array2d(dtype=wp.spatial_vector)  # force [N], torque [N m], shape (L, W)
-    ll: wp.array2d(dtype=wp.mat33)  # force by linear acceleration [kg], shape (L, W)
-    la: wp.array2d(dtype=wp.mat33)  # force by angular acceleration [kg m], shape (L, W)
-    aa: wp.array2d(dtype=wp.mat33)  # torque by angular acceleration [kg m^2], shape (L, W)
+    wrench: wp.array2d[wp.spatial_vector]  # force [N], torque [N m], shape (L, W)
+    ll: wp.array2d[wp.mat33]  # force by linear acceleration [kg], shape (L, W)
+    la: wp.array2d[wp.mat33]  # force by angular acceleration [kg m], shape (L, W)
+    aa: wp.array2d[wp.mat33]  # torque by angular acceleration [kg m^2], shape (L, W)
 
 
 @wp.struct
 class ChainWork:
     """Scratch of a step, and what can be read after it."""
 
-    ll: wp.array2d(dtype=wp.mat33)  # inertia of each link and its loads about its anchor, shape (L, W)
-    la: wp.array2d(dtype=wp.mat33)
-    aa: wp.array2d(dtype=wp.mat33)
-    force: wp.array2d(dtype=wp.vec3)  # bias force and torque, shape (L, W)
-    torque: wp.array2d(dtype=wp.vec3)
-    arm: wp.array2d(dtype=wp.vec3)  # from the anchor before to the link's own [m], shape (L, W)
-    lever: wp.array2d(dtype=wp.vec3)  # from the anchor to the centre of mass [m], shape (L, W)
-    drift_lin: wp.array2d(dtype=wp.vec3)  # acceleration of the joint at constant joint velocities, shape (L, W)
-    drift_ang: wp.array2d(dtype=wp.vec3)
-    axis: wp.array2d(dtype=wp.vec3)  # shape (D, W)
-    drive: wp.array2d(dtype=float)  # drive's force if the joint keeps its velocity, shape (D, W)
-    drive_inertia: wp.array2d(dtype=float)  # its drop by acceleration, shape (D, W)
-    stop: wp.array2d(dtype=float)  # the same of the stop, shape (D, W)
-    stop_inertia: wp.array2d(dtype=float)
-    gain_lin: wp.array2d(dtype=wp.vec3)  # joint acceleration = offset - gain . parent's acceleration, shape (D, W)
-    gain_ang: wp.array2d(dtype=wp.vec3)
-    offset: wp.array2d(dtype=float)
-    drive_force: wp.array2d(dtype=float)  # force of each drive at the end of the step [N or N m], shape (D, W)
-    acc_lin: wp.array2d(dtype=wp.vec3)  # of each centre of mass [m/s^2], shape (L, W)
-    acc_ang: wp.array2d(dtype=wp.vec3)  # [rad/s^2], shape (L, W)
+    ll: wp.array2d[wp.mat33]  # inertia of each link and its loads about its anchor, shape (L, W)
+    la: wp.array2d[wp.mat33]
+    aa: wp.array2d[wp.mat33]
+    force: wp.array2d[wp.vec3]  # bias force and torque, shape (L, W)
+    torque: wp.array2d[wp.vec3]
+    arm: wp.array2d[wp.vec3]  # from the anchor before to the link's own [m], shape (L, W)
+    lever: wp.array2d[wp.vec3]  # from the anchor to the centre of mass [m], shape (L, W)
+    drift_lin: wp.array2d[wp.vec3]  # acceleration of the joint at constant joint velocities, shape (L, W)
+    drift_ang: wp.array2d[wp.vec3]
+    axis: wp.array2d[wp.vec3]  # shape (D, W)
+    drive: wp.array2d[float]  # drive's force if the joint keeps its velocity, shape (D, W)
+    drive_inertia: wp.array2d[float]  # its drop by acceleration, shape (D, W)
+    stop: wp.array2d[float]  # the same of the stop, shape (D, W)
+    stop_inertia: wp.array2d[float]
+    gain_lin: wp.array2d[wp.vec3]  # joint acceleration = offset - gain . parent's acceleration, shape (D, W)
+    gain_ang: wp.array2d[wp.vec3]
+    offset: wp.array2d[float]
+    drive_force: wp.array2d[float]  # force of each drive at the end of the step [N or N m], shape (D, W)
+    acc_lin: wp.array2d[wp.vec3]  # of each centre of mass [m/s^2], shape (L, W)
+    acc_ang: wp.array2d[wp.vec3]  # [rad/s^2], shape (L, W)
 
 
 @wp.struct
@@ -152,9 +152,9 @@ def load_on_link(loads: LinkLoads, link: int, w: int) -> ArticulatedBody:
 @wp.func
 def prepare_axes(
     chain: Chain,
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
-    joint_qd: wp.array(dtype=float),
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
+    joint_qd: wp.array[float],
     here: wp.vec3,
     link: int,
     w: int,
@@ -193,11 +193,11 @@ def prepare_axes(
 @wp.kernel
 def prepare_links(
     chain: Chain,
-    body_q: wp.array(dtype=wp.transform),
-    body_qd: wp.array(dtype=wp.spatial_vector),
-    body_f: wp.array(dtype=wp.spatial_vector),
-    joint_qd: wp.array(dtype=float),
-    resistance: wp.array2d(dtype=wp.spatial_vector),
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
+    body_f: wp.array[wp.spatial_vector],
+    joint_qd: wp.array[float],
+    resistance: wp.array2d[wp.spatial_vector],
     loads: LinkLoads,
     work: ChainWork,
 ):
@@ -229,10 +229,10 @@ def prepare_links(
 @wp.kernel
 def prepare_joints(
     chain: Chain,
-    joint_q: wp.array(dtype=float),
-    joint_qd: wp.array(dtype=float),
-    target: wp.array(dtype=float),
-    joint_f: wp.array(dtype=float),
+    joint_q: wp.array[float],
+    joint_qd: wp.array[float],
+    target: wp.array[float],
+    joint_f: wp.array[float],
     dt: float,
     work: ChainWork,
 ):

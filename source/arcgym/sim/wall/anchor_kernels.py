@@ -12,10 +12,10 @@ from arcgym.utils import warp_setup  # noqa: F401
 class Anchors:
     """Springs of one world's wall vertices to their rest positions, shared by all worlds."""
 
-    stiffness: wp.array(dtype=float)  # of the tight spring [N/m], shape (V,)
-    loose: wp.array(dtype=float)  # share of it within the slack, 1 where there is none, shape (V,)
-    slack: wp.array(dtype=float)  # distance at which the spring gets tight [m], shape (V,)
-    rest: wp.array(dtype=wp.vec3)  # [m], shape (V,)
+    stiffness: wp.array[float]  # of the tight spring [N/m], shape (V,)
+    loose: wp.array[float]  # share of it within the slack, 1 where there is none, shape (V,)
+    slack: wp.array[float]  # distance at which the spring gets tight [m], shape (V,)
+    rest: wp.array[wp.vec3]  # [m], shape (V,)
 
 
 @wp.func

@@ -19,7 +19,7 @@ Block = wp.types.matrix(shape=(RING_MODES, RING_MODES), dtype=float)
 
 
 @wp.kernel
-def factor_odd(first: int, step: int, diagonal: wp.array4d(dtype=float)):
+def factor_odd(first: int, step: int, diagonal: wp.array4d[float]):
     """Cholesky factor of each odd row's block, in place, its diagonal inverted. Launch (odd rows, W)."""
     m, w = wp.tid()
     r = first + m * step
@@ -40,7 +40,7 @@ def factor_odd(first: int, step: int, diagonal: wp.array4d(dtype=float)):
 
 
 @wp.func
-def forward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -> Unknowns:
+def forward_solve(lower: wp.array4d[float], r: int, w: int, b: Unknowns) -> Unknowns:
     """Solve ``lower[r] x = b`` in world ``w``; the diagonal holds its inverse."""
     out = Unknowns()
     for j in range(MODES):
@@ -52,7 +52,7 @@ def forward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -
 
 
 @wp.func
-def backward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) -> Unknowns:
+def backward_solve(lower: wp.array4d[float], r: int, w: int, b: Unknowns) -> Unknowns:
     """Solve ``lower[r]^T x = b`` in world ``w``; the diagonal holds its inverse."""
     out = Unknowns()
     for back in range(MODES):
@@ -67,11 +67,11 @@ def backward_solve(lower: wp.array4d(dtype=float), r: int, w: int, b: Unknowns) 
 @wp.kernel
 def eliminate_odd(
     h: int,
-    diagonal: wp.array4d(dtype=float),
-    upper: wp.array4d(dtype=float),
-    left: wp.array4d(dtype=float),
-    right: wp.array4d(dtype=float),
-    rhs: wp.array3d(dtype=float),
+    diagonal: wp.array4d[float],
+    upper: wp.array4d[float],
+    left: wp.array4d[float],
+    right: wp.array4d[float],
+    rhs: wp.array3d[float],
 ):
     """Columns of P = L^-1 U_{j-h}^T and Q = L^-1 U_j, and y = L^-1 b. Launch (odd rows, 2 M + 1, W)."""
     m, c, w = wp.tid()
@@ -98,11 +98,11 @@ def eliminate_odd(
 @wp.kernel
 def reduce_even(
     h: int,
-    left: wp.array4d(dtype=float),
-    right: wp.array4d(dtype=float),
-    diagonal: wp.array4d(dtype=float),
-    upper: wp.array4d(dtype=float),
-    rhs: wp.array3d(dtype=float),
+    left: wp.array4d[float],
+    right: wp.array4d[float],
+    diagonal: wp.array4d[float],
+    upper: wp.array4d[float],
+    rhs: wp.array3d[float],
 ):
     """Row ``a`` of each even row's new block, coupling and right-hand side. Launch (even rows, M, W)."""
     m, a, w = wp.tid()
@@ -135,7 +135,7 @@ def reduce_even(
 
 
 @wp.kernel
-def solve_root(diagonal: wp.array4d(dtype=float), rhs: wp.array3d(dtype=float)):
+def solve_root(diagonal: wp.array4d[float], rhs: wp.array3d[float]):
     """The one row that is left, its block already factored. Launch (W,)."""
     w = wp.tid()
     b = Unknowns()
@@ -149,10 +149,10 @@ def solve_root(diagonal: wp.array4d(dtype=float), rhs: wp.array3d(dtype=float)):
 @wp.kernel
 def back_substitute(
     h: int,
-    diagonal: wp.array4d(dtype=float),
-    left: wp.array4d(dtype=float),
-    right: wp.array4d(dtype=float),
-    rhs: wp.array3d(dtype=float),
+    diagonal: wp.array4d[float],
+    left: wp.array4d[float],
+    right: wp.array4d[float],
+    rhs: wp.array3d[float],
 ):
     """Odd rows from their even neighbours: x = L^-T (y - P x_{j-h} - Q x_{j+h}). Launch (odd rows, W)."""
     m, w = wp.tid()

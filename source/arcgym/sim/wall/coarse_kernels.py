@@ -25,26 +25,26 @@ from arcgym.utils.math_kernels import clamp_length
 class RingSpace:
     """Ring modes of one world's wall, shared by all worlds."""
 
-    ring: wp.array(dtype=int)  # ring of each vertex, shape (V,)
-    basis: wp.array2d(dtype=wp.vec3)  # displacement of each vertex in each mode, zero where it is held, shape (V, M)
-    members: wp.array2d(dtype=int)  # vertices of each ring, -1 padded, shape (R, S)
-    frame_weights: wp.array(dtype=wp.vec2)  # in-plane coordinates (p, q) over the rms radius, shape (V,)
-    rest_frame: wp.array(dtype=wp.mat33)  # rest ring frame, columns p, q, p x q, shape (R,)
-    stiffness: wp.array3d(dtype=Unknowns)  # rows of the three elastic parts' diagonal blocks [N/m], shape (3, R, M)
-    coupling: wp.array3d(dtype=Unknowns)  # rows of their blocks to the next ring [N/m], shape (3, R, M)
-    mass: wp.array2d(dtype=Unknowns)  # rows [kg], shape (R, M)
-    anchor: wp.array2d(dtype=Unknowns)  # rows of the tight springs [N/m], shape (R, M)
-    loose: wp.array(dtype=float)  # share of them within the slack, shape (R,)
-    slack: wp.array(dtype=float)  # [m], shape (R,)
-    rest_center: wp.array(dtype=wp.vec3)  # mean rest position of the ring's vertices [m], shape (R,)
+    ring: wp.array[int]  # ring of each vertex, shape (V,)
+    basis: wp.array2d[wp.vec3]  # displacement of each vertex in each mode, zero where it is held, shape (V, M)
+    members: wp.array2d[int]  # vertices of each ring, -1 padded, shape (R, S)
+    frame_weights: wp.array[wp.vec2]  # in-plane coordinates (p, q) over the rms radius, shape (V,)
+    rest_frame: wp.array[wp.mat33]  # rest ring frame, columns p, q, p x q, shape (R,)
+    stiffness: wp.array3d[Unknowns]  # rows of the three elastic parts' diagonal blocks [N/m], shape (3, R, M)
+    coupling: wp.array3d[Unknowns]  # rows of their blocks to the next ring [N/m], shape (3, R, M)
+    mass: wp.array2d[Unknowns]  # rows [kg], shape (R, M)
+    anchor: wp.array2d[Unknowns]  # rows of the tight springs [N/m], shape (R, M)
+    loose: wp.array[float]  # share of them within the slack, shape (R,)
+    slack: wp.array[float]  # [m], shape (R,)
+    rest_center: wp.array[wp.vec3]  # mean rest position of the ring's vertices [m], shape (R,)
 
 
 @wp.kernel
 def ring_rotations(
-    x: wp.array2d(dtype=wp.vec3),
+    x: wp.array2d[wp.vec3],
     space: RingSpace,
-    rotation: wp.array2d(dtype=wp.mat33),
-    shift: wp.array2d(dtype=wp.vec3),
+    rotation: wp.array2d[wp.mat33],
+    shift: wp.array2d[wp.vec3],
 ):
     """Rotation of each ring since rest, and shift of its centre [m]. Launch (R, W)."""
     r, w = wp.tid()
@@ -129,19 +129,19 @@ def self_contact_row(
 
 @wp.kernel
 def assemble(
-    force: wp.array2d(dtype=wp.vec3),
+    force: wp.array2d[wp.vec3],
     space: RingSpace,
-    rotation: wp.array2d(dtype=wp.mat33),
-    shift: wp.array2d(dtype=wp.vec3),
+    rotation: wp.array2d[wp.mat33],
+    shift: wp.array2d[wp.vec3],
     tissue: Tissue,
     inv_dt2: float,
     regularisation: float,
     records: ContactRecords,
     measured: MeasuredContacts,
     self_contact: SelfContactForce,
-    diagonal: wp.array4d(dtype=float),
-    upper: wp.array4d(dtype=float),
-    rhs: wp.array3d(dtype=float),
+    diagonal: wp.array4d[float],
+    upper: wp.array4d[float],
+    rhs: wp.array3d[float],
 ):
     """One row of the system: mode ``a`` of ring ``r``. Launch (R, M, W)."""
     r, a, w = wp.tid()
@@ -184,10 +184,10 @@ def assemble(
 @wp.kernel
 def prolong(
     space: RingSpace,
-    rotation: wp.array2d(dtype=wp.mat33),
-    solution: wp.array3d(dtype=float),
+    rotation: wp.array2d[wp.mat33],
+    solution: wp.array3d[float],
     largest_move: float,
-    x: wp.array2d(dtype=wp.vec3),
+    x: wp.array2d[wp.vec3],
 ):
     """Move every vertex with its ring, at most ``largest_move`` [m]. Launch (V, W)."""
     i, w = wp.tid()

@@ -52,20 +52,20 @@ class VertexTriangle:
 class ShellElements:
     """Triangles and hinges of one world's wall, shared by all worlds, and what is measured of them in each."""
 
-    triangles: wp.array(dtype=wp.vec3i)  # shape (F,)
-    rest: wp.array(dtype=wp.vec4)  # cotangent of each corner over 2 A [1/m^2], area A [m^2], at rest, shape (F,)
-    edges: wp.array(dtype=wp.vec3i)  # hinge opposite to each corner or -1, shape (F,)
-    hinges: wp.array(dtype=wp.vec4i)  # two opposite vertices, then the edge from start to end, shape (H,)
-    rest_angle: wp.array(dtype=float)  # dihedral angle at rest [rad], shape (H,)
-    hinge_stiffness: wp.array(dtype=float)  # stiffness over flexural rigidity and length [1/m], shape (H,)
-    fan_start: wp.array(dtype=int)  # first triangle of each vertex's fan, shape (V + 1,)
-    fan: wp.array(dtype=VertexTriangle)  # shape (3*F,)
-    fan_corner: wp.array(dtype=int)  # 3 * triangle + corner of each, shape (3*F,)
+    triangles: wp.array[wp.vec3i]  # shape (F,)
+    rest: wp.array[wp.vec4]  # cotangent of each corner over 2 A [1/m^2], area A [m^2], at rest, shape (F,)
+    edges: wp.array[wp.vec3i]  # hinge opposite to each corner or -1, shape (F,)
+    hinges: wp.array[wp.vec4i]  # two opposite vertices, then the edge from start to end, shape (H,)
+    rest_angle: wp.array[float]  # dihedral angle at rest [rad], shape (H,)
+    hinge_stiffness: wp.array[float]  # stiffness over flexural rigidity and length [1/m], shape (H,)
+    fan_start: wp.array[int]  # first triangle of each vertex's fan, shape (V + 1,)
+    fan: wp.array[VertexTriangle]  # shape (3*F,)
+    fan_corner: wp.array[int]  # 3 * triangle + corner of each, shape (3*F,)
     scaled_normal: wp.array2d(
         dtype=wp.vec3
     )  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
-    corner_force: wp.array2d(dtype=wp.vec3)  # force on each corner [N], shape (3*F, W)
-    angle_change: wp.array2d(dtype=float)  # angle of each hinge from rest [rad], shape (H, W)
+    corner_force: wp.array2d[wp.vec3]  # force on each corner [N], shape (3*F, W)
+    angle_change: wp.array2d[float]  # angle of each hinge from rest [rad], shape (H, W)
 
 
 @wp.struct
@@ -125,7 +125,7 @@ def direction_angle(sine: float, cosine: float) -> float:
 
 
 @wp.func
-def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: int) -> float:
+def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) -> float:
     """Dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
     corners = shell.hinges[h]
     start = x[corners[2], w]
@@ -138,7 +138,7 @@ def hinge_angle(shell: ShellElements, x: wp.array2d(dtype=wp.vec3), h: int, w: i
 
 
 @wp.kernel
-def measure_hinges(shell: ShellElements, x: wp.array2d(dtype=wp.vec3)):
+def measure_hinges(shell: ShellElements, x: wp.array2d[wp.vec3]):
     """Angle of every hinge from rest. Launch (H, W)."""
     h, w = wp.tid()
     shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
@@ -153,7 +153,7 @@ def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
 
 
 @wp.kernel
-def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d(dtype=wp.vec3)):
+def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d[wp.vec3]):
     """Normal and corner forces of every triangle, with the bending of its hinges. Launch (F, W).
 
     A hinge turns its triangle by pulling at the corners along the normal: at the corner opposite with its moment over
@@ -217,7 +217,7 @@ def add_hinge(block: VertexBlock, turn: wp.vec3, angle: float, stiffness: float)
 
 @wp.func
 def add_elements(
-    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+    block: VertexBlock, shell: ShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3
 ) -> VertexBlock:
     """Add the terms of the triangles and hinges around vertex ``i`` of world ``w``.
 
@@ -252,7 +252,7 @@ def add_elements(
 
 @wp.func
 def add_forces(
-    block: VertexBlock, shell: ShellElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+    block: VertexBlock, shell: ShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3
 ) -> VertexBlock:
     """Add the measured forces of the triangles around vertex ``i`` of world ``w``."""
     out = block

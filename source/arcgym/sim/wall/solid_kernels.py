@@ -17,11 +17,11 @@ from arcgym.utils import warp_setup  # noqa: F401
 class SolidElements:
     """Tetrahedra of one world's wall, shared by all worlds."""
 
-    tets: wp.array(dtype=wp.vec4i)  # shape (T,)
-    inv_rest: wp.array(dtype=wp.mat33)  # inverse rest edge matrix [1/m], shape (T,)
-    volume: wp.array(dtype=float)  # rest volume [m^3], shape (T,)
-    entry_start: wp.array(dtype=int)  # first entry of each vertex, shape (V + 1,)
-    entry: wp.array(dtype=int)  # 4 * tet + corner, shape (4*T,)
+    tets: wp.array[wp.vec4i]  # shape (T,)
+    inv_rest: wp.array[wp.mat33]  # inverse rest edge matrix [1/m], shape (T,)
+    volume: wp.array[float]  # rest volume [m^3], shape (T,)
+    entry_start: wp.array[int]  # first entry of each vertex, shape (V + 1,)
+    entry: wp.array[int]  # 4 * tet + corner, shape (4*T,)
 
 
 @wp.func
@@ -34,7 +34,7 @@ def shape_gradient(inv_rest: wp.mat33, corner: int) -> wp.vec3:
 
 @wp.func
 def add_elastic(
-    block: VertexBlock, solid: SolidElements, x: wp.array2d(dtype=wp.vec3), i: int, w: int, moduli: wp.vec3
+    block: VertexBlock, solid: SolidElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3
 ) -> VertexBlock:
     """Add the stable neo-Hookean terms of the tets around vertex ``i`` of world ``w``.
 

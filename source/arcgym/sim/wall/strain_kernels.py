@@ -16,12 +16,12 @@ from arcgym.utils import warp_setup  # noqa: F401
 class RestRings:
     """One world's lumen faces and anchor springs at rest, sorted by ring; shared by all worlds."""
 
-    face: wp.array(dtype=wp.vec3i)  # vertices of each lumen face, shape (F,)
-    inverse: wp.array(dtype=wp.vec3)  # (1 / a, b / a, 1 / h) of each face at rest, see face_strain, shape (F,)
-    face_start: wp.array(dtype=int)  # first face of each ring, shape (R + 1,)
-    anchored: wp.array(dtype=int)  # vertices held by a spring, shape (A,)
+    face: wp.array[wp.vec3i]  # vertices of each lumen face, shape (F,)
+    inverse: wp.array[wp.vec3]  # (1 / a, b / a, 1 / h) of each face at rest, see face_strain, shape (F,)
+    face_start: wp.array[int]  # first face of each ring, shape (R + 1,)
+    anchored: wp.array[int]  # vertices held by a spring, shape (A,)
     anchors: Anchors
-    anchor_start: wp.array(dtype=int)  # first anchored vertex of each ring, shape (R + 1,)
+    anchor_start: wp.array[int]  # first anchored vertex of each ring, shape (R + 1,)
 
 
 @wp.func
@@ -42,13 +42,13 @@ def face_strain(a: wp.vec3, b: wp.vec3, c: wp.vec3, inverse: wp.vec3) -> float:
 
 @wp.kernel
 def measure_rings(
-    x: wp.array2d(dtype=wp.vec3),
+    x: wp.array2d[wp.vec3],
     rings: RestRings,
-    anchor_scale: wp.array(dtype=float),
-    strain: wp.array2d(dtype=float),
-    strain_peak: wp.array2d(dtype=float),
-    tension: wp.array2d(dtype=float),
-    tension_peak: wp.array2d(dtype=float),
+    anchor_scale: wp.array[float],
+    strain: wp.array2d[float],
+    strain_peak: wp.array2d[float],
+    tension: wp.array2d[float],
+    tension_peak: wp.array2d[float],
 ):
     """Add this step's largest strain and net anchor pull of each ring to the sums and peaks. Launch (R, W)."""
     r, w = wp.tid()

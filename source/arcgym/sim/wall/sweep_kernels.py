@@ -35,15 +35,15 @@ def sweep_kernels(
 
     @wp.kernel(module="unique")
     def sweep_color(
-        color: wp.array(dtype=int),
+        color: wp.array[int],
         nodes: WallNodes,
         elements: elements_type,
         tissue: Tissue,
-        inertial: wp.array2d(dtype=wp.vec3),
+        inertial: wp.array2d[wp.vec3],
         contacts: WallContacts,
         largest_move: float,
-        force: wp.array2d(dtype=wp.vec3),
-        x: wp.array2d(dtype=wp.vec3),
+        force: wp.array2d[wp.vec3],
+        x: wp.array2d[wp.vec3],
     ):
         """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
         k, w = wp.tid()
@@ -61,11 +61,11 @@ def sweep_kernels(
         nodes: WallNodes,
         elements: elements_type,
         tissue: Tissue,
-        inertial: wp.array2d(dtype=wp.vec3),
+        inertial: wp.array2d[wp.vec3],
         contacts: WallContacts,
         measured: MeasuredContacts,
-        x: wp.array2d(dtype=wp.vec3),
-        force: wp.array2d(dtype=wp.vec3),
+        x: wp.array2d[wp.vec3],
+        force: wp.array2d[wp.vec3],
     ):
         """Total force on every mobile vertex where elements and contacts were measured. Launch (V, W)."""
         i, w = wp.tid()

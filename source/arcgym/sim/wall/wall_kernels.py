@@ -27,8 +27,8 @@ from arcgym.utils import warp_setup  # noqa: F401
 class WallNodes:
     """Vertices of one world's wall, shared by all worlds."""
 
-    mass: wp.array(dtype=float)  # [kg], shape (V,)
-    mobile: wp.array(dtype=int)  # 1 where the vertex moves, shape (V,)
+    mass: wp.array[float]  # [kg], shape (V,)
+    mobile: wp.array[int]  # 1 where the vertex moves, shape (V,)
     anchors: Anchors
 
 
@@ -36,9 +36,9 @@ class WallNodes:
 class Tissue:
     """What may differ from world to world."""
 
-    moduli: wp.array(dtype=wp.vec3)  # shear, second Lame parameter, bending: solid [Pa, Pa, -], shell [N/m, N/m, N m]
-    anchor: wp.array(dtype=float)  # factor on the anchor springs, shape (W,)
-    rigid: wp.array(dtype=int)  # 1 where the whole wall stays where it is, shape (W,)
+    moduli: wp.array[wp.vec3]  # shear, second Lame parameter, bending: solid [Pa, Pa, -], shell [N/m, N/m, N m]
+    anchor: wp.array[float]  # factor on the anchor springs, shape (W,)
+    rigid: wp.array[int]  # 1 where the whole wall stays where it is, shape (W,)
 
 
 @wp.struct
@@ -85,11 +85,11 @@ class WallContacts:
     links: LinkShapes
     law: ContactLaw
     self_contact: SelfContactForce
-    friction: wp.array(dtype=float)  # Coulomb coefficient, shape (W,)
+    friction: wp.array[float]  # Coulomb coefficient, shape (W,)
     dt: float  # physics step [s]
-    x_prev: wp.array2d(dtype=wp.vec3)  # wall positions at the start of the step [m], shape (V, W)
-    body_q: wp.array(dtype=wp.transform)  # link poses at its end, shape (W*L,)
-    body_q_prev: wp.array(dtype=wp.transform)  # and at its start, shape (W*L,)
+    x_prev: wp.array2d[wp.vec3]  # wall positions at the start of the step [m], shape (V, W)
+    body_q: wp.array[wp.transform]  # link poses at its end, shape (W*L,)
+    body_q_prev: wp.array[wp.transform]  # and at its start, shape (W*L,)
 
 
 @wp.struct
@@ -104,7 +104,7 @@ class ContactForce:
 
 
 @wp.func
-def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d(dtype=wp.vec3), w: int) -> ContactForce:
+def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d[wp.vec3], w: int) -> ContactForce:
     """Return the force of the contact in ``slot`` at the positions ``x`` of world ``w``; zero where nothing touches."""
     out = ContactForce()
     row = slot // contacts.records.capacity
@@ -136,9 +136,7 @@ def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d(dtype=wp.v
 
 
 @wp.func
-def add_contact(
-    block: VertexBlock, contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), i: int, w: int
-) -> VertexBlock:
+def add_contact(block: VertexBlock, contacts: WallContacts, x: wp.array2d[wp.vec3], i: int, w: int) -> VertexBlock:
     """Add the contacts listed for vertex ``i`` of world ``w``; friction works on the slip of this step."""
     out = block
     eye = wp.identity(n=3, dtype=float)
@@ -159,13 +157,13 @@ def add_contact(
 class MeasuredContacts:
     """Contacts measured at the start of a wall solve, by record slot; zero where nothing touches."""
 
-    force: wp.array(dtype=wp.vec3)  # on the wall [N]
-    normal: wp.array(dtype=wp.vec3)  # from the scope into the wall
-    stiffness: wp.array(dtype=wp.vec2)  # along the normal and across it [N/m]
+    force: wp.array[wp.vec3]  # on the wall [N]
+    normal: wp.array[wp.vec3]  # from the scope into the wall
+    stiffness: wp.array[wp.vec2]  # along the normal and across it [N/m]
 
 
 @wp.kernel
-def measure_contacts(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), measured: MeasuredContacts):
+def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: MeasuredContacts):
     """Measure every contact at wall positions ``x``. Launch (L, W)."""
     link, w = wp.tid()
     row = w * contacts.links.radius.shape[0] + link
@@ -204,14 +202,14 @@ def add_self_contact(block: VertexBlock, self_contact: SelfContactForce, x: wp.v
 
 @wp.kernel
 def predict(
-    x: wp.array2d(dtype=wp.vec3),
-    v: wp.array2d(dtype=wp.vec3),
+    x: wp.array2d[wp.vec3],
+    v: wp.array2d[wp.vec3],
     nodes: WallNodes,
     tissue: Tissue,
     decay: float,
     dt: float,
-    x_prev: wp.array2d(dtype=wp.vec3),
-    inertial: wp.array2d(dtype=wp.vec3),
+    x_prev: wp.array2d[wp.vec3],
+    inertial: wp.array2d[wp.vec3],
 ):
     """Move mobile vertices on at their damped velocity; the result is also the inertial target. Launch (V, W)."""
     i, w = wp.tid()
@@ -224,7 +222,7 @@ def predict(
 
 
 @wp.kernel
-def finish(x_prev: wp.array2d(dtype=wp.vec3), dt: float, x: wp.array2d(dtype=wp.vec3), v: wp.array2d(dtype=wp.vec3)):
+def finish(x_prev: wp.array2d[wp.vec3], dt: float, x: wp.array2d[wp.vec3], v: wp.array2d[wp.vec3]):
     """Velocity of the step. Launch (V, W)."""
     i, w = wp.tid()
     v[i, w] = (x[i, w] - x_prev[i, w]) / dt

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import warp as wp
 
-from arcgym.sim.contact.contact import ContactSearch
+from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall import coarse_kernels, wall_kernels

@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from arcgym.sim.contact import contact_kernels as kernels
+from arcgym.sim.contact import contact_search_kernels as kernels
+from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import LumenTopology
 
@@ -48,7 +49,7 @@ class ContactSearch:
         self.num_envs, self.device = num_envs, device
         self.link_count, self.vertex_count, self.ring_count = len(radius), len(vertex_ring), len(topology.rings)
         self.surface = self._surface(topology, cfg.search_reach)
-        self.links = kernels.LinkShapes()
+        self.links = LinkShapes()
         self.links.half_length = wp.array(half_length, dtype=float, device=device)
         self.links.radius = wp.array(radius, dtype=float, device=device)
         self.law = self._law(cfg)
@@ -70,15 +71,15 @@ class ContactSearch:
         surface.reach = reach
         return surface
 
-    def _law(self, cfg: ContactCfg) -> kernels.ContactLaw:
-        law = kernels.ContactLaw()
+    def _law(self, cfg: ContactCfg) -> ContactLaw:
+        law = ContactLaw()
         for name in ("stiffness", "hardening", "damping", "slip_velocity", "wall_radius", "search_gap"):
             setattr(law, name, getattr(cfg, name))
         return law
 
-    def _records(self, capacity: int) -> kernels.ContactRecords:
+    def _records(self, capacity: int) -> ContactRecords:
         rows = self.num_envs * self.link_count
-        records = kernels.ContactRecords()
+        records = ContactRecords()
         records.capacity = capacity
         records.count = wp.zeros(rows, dtype=int, device=self.device)
         records.face = wp.zeros(rows * capacity, dtype=int, device=self.device)
@@ -95,42 +96,81 @@ class ContactSearch:
         return records
 
     def update_centers(self, x: wp.array) -> None:
-        """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W)."""
+        """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W), vec3."""
         wp.launch(
-            kernels.ring_centers, (self.num_envs, self.ring_count), [x, self.surface, self.centers], device=self.device
+            kernels.ring_centers,
+            (self.num_envs, self.ring_count),
+            inputs=[x, self.surface],
+            outputs=[self.centers],
+            device=self.device,
         )
 
     def track(self, body_q: wp.array) -> None:
-        """Follow each link's ring; links whose ring is -1 are searched along the whole colon."""
-        shape = (self.num_envs, self.link_count)
+        """Follow each link's ring; links whose ring is -1 are searched along the whole colon.
+
+        Args:
+            body_q: Link poses, shape (W*L,), transform.
+        """
         wp.launch(
             kernels.track_rings,
-            shape,
-            [self.centers, body_q, MAX_RING_SHIFT, self.ring, self.ring_distance],
+            (self.num_envs, self.link_count),
+            inputs=[self.centers, body_q, MAX_RING_SHIFT],
+            outputs=[self.ring, self.ring_distance],
             device=self.device,
         )
 
     def detect(self, x: wp.array, body_q: wp.array) -> None:
-        """Fill the contact records for wall positions ``x`` (V, W) and link poses ``body_q`` (W*L,)."""
+        """Fill the contact records.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            body_q: Link poses, shape (W*L,), transform.
+        """
         self.update_centers(x)
         self.track(body_q)
+        self._select(x, body_q)
+        self._locate(x, body_q)
+        self._list()
+
+    def _select(self, x: wp.array, body_q: wp.array) -> None:
+        """Record the faces near each link."""
         wp.launch(
             kernels.face_distances,
             self.distance.shape,
-            [x, body_q, self.links, self.surface, self.law, self.ring, self.ring_distance, self.distance],
+            inputs=[x, body_q, self.links, self.surface, self.law, self.ring, self.ring_distance],
+            outputs=[self.distance],
             device=self.device,
         )
+        wp.launch(
+            kernels.select_contacts,
+            (self.num_envs, self.link_count),
+            inputs=[self.surface, self.ring, self.distance],
+            outputs=[self.records],
+            device=self.device,
+        )
+
+    def _locate(self, x: wp.array, body_q: wp.array) -> None:
+        """Find point and normal of each record."""
         links = (self.num_envs, self.link_count)
-        args = [self.surface, self.ring, self.distance, self.records]
-        wp.launch(kernels.select_contacts, links, args, device=self.device)
-        args = [x, body_q, self.links, self.surface, self.records]
-        wp.launch(kernels.locate_contacts, (*links, self.records.capacity), args, device=self.device)
-        wp.launch(kernels.use_directions_as_normals, links, [self.links, self.records], device=self.device)
+        wp.launch(
+            kernels.locate_contacts,
+            (*links, self.records.capacity),
+            inputs=[x, body_q, self.links, self.surface],
+            outputs=[self.records],
+            device=self.device,
+        )
+        wp.launch(
+            kernels.use_directions_as_normals, links, inputs=[self.links], outputs=[self.records], device=self.device
+        )
+
+    def _list(self) -> None:
+        """List the records of each vertex and of each ring."""
         self.records.vertex_head.fill_(-1)
         self.records.ring_head.fill_(-1)
         wp.launch(
             kernels.build_contact_lists,
             self.num_envs,
-            [self.vertex_ring, self.link_count, self.records],
+            inputs=[self.vertex_ring, self.link_count],
+            outputs=[self.records],
             device=self.device,
         )
