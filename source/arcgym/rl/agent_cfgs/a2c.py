@@ -1,0 +1,50 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Configuration of advantage actor-critic."""
+
+from __future__ import annotations
+
+from arcgym.rl.runner_cfg import RslRlPpoAlgorithmCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class RslRlA2cAlgorithmCfg(RslRlPpoAlgorithmCfg):
+    """A2C (Mnih et al. 2016) with the settings that Stable-Baselines3 made common."""
+
+    class_name: str = "arcgym.rl.algorithms.a2c:A2C"
+    """Algorithm class."""
+
+    num_learning_epochs: int = 1
+    """Must be 1."""
+
+    num_mini_batches: int = 1
+    """Must be 1."""
+
+    learning_rate: float = 7.0e-4
+    """Learning rate. Lower it for rollouts of few worlds."""
+
+    schedule: str = "fixed"
+    """``adaptive`` has no effect worth having: the KL divergence is measured before the one step."""
+
+    lam: float = 1.0
+    """Trace decay; 1 is the n-step return of the original. Lower it for long rollouts."""
+
+    use_clipped_value_loss: bool = False
+    """Whether the value step is clipped; the original's is not."""
+
+    value_loss_coef: float = 0.5
+    """Weight of the value loss."""
+
+    entropy_coef: float = 0.0
+    """Weight of the entropy bonus."""
+
+    max_grad_norm: float = 0.5
+    """Gradient clipping by norm."""
+
+    optimizer: str = "rmsprop"
+    """Optimizer of the original."""
+
+    optimizer_eps: float = 1.0e-5
+    """Term that keeps the optimizer's division finite. Raise it when the first steps are too large."""

@@ -1,0 +1,32 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Agent configurations for the pixel tasks: one small encoder, a privileged critic."""
+
+from __future__ import annotations
+
+from arcgym.rl import (
+    CnnCfg,
+    GaussianDistributionCfg,
+    RslRlCnnModelCfg,
+    RslRlMlpModelCfg,
+    RslRlOnPolicyRunnerCfg,
+    RslRlPpoAlgorithmCfg,
+)
+
+ENCODER = CnnCfg(output_channels=[8, 8], kernel_size=[4, 3], stride=[2, 2], activation="relu")
+
+
+def actor_cfg() -> RslRlCnnModelCfg:
+    return RslRlCnnModelCfg(hidden_dims=[32], cnn_cfg=ENCODER, distribution_cfg=GaussianDistributionCfg(init_std=0.6))
+
+
+def runner_cfg(**changes) -> RslRlOnPolicyRunnerCfg:
+    settings = {
+        "num_steps_per_env": 8,
+        "actor": actor_cfg(),
+        "critic": RslRlMlpModelCfg(hidden_dims=[32]),
+        "algorithm": RslRlPpoAlgorithmCfg(learning_rate=3e-3, schedule="fixed", gamma=0.8, entropy_coef=0.0),
+        "init_at_random_ep_len": False,
+    }
+    return RslRlOnPolicyRunnerCfg(**(settings | changes))
