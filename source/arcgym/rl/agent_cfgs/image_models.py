@@ -1,0 +1,40 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Configurations of image models with augmentation or memory."""
+
+from __future__ import annotations
+
+from arcgym.rl.runner_cfg import RslRlCnnModelCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class AugmentedCnnModelCfg(RslRlCnnModelCfg):
+    """CNN whose images move at random while it learns."""
+
+    class_name: str = "arcgym.rl.networks.augmented_cnn:AugmentedCnnModel"
+    """Model class."""
+
+    shift: int = 4
+    """Largest random shift [px]; 0 switches it off. A twentieth of the image's edge is usual."""
+
+
+@configclass
+class RecurrentCnnModelCfg(AugmentedCnnModelCfg):
+    """CNN and recurrent layer. Give it single frames rather than a stack: it remembers by itself."""
+
+    class_name: str = "arcgym.rl.networks.recurrent_cnn:RecurrentCnnModel"
+    """Model class."""
+
+    shift: int = 0
+    """Largest random shift [px], drawn anew for every step of a sequence."""
+
+    rnn_type: str = "lstm"
+    """``lstm`` or ``gru``; a GRU has three quarters of the weights."""
+
+    rnn_hidden_dim: int = 256
+    """Width of the hidden state."""
+
+    rnn_num_layers: int = 1
+    """Recurrent layers."""

@@ -1,0 +1,120 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import pytest
+import torch
+from pixel_tasks import RememberTheSide, mean_reward
+from rsl_rl.utils import split_and_pad_trajectories
+from small_agents import ENCODER, runner_cfg
+from tensordict import TensorDict
+
+from arcgym.rl import GaussianDistributionCfg, OnPolicyRunner, export_policy_as_jit, export_policy_as_onnx
+from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
+from arcgym.rl.networks.recurrent_cnn import RecurrentCnnModel
+from arcgym.utils.threads import one_thread
+
+CNN = {"output_channels": [4], "kernel_size": 4, "stride": 2}
+KINDS = pytest.mark.parametrize("kind, layers", [("lstm", 1), ("gru", 2)])
+GROUPS = pytest.mark.parametrize("groups", [("policy",), ("policy", "proprio")])
+
+
+def make_obs(*batch: int) -> TensorDict:
+    torch.manual_seed(0)
+    images = torch.randint(0, 256, (*batch, 1, 12, 12), dtype=torch.uint8)
+    return TensorDict({"policy": images, "proprio": torch.randn(*batch, 3)}, batch_size=batch)
+
+
+def make_model(kind: str = "lstm", layers: int = 1, groups=("policy", "proprio")) -> RecurrentCnnModel:
+    torch.manual_seed(1)
+    recurrent = {"rnn_type": kind, "rnn_hidden_dim": 5, "rnn_num_layers": layers}
+    return RecurrentCnnModel(make_obs(2), {"actor": list(groups)}, "actor", 2, [8], cnn_cfg=CNN, **recurrent)
+
+
+@KINDS
+def test_learning_on_padded_pieces_equals_acting(kind, layers):
+    """Three worlds, four steps; world 1 is done after its second, so its memory starts again there."""
+    model, obs = make_model(kind, layers), make_obs(4, 3)
+    dones = torch.zeros(4, 3, 1, dtype=torch.uint8)
+    dones[1, 1] = 1
+    acted = []
+    with torch.inference_mode():
+        for step in range(4):
+            acted.append(model(obs[step]))
+            model.reset(dones[step, :, 0])
+    pieces, masks = split_and_pad_trajectories(obs, dones)
+    zeros = torch.zeros(layers, masks.shape[1], 5)
+    learned = model(pieces, masks=masks, hidden_state=(zeros, zeros) if kind == "lstm" else zeros)
+    torch.testing.assert_close(learned, torch.stack(acted))
+
+
+def test_reset_forgets_only_the_worlds_that_are_done():
+    model, obs = make_model(), make_obs(2)
+    with torch.no_grad():
+        first = model(obs)
+        model.reset(torch.tensor([1, 0]))
+        again = model(obs)
+    torch.testing.assert_close(again[0], first[0])
+    assert not torch.allclose(again[1], first[1])
+
+
+@KINDS
+@GROUPS
+def test_jit_equals_the_policy(tmp_path, kind, layers, groups):
+    model, obs = make_model(kind, layers, groups).eval(), make_obs(3, 4)
+    policy = torch.jit.load(export_policy_as_jit(model, tmp_path))
+    vectors = obs["proprio"] if "proprio" in groups else torch.zeros(3, 4, 0)
+    with torch.no_grad():
+        expected = torch.stack([model(obs[step]) for step in range(3)])
+        got = torch.stack([policy(vectors[step], [obs["policy"][step]]) for step in range(3)])
+        torch.testing.assert_close(got, expected)
+        policy.reset()
+        torch.testing.assert_close(policy(vectors[0], [obs["policy"][0]]), expected[0])
+
+
+@KINDS
+@GROUPS
+def test_onnx_equals_the_policy(tmp_path, kind, layers, groups):
+    reference = pytest.importorskip("onnx.reference")
+    model, obs = make_model(kind, layers, groups).eval(), make_obs(3, 4)
+    session = reference.ReferenceEvaluator(str(export_policy_as_onnx(model, tmp_path)))
+    state = torch.zeros(4, *model.as_onnx().state_shape).numpy()
+    for step in range(3):
+        inputs = {"policy": obs["policy"][step].numpy(), "state_in": state}
+        inputs |= {"obs": obs["proprio"][step].numpy()} if "proprio" in groups else {}
+        actions, state = session.run(None, inputs)
+        with torch.no_grad():
+            torch.testing.assert_close(torch.from_numpy(actions), model(obs[step]), rtol=1e-4, atol=1e-5)
+
+
+def test_unknown_layer_is_refused():
+    with pytest.raises(ValueError, match="'rnn', expected one of: lstm, gru"):
+        make_model("rnn")
+
+
+@pytest.mark.parametrize("kind", ["lstm", "gru"])
+@one_thread()
+def test_remembers_the_side(kind):
+    torch.manual_seed(0)
+    actor = RecurrentCnnModelCfg(
+        hidden_dims=[16],
+        cnn_cfg=ENCODER,
+        rnn_type=kind,
+        rnn_hidden_dim=16,
+        distribution_cfg=GaussianDistributionCfg(init_std=0.6),
+    )
+    cfg = runner_cfg(actor=actor, num_steps_per_env=10)
+    runner = OnPolicyRunner(RememberTheSide(128), cfg.to_dict(), device="cpu")
+    runner.learn(25)
+    policy = runner.get_inference_policy()
+    policy.reset()
+    assert mean_reward(RememberTheSide(64, seed=1), policy, 50) > 0.7
+
+
+@one_thread()
+def test_without_memory_the_side_is_lost():
+    torch.manual_seed(0)
+    runner = OnPolicyRunner(RememberTheSide(128), runner_cfg(num_steps_per_env=10).to_dict(), device="cpu")
+    runner.learn(15)
+    assert abs(mean_reward(RememberTheSide(64, seed=1), runner.get_inference_policy(), 50)) < 0.15
