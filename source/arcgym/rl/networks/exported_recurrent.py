@@ -58,12 +58,11 @@ def _step_module(rnn: nn.Module) -> nn.Module:
 class JitRecurrentPolicy(_RecurrentPolicy):
     """TorchScript form, with the signature of the CNN policies; keeps the state of N worlds between calls."""
 
-    state: torch.Tensor
-
     def __init__(self, model: Any):
         """Copy the model; the state starts at zero."""
         super().__init__(model)
         self.step = _step_module(self.rnn)
+        self.state: torch.Tensor
         self.register_buffer("state", torch.zeros(1, *self.state_shape), persistent=False)
 
     def forward(self, obs_1d: torch.Tensor, obs_2d: list[torch.Tensor]) -> torch.Tensor:
