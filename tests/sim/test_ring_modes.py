@@ -12,7 +12,7 @@ from arcgym.anatomy.shell import ShellMesh, mid_surface
 from arcgym.assets.materials import shell_moduli
 from arcgym.assets.shell_geometry import shell_geometry
 from arcgym.sim.wall.ring_modes import MODES, ElasticPart, RingModes, ring_modes
-from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.wall.shell_elements import bending_bound, stretching_stiffness
 from arcgym.sim.wall.solid_elements import tet_stiffness
 
 TISSUE = 1.0e6, 4.0e6
@@ -29,7 +29,7 @@ def shell_parts(shell: ShellMesh) -> list[ElasticPart]:
     """Stretching and bending of a shell 2 mm thick."""
     geometry = shell_geometry(shell.points, shell.triangles)
     stretching = stretching_stiffness(shell.points, geometry)
-    bending = bending_stiffness(shell.points, geometry)
+    bending = bending_bound(shell.points, geometry)
     moduli = shell_moduli(1.0e6, 0.4, 0.002)
     return [
         *(ElasticPart(shell.triangles, value * k) for value, k in zip(moduli, stretching, strict=False)),

@@ -4,15 +4,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import warp as wp
 from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
+from arcgym.anatomy.generator.wall import tube_triangles
 from arcgym.anatomy.shell import mid_surface, wall_thickness
 from arcgym.assets.materials import shell_moduli
-from arcgym.assets.shell_geometry import fold_angles, fold_gradients, shell_geometry
+from arcgym.assets.shell_geometry import fold_angles, fold_gradients, polygon_factor, shell_geometry
 from arcgym.sim import Simulation
 from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
 
@@ -28,13 +31,57 @@ def folded(angle: float) -> np.ndarray:
     return points
 
 
-def test_a_square_has_one_hinge_of_weight_c_3_l2_over_areas() -> None:
+def test_a_square_has_one_hinge_coupled_with_itself_alone() -> None:
     geometry = shell_geometry(SQUARE, TRIANGLES)
     assert sorted(geometry.hinges[0, 2:]) == [0, 2] and sorted(geometry.hinges[0, :2]) == [1, 3]
     np.testing.assert_allclose(geometry.area, 0.5)
-    from arcgym.assets.shell_geometry import BENDING_WEIGHT
+    np.testing.assert_allclose(geometry.coupling[0, 0], 2.0 / (4 * 0.5) + 2.0 / (4 * 0.5))  # l^2 / 4A of both sides
+    np.testing.assert_array_equal(geometry.coupling[0, 1:], 0.0)
 
-    np.testing.assert_allclose(geometry.weight, BENDING_WEIGHT * 3.0 * 2.0 / 1.0)
+
+def sheet(cells: int) -> tuple[np.ndarray, np.ndarray]:
+    """Flat grid of ``cells`` x ``cells`` rectangles of 1 x 1.25, all diagonals the same way."""
+    x, y = np.meshgrid(np.arange(cells + 1.0), 1.25 * np.arange(cells + 1.0), indexing="ij")
+    points = np.stack([x, y, np.zeros_like(x)], axis=2).reshape(-1, 3)
+    low = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
+    right, up = low + cells + 1, low + 1
+    return points, np.concatenate([np.stack([low, right, right + 1], 1), np.stack([low, right + 1, up], 1)])
+
+
+@pytest.mark.parametrize(
+    ("bent", "energy"),
+    [
+        (lambda x, y: 0.5 * x**2, 1.0),
+        (lambda x, y: 0.5 * y**2, 1.0),
+        (lambda x, y: x * y, 2.0 * (1.0 - 0.3)),
+        (lambda x, y: 0.5 * (x**2 + y**2), 2.0 * (1.0 + 0.3)),
+    ],
+)
+def test_constant_curvature_costs_the_energy_of_a_plate(bent: Any, energy: float) -> None:
+    # Twice the energy over D and area: kxx^2 + kyy^2 + 2 nu kxx kyy + 2 (1 - nu) kxy^2, with nu = 0.3.
+    points, triangles = sheet(8)
+    geometry = shell_geometry(points, triangles)
+    slope = fold_gradients(points, geometry.hinges)[:, :, 2]
+    angle = (slope * bent(points[:, 0], points[:, 1])[geometry.hinges]).sum(axis=1)
+    moment = ((geometry.coupling @ [0.7, 0.3]) * angle[geometry.coupled]).sum(axis=1)
+    middle = points[geometry.hinges[:, 2:], :2].mean(axis=1) / [1.0, 1.25]
+    inner = ((middle >= 2.0) & (middle < 6.0)).all(axis=1)  # the hinges of 4 x 4 cells
+    assert (moment * angle)[inner].sum() / (16 * 1.25) == pytest.approx(energy, rel=1e-6)
+
+
+@pytest.mark.parametrize("bars", [8, 12, 24])
+def test_an_ovalised_polygon_has_the_energy_of_a_circle(bars: int) -> None:
+    # Rigid bars keep their length under w cos 2p outwards and v sin 2p around if v tan 2d = -w tan d, d = pi / bars.
+    d, p = np.pi / bars, 2 * np.pi * np.arange(bars) / bars
+    out, around = np.stack([np.cos(p), np.sin(p)], 1), np.stack([-np.sin(p), np.cos(p)], 1)
+    w, v = 1e-5, -1e-5 * np.tan(d) / np.tan(2 * d)
+    turn = []
+    for points in (out, out + w * np.cos(2 * p)[:, None] * out + v * np.sin(2 * p)[:, None] * around):
+        bar = np.roll(points, -1, axis=0) - points
+        turn.append(np.angle((bar[:, 0] + 1j * bar[:, 1]) / np.roll(bar[:, 0] + 1j * bar[:, 1], 1)))
+    stiffness = polygon_factor(np.array([2 * d]))[0] / (2 * np.sin(d))  # D = 1 over the length of a bar
+    energy = 0.5 * stiffness * ((turn[1] - turn[0]) ** 2).sum()
+    assert energy == pytest.approx(0.5 * np.pi * (3 * w) ** 2, rel=1e-3)  # D / 2 int (3 w cos 2p)^2 dp
 
 
 @pytest.mark.parametrize("angle", [-0.7, 0.0, 0.4])
@@ -76,15 +123,11 @@ def test_bending_a_cylinder_costs_half_d_over_r_squared_per_area() -> None:
     sectors, radius = 64, 0.5
     angle = np.arange(sectors) * 2 * np.pi / sectors
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle)], 1)
-    points = np.concatenate([np.column_stack([ring, np.full(sectors, z)]) for z in (0.0, 0.05)])
-    near, after = np.arange(sectors), (np.arange(sectors) + 1) % sectors
-    triangles = np.concatenate(
-        [np.stack([near, after, sectors + near], 1), np.stack([after, sectors + after, sectors + near], 1)]
-    )
-    geometry = shell_geometry(points, triangles)
-    energy = 0.5 * (geometry.weight * geometry.rest_angle**2).sum()
-    expected = geometry.area.sum() / (2.0 * radius**2)
-    assert energy == pytest.approx(expected, rel=0.1)  # the weight is calibrated: 0.36 for 1/3
+    points = np.concatenate([np.column_stack([ring, np.full(sectors, z)]) for z in (0.0, 0.05, 0.1)])
+    geometry = shell_geometry(points, tube_triangles(3, sectors))
+    moment = (geometry.coupling[..., 0] * geometry.rest_angle[geometry.coupled]).sum(axis=1)  # nu = 0
+    energy = 0.5 * (moment * geometry.rest_angle).sum()
+    assert energy == pytest.approx(geometry.area.sum() / (2.0 * radius**2), rel=0.02)
 
 
 @pytest.fixture(scope="module")
@@ -106,14 +149,13 @@ def test_kernel_force_is_minus_stiffness_times_small_displacement(sim: Simulatio
     geometry = shell_geometry(shell.points, shell.triangles)
     moduli = sim.colon.moduli(*sim.colon.elasticity())
     shear, dilation = stretching_stiffness(shell.points, geometry)
-    bending = bending_stiffness(shell.points, geometry)
+    mu, lam, rigidity = moduli
+    bending = bending_stiffness(shell.points, geometry, nu=lam / (lam + 2.0 * mu))
     move = 1e-6 * np.random.default_rng(0).normal(size=shell.points.shape)
     expected = np.zeros_like(move)
-    for elements, stiffness in (
-        (shell.triangles, moduli[0] * shear + moduli[1] * dilation),
-        (geometry.hinges, moduli[2] * bending),
-    ):
-        np.add.at(expected, elements, -np.einsum("taibj,tbj->tai", stiffness, move[elements]))
+    np.add.at(expected, shell.triangles, -np.einsum("taibj,tbj->tai", mu * shear + lam * dilation, move[shell.triangles]))
+    others = move[geometry.hinges[geometry.coupled]]
+    np.add.at(expected, geometry.hinges, -rigidity * np.einsum("hkaibj,hkbj->hai", bending, others))
     rest = shell.points.astype(float)
     force = elastic_force(sim, rest + move) - elastic_force(sim, rest)
     mobile = sim.colon.mobile()

@@ -8,12 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-BENDING_WEIGHT = 0.36
-"""Share c in the hinge stiffness c D 3 L^2 / (A1 + A2) (weights of Grinspun et al. 2003). A grid of right-angled
-triangles bends about its edges with 1/3; the twist it lacks is made up for by a little more, chosen by the row
-``wall_ring`` of scripts/benchmarks/fidelity.py."""
-
-
 @dataclass(frozen=True)
 class ShellGeometry:
     """Rest geometry of a shell's F triangles and H hinges."""
@@ -34,8 +28,13 @@ class ShellGeometry:
     """Length of the edge [m], shape (H,)."""
     rest_angle: np.ndarray
     """Dihedral angle [rad], shape (H,)."""
-    weight: np.ndarray
-    """Hinge stiffness over flexural rigidity, c 3 L^2 / (A1 + A2), shape (H,)."""
+    coupled: np.ndarray
+    """Each hinge, then the other two of either of its triangles, or itself where they have none there, shape (H, 5)."""
+    coupling: np.ndarray
+    """Derivative of each hinge's moment by the angles of its ``coupled``, over flexural rigidity: the part that 1 - nu
+    scales and the part that nu scales, shape (H, 5, 2). See :func:`bending_coupling`."""
+    bound: np.ndarray
+    """Largest stiffness of each hinge over flexural rigidity that any pattern of angles can ask for, shape (H,)."""
 
 
 def shell_geometry(points: np.ndarray, triangles: np.ndarray) -> ShellGeometry:
@@ -52,9 +51,92 @@ def shell_geometry(points: np.ndarray, triangles: np.ndarray) -> ShellGeometry:
     length = np.linalg.norm(edge, axis=1)
     opposite = points[hinges[:, :2]] - points[hinges[:, 2:3]]
     foot = np.einsum("hki,hi->hk", opposite, edge) / length[:, None] ** 2
-    weight = BENDING_WEIGHT * 3.0 * length**2 / area[sides].sum(axis=1)
     angle = fold_angles(points, hinges)
-    return ShellGeometry(triangles, np.linalg.inv(edges), area, hinges, sides, foot, length, angle, weight)
+    own = hinge_of_edges(triangles, hinges, sides)
+    coupled, coupling = bending_coupling(points, triangles, area, own, polygon_factor(angle))
+    bound = np.abs(coupling).mean(axis=2).sum(axis=1)  # nu is at most 1/2
+    return ShellGeometry(
+        triangles, np.linalg.inv(edges), area, hinges, sides, foot, length, angle, coupled, coupling, bound
+    )
+
+
+def polygon_factor(angle: np.ndarray) -> np.ndarray:
+    """Factor on the stiffness of hinges with a dihedral angle at rest that lets a ring ovalise as a circle would.
+
+    A regular polygon of N rigid bars whose hinges stand at 2 d = 2 pi / N turns them less when it ovalises (n = 2,
+    without stretching) than a circle of the same radius bends: by r = (3 - 4 sin^2 d) / (3 cos d), from the kinematics
+    of the bars. Its energy is that of the circle times r^2 sin d / d; with twelve bars 0.88. Own derivation.
+
+    Args:
+        angle: Dihedral angle at rest [rad], shape (H,).
+
+    Returns:
+        d / (r^2 sin d), shape (H,); at least 1, and constant beyond 60 degrees, a hexagon.
+    """
+    d = np.clip(0.5 * np.abs(angle), 1.0e-4, np.pi / 6.0)
+    return d / np.sin(d) * (3.0 * np.cos(d) / (3.0 - 4.0 * np.sin(d) ** 2)) ** 2
+
+
+def bending_coupling(
+    points: np.ndarray, triangles: np.ndarray, area: np.ndarray, own: np.ndarray, factor: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Bending energy of a Kirchhoff shell as a quadratic form of the hinges' angles.
+
+    The shape operator of a triangle is that of its three hinges, S = sum_i a_i / (2 A l_i) t_i t_i^T, with the angle
+    a_i from rest, the length l_i and the edge t_i turned by a right angle in its plane (Gingold et al. 2004, "A discrete
+    model for inelastic deformation of thin shells"; Grinspun et al. 2006, "Computing discrete shape operators on
+    general meshes"). Its energy is D A / 2 ((1 - nu) S:S + nu (tr S)^2). On a grid whose diagonals all run the same way
+    it is that of the plate for every constant curvature.
+
+    Args:
+        points: Rest positions [m], shape (V, 3).
+        triangles: Vertices, shape (F, 3).
+        area: [m^2], shape (F,).
+        own: Hinge opposite to each corner, or -1, shape (F, 3).
+        factor: Factor on the stiffness of each hinge, shape (H,).
+
+    Returns:
+        ``coupled`` and ``coupling`` of :class:`ShellGeometry`.
+    """
+    corners = points[triangles]
+    edge = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)  # opposite to each corner
+    length = np.linalg.norm(edge, axis=2)
+    both = length[:, :, None] * length[:, None, :]
+    product = np.einsum("fai,fbi->fab", edge, edge)
+    parts = np.stack([product**2 / both, both], axis=3) / (4.0 * area[:, None, None, None])
+    root = np.where(own >= 0, np.sqrt(factor)[own], 0.0)
+    parts *= (root[:, :, None] * root[:, None, :])[..., None]
+    count = len(factor)
+    coupled = np.repeat(np.arange(count)[:, None], 5, axis=1)
+    coupling = np.zeros((count, 5, 2))
+    place = np.ones(count, int)
+    for corner in range(3):
+        hinge = own[:, corner]
+        inner = np.flatnonzero(hinge >= 0)
+        hinge = hinge[inner]
+        np.add.at(coupling[:, 0], hinge, parts[inner, corner, corner])
+        # A hinge meets its first triangle and its second in different corners of this loop, or in order within one.
+        order = np.argsort(hinge, kind="stable")
+        hinge, inner = hinge[order], inner[order]
+        again = np.r_[False, hinge[1:] == hinge[:-1]]
+        for step in (1, 2):
+            other = (corner + step) % 3
+            slot = place[hinge] + 2 * again + step - 1
+            partner = own[inner, other]
+            coupled[hinge, slot] = np.where(partner >= 0, partner, hinge)
+            coupling[hinge, slot] = parts[inner, corner, other]
+        np.add.at(place, hinge, 2)
+    return coupled, coupling
+
+
+def hinge_of_edges(triangles: np.ndarray, hinges: np.ndarray, sides: np.ndarray) -> np.ndarray:
+    """Hinge at the edge opposite to each corner of each triangle, -1 at a border, shape (F, 3)."""
+    out = np.full(triangles.shape, -1, np.int32)
+    for side in range(2):
+        triangle = sides[:, side]
+        corner = triangles[triangle] == hinges[:, side : side + 1]
+        out[triangle, corner.argmax(axis=1)] = np.arange(len(hinges))
+    return out
 
 
 def _hinges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

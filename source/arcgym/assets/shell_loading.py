@@ -42,6 +42,6 @@ def add_shell(builder: ModelBuilder, shell: ShellMesh, density: float, moduli: t
     builder.add_edges(
         *(first + geometry.hinges.T),
         rest=geometry.rest_angle.tolist(),
-        edge_ke=(moduli[2] * geometry.weight / length).tolist(),  # Newton multiplies by the edge's length
+        edge_ke=(moduli[2] * geometry.coupling[:, 0, 0] / length).tolist(),  # Newton multiplies by the edge's length
         edge_kd=[0.0] * len(length),
     )

@@ -15,7 +15,7 @@ from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
 from arcgym.sim.wall.ring_modes import ElasticPart, RingModes, ring_modes
-from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
+from arcgym.sim.wall.shell_elements import bending_bound, stretching_stiffness
 from arcgym.sim.wall.solid_elements import tet_stiffness
 from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
 from arcgym.sim.wall.wall_topology import LumenTopology, lumen_topology
@@ -62,7 +62,7 @@ def _solid(builder: newton.ModelBuilder, points: np.ndarray) -> SolidParameters:
 def _shell(shell: ShellMesh) -> ShellParameters:
     geometry = shell_geometry(shell.points, shell.triangles)
     shear, dilation = stretching_stiffness(shell.points, geometry)
-    bending = bending_stiffness(shell.points, geometry)
+    bending = bending_bound(shell.points, geometry)
     triangles = shell.triangles
     parts = ElasticPart(triangles, shear), ElasticPart(triangles, dilation), ElasticPart(geometry.hinges, bending)
     return ShellParameters(geometry, parts)

@@ -29,7 +29,23 @@ def stretching_stiffness(points: np.ndarray, geometry: ShellGeometry) -> tuple[n
     return area * shear, area * dilation
 
 
-def bending_stiffness(points: np.ndarray, geometry: ShellGeometry) -> np.ndarray:
-    """Rest stiffness of the hinges for unit flexural rigidity [N/m per N m], shape (H, 4, 3, 4, 3)."""
+def bending_stiffness(points: np.ndarray, geometry: ShellGeometry, nu: float) -> np.ndarray:
+    """Rest stiffness of the bending for unit flexural rigidity, by pairs of hinges [N/m per N m].
+
+    Args:
+        points: Rest positions [m], shape (V, 3).
+        geometry: Rest geometry of H hinges.
+        nu: Poisson's ratio.
+
+    Returns:
+        Stiffness between the four vertices of each hinge and those of each of its ``coupled``, shape (H, 5, 4, 3, 4, 3).
+    """
     g = fold_gradients(points, geometry.hinges)
-    return np.einsum("h,hai,hbj->haibj", geometry.weight, g, g)
+    stiffness = geometry.coupling @ np.array([1.0 - nu, nu])
+    return np.einsum("hk,hai,hkbj->hkaibj", stiffness, g, g[geometry.coupled])
+
+
+def bending_bound(points: np.ndarray, geometry: ShellGeometry) -> np.ndarray:
+    """Stiffness that is nowhere below that of the bending, hinge by hinge, shape (H, 4, 3, 4, 3)."""
+    g = fold_gradients(points, geometry.hinges)
+    return np.einsum("h,hai,hbj->haibj", geometry.bound, g, g)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.assets.shell_geometry import ShellGeometry
+from arcgym.assets.shell_geometry import ShellGeometry, hinge_of_edges
 
 
 def triangle_rest(geometry: ShellGeometry) -> np.ndarray:
@@ -21,14 +21,9 @@ def triangle_rest(geometry: ShellGeometry) -> np.ndarray:
     return np.column_stack([-products[:, 1, 2], -products[:, 2, 0], -products[:, 0, 1], geometry.area])
 
 
-def hinge_of_edges(geometry: ShellGeometry) -> np.ndarray:
+def own_hinges(geometry: ShellGeometry) -> np.ndarray:
     """Hinge at the edge opposite to each corner of each triangle, -1 at a border, shape (F, 3)."""
-    out = np.full(geometry.triangles.shape, -1, np.int32)
-    for side in range(2):
-        triangle = geometry.sides[:, side]
-        corner = geometry.triangles[triangle] == geometry.hinges[:, side : side + 1]
-        out[triangle, corner.argmax(axis=1)] = np.arange(len(geometry.hinges))
-    return out
+    return hinge_of_edges(geometry.triangles, geometry.hinges, geometry.sides)
 
 
 def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
@@ -44,7 +39,7 @@ def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) ->
     """
     fan: Any = np.zeros(len(corner), dtype)
     owner, turned = corner // 3, (corner[:, None] + np.arange(3)) % 3  # corners of the triangle, this one first
-    vertex, rest, edges = geometry.triangles[owner[:, None], turned], triangle_rest(geometry), hinge_of_edges(geometry)
+    vertex, rest, edges = geometry.triangles[owner[:, None], turned], triangle_rest(geometry), own_hinges(geometry)
     fan["first"], fan["second"], fan["index"] = vertex[:, 1], vertex[:, 2], owner
     fan["rest"] = np.column_stack([rest[owner[:, None], turned], rest[owner, 3]])
     for name, edge, start in (("rim", 0, 1), ("spoke", 2, 0)):
@@ -56,6 +51,6 @@ def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) ->
         foot = geometry.foot[hinge[:, None], np.stack([1 - beyond, beyond], axis=1)]
         backwards = geometry.hinges[hinge, 2] != vertex[:, start]
         foot[backwards] = 1.0 - foot[backwards]
-        stiffness = np.where(hinge >= 0, geometry.weight[hinge], 0.0)
+        stiffness = np.where(hinge >= 0, geometry.bound[hinge], 0.0)
         fan[f"{name}_shape"] = np.column_stack([geometry.length[hinge], foot, stiffness])
     return fan

@@ -7,7 +7,8 @@ Membrane: compressible neo-Hookean, mu / 2 (I - 2 - 2 ln J) + lambda / 2 (ln J)^
 Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, section 6.4), with plane-stress moduli, and a term
 b mu / 6 (I - 2)^3 that stiffens large stretches. Its area cannot shrink to nothing, as that of the St. Venant-Kirchhoff
 membrane of Newton's ``SolverVBD`` can; at small strain the two are the same.
-Bending: discrete shells (Grinspun et al. 2003, "Discrete Shells", SCA), with the Gauss-Newton part of the Hessian.
+Bending: the triangles' shape operators from their hinges (:func:`arcgym.assets.shell_geometry.bending_coupling`), with
+the Gauss-Newton part of the Hessian.
 
 What several vertices need is measured once a step for each element: the normals and corner forces of the triangles, and
 the angles of the hinges. A hinge's angle is then linear in the moves of its vertices for the rest of the step, which
@@ -57,15 +58,16 @@ class ShellElements:
     edges: wp.array[wp.vec3i]  # hinge opposite to each corner or -1, shape (F,)
     hinges: wp.array[wp.vec4i]  # two opposite vertices, then the edge from start to end, shape (H,)
     rest_angle: wp.array[float]  # dihedral angle at rest [rad], shape (H,)
-    hinge_stiffness: wp.array[float]  # stiffness over flexural rigidity and length [1/m], shape (H,)
+    coupled: wp.array2d[int]  # each hinge, then the other two of either of its triangles, shape (H, 5)
+    coupling: wp.array2d[wp.vec2]  # moment by their angles over rigidity: times 1 - nu, times nu, shape (H, 5)
+    inverse_length: wp.array[float]  # [1/m], shape (H,)
     fan_start: wp.array[int]  # first triangle of each vertex's fan, shape (V + 1,)
     fan: wp.array[VertexTriangle]  # shape (3*F,)
     fan_corner: wp.array[int]  # 3 * triangle + corner of each, shape (3*F,)
-    scaled_normal: wp.array2d(
-        dtype=wp.vec3
-    )  # normal over its squared length, normal = edge x edge [1/m^2], shape (F, W)
+    scaled_normal: wp.array2d[wp.vec3]  # edge x edge over its squared length [1/m^2], shape (F, W)
     corner_force: wp.array2d[wp.vec3]  # force on each corner [N], shape (3*F, W)
     angle_change: wp.array2d[float]  # angle of each hinge from rest [rad], shape (H, W)
+    moment: wp.array2d[float]  # of each hinge, over flexural rigidity, shape (H, W)
 
 
 @wp.struct
@@ -144,12 +146,25 @@ def measure_hinges(shell: ShellElements, x: wp.array2d[wp.vec3]):
     shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
 
 
+@wp.kernel
+def measure_moments(shell: ShellElements, tissue: Tissue):
+    """Moment of every hinge, from its own angle and those of the hinges it is coupled with. Launch (H, W)."""
+    h, w = wp.tid()
+    moduli = tissue.moduli[w]
+    nu = moduli[1] / (moduli[1] + 2.0 * moduli[0])  # plane stress
+    moment = float(0.0)
+    for k in range(5):
+        c = shell.coupling[h, k]
+        moment += ((1.0 - nu) * c[0] + nu * c[1]) * shell.angle_change[shell.coupled[h, k], w]
+    shell.moment[h, w] = moment
+
+
 @wp.func
 def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
     """Moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
     if h < 0:
         return 0.0
-    return shell.hinge_stiffness[h] * shell.angle_change[h, w]
+    return shell.inverse_length[h] * shell.moment[h, w]
 
 
 @wp.kernel
@@ -207,10 +222,19 @@ def add_stretching(block: VertexBlock, rest: wp.vec4, d1: wp.vec3, d2: wp.vec3, 
 
 
 @wp.func
-def add_hinge(block: VertexBlock, turn: wp.vec3, angle: float, stiffness: float) -> VertexBlock:
-    """Add the term k angle^2 / 2 of a hinge whose angle has the gradient ``turn`` at the vertex."""
+def add_hinge(block: VertexBlock, turn: wp.vec3, moment: float, further: float, stiffness: float) -> VertexBlock:
+    """Add a hinge whose angle has the gradient ``turn`` at the vertex.
+
+    Args:
+        block: Block of the vertex.
+        turn: Gradient [rad/m].
+        moment: Moment where it was measured [N m].
+        further: Angle since then [rad].
+        stiffness: Bound on its stiffness [N m/rad]: the energy of this model is nowhere below the true one, whatever
+            the hinges that this one is coupled with do meanwhile.
+    """
     out = block
-    out.force -= (stiffness * angle) * turn
+    out.force -= (moment + stiffness * further) * turn
     out.hessian += stiffness * wp.outer(turn, turn)
     return out
 
@@ -221,8 +245,8 @@ def add_elements(
 ) -> VertexBlock:
     """Add the terms of the triangles and hinges around vertex ``i`` of world ``w``.
 
-    A hinge's angle is the measured one less, for both of its triangles, its length times the product of the scaled
-    normal with the displacement of the vertex opposite from the foot of its height, which was zero when measured.
+    A hinge's angle has since fallen, for both of its triangles, by its length times the product of the scaled normal
+    with the displacement of the vertex opposite from the foot of its height, which was zero when measured.
     """
     out = block
     here = x[i, w]
@@ -238,15 +262,15 @@ def add_elements(
         shape = triangle.rim_shape
         away = x[triangle.rim_vertex, w] - here - (1.0 - shape[2]) * d1 - shape[2] * d2
         lift = wp.dot(shell.scaled_normal[triangle.rim_triangle, w], away) - (1.0 - shape[1]) * rise1 - shape[1] * rise2
-        angle = shell.angle_change[triangle.rim, w] - shape[0] * lift
-        out = add_hinge(out, -shape[0] * scaled_normal, angle, moduli[2] * shape[3])
+        moment = moduli[2] * wp.where(shape[3] > 0.0, shell.moment[triangle.rim, w], 0.0)
+        out = add_hinge(out, -shape[0] * scaled_normal, moment, -shape[0] * lift, moduli[2] * shape[3])
 
         shape = triangle.spoke_shape
         other = shell.scaled_normal[triangle.spoke_triangle, w]
         lift = rise2 - shape[1] * rise1 + wp.dot(other, x[triangle.spoke_vertex, w] - here - shape[2] * d1)
-        angle = shell.angle_change[triangle.spoke, w] - shape[0] * lift
+        moment = moduli[2] * wp.where(shape[3] > 0.0, shell.moment[triangle.spoke, w], 0.0)
         turn = shape[0] * ((1.0 - shape[1]) * scaled_normal + (1.0 - shape[2]) * other)
-        out = add_hinge(out, turn, angle, moduli[2] * shape[3])
+        out = add_hinge(out, turn, moment, -shape[0] * lift, moduli[2] * shape[3])
     return out
 
 

@@ -11,7 +11,7 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.wall import shell_kernels, solid_kernels
-from arcgym.sim.wall.shell_fans import hinge_of_edges, triangle_rest, vertex_triangles
+from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_parameters import ShellParameters, WallParameters
@@ -91,10 +91,12 @@ class Shell:
         copies = {
             "triangles": (triangles, wp.vec3i),
             "rest": (triangle_rest(geometry), wp.vec4),
-            "edges": (hinge_of_edges(geometry), wp.vec3i),
+            "edges": (own_hinges(geometry), wp.vec3i),
             "hinges": (hinges, wp.vec4i),
             "rest_angle": (geometry.rest_angle, float),
-            "hinge_stiffness": (geometry.weight / geometry.length, float),
+            "coupled": (geometry.coupled, int),
+            "coupling": (geometry.coupling, wp.vec2),
+            "inverse_length": (1.0 / geometry.length, float),
             "fan_start": (start, int),
             "fan": (vertex_triangles(geometry, corner, vertex_triangle.numpy_dtype()), vertex_triangle),
             "fan_corner": (corner, int),
@@ -104,9 +106,11 @@ class Shell:
         data.scaled_normal = wp.zeros((len(triangles), num_envs), dtype=wp.vec3, device=device)
         data.corner_force = wp.zeros((3 * len(triangles), num_envs), dtype=wp.vec3, device=device)
         data.angle_change = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
+        data.moment = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data = self.data
         wp.launch(shell_kernels.measure_hinges, data.angle_change.shape, [data, x], device=self.device)
+        wp.launch(shell_kernels.measure_moments, data.moment.shape, [data, tissue], device=self.device)
         wp.launch(shell_kernels.measure_triangles, data.scaled_normal.shape, [data, tissue, x], device=self.device)
