@@ -153,7 +153,9 @@ def test_kernel_force_is_minus_stiffness_times_small_displacement(sim: Simulatio
     bending = bending_stiffness(shell.points, geometry, nu=lam / (lam + 2.0 * mu))
     move = 1e-6 * np.random.default_rng(0).normal(size=shell.points.shape)
     expected = np.zeros_like(move)
-    np.add.at(expected, shell.triangles, -np.einsum("taibj,tbj->tai", mu * shear + lam * dilation, move[shell.triangles]))
+    np.add.at(
+        expected, shell.triangles, -np.einsum("taibj,tbj->tai", mu * shear + lam * dilation, move[shell.triangles])
+    )
     others = move[geometry.hinges[geometry.coupled]]
     np.add.at(expected, geometry.hinges, -rigidity * np.einsum("hkaibj,hkbj->hai", bending, others))
     rest = shell.points.astype(float)

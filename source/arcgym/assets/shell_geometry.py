@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+
 @dataclass(frozen=True)
 class ShellGeometry:
     """Rest geometry of a shell's F triangles and H hinges."""
@@ -83,10 +84,10 @@ def bending_coupling(
     """Bending energy of a Kirchhoff shell as a quadratic form of the hinges' angles.
 
     The shape operator of a triangle is that of its three hinges, S = sum_i a_i / (2 A l_i) t_i t_i^T, with the angle
-    a_i from rest, the length l_i and the edge t_i turned by a right angle in its plane (Gingold et al. 2004, "A discrete
-    model for inelastic deformation of thin shells"; Grinspun et al. 2006, "Computing discrete shape operators on
-    general meshes"). Its energy is D A / 2 ((1 - nu) S:S + nu (tr S)^2). On a grid whose diagonals all run the same way
-    it is that of the plate for every constant curvature.
+    a_i from rest, the length l_i and the edge t_i turned by a right angle in its plane (Gingold et al. 2004, "A
+    discrete model for inelastic deformation of thin shells"; Grinspun et al. 2006, "Computing discrete shape operators
+    on general meshes"). Its energy is D A / 2 ((1 - nu) S:S + nu (tr S)^2). On a grid whose diagonals all run the same
+    way it is that of the plate for every constant curvature.
 
     Args:
         points: Rest positions [m], shape (V, 3).

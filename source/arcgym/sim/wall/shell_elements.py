@@ -38,7 +38,7 @@ def bending_stiffness(points: np.ndarray, geometry: ShellGeometry, nu: float) ->
         nu: Poisson's ratio.
 
     Returns:
-        Stiffness between the four vertices of each hinge and those of each of its ``coupled``, shape (H, 5, 4, 3, 4, 3).
+        Stiffness between the vertices of each hinge and those of each of its ``coupled``, shape (H, 5, 4, 3, 4, 3).
     """
     g = fold_gradients(points, geometry.hinges)
     stiffness = geometry.coupling @ np.array([1.0 - nu, nu])
