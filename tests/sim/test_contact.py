@@ -54,7 +54,7 @@ def force_on_wall(sim: Simulation) -> np.ndarray:
 
 
 def count(sim: Simulation) -> int:
-    return int(sim.contact.records.count.numpy()[0])
+    return int(sim.contact.records.start.numpy()[0, 1])
 
 
 def touching(sim: Simulation) -> float:

@@ -33,9 +33,13 @@ class ContactCfg:
     """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
     that link and wall close in one physics step."""
     search_reach: int = 3
-    """Rings searched on either side of a link's own. Must span half a link; 3 rings of 12.5 mm suit 20 mm links."""
-    capacity: int = 24
-    """Contacts kept per link, the nearest. A link in a bend of colon 1 has five to twenty."""
+    """Rings on either side of a link's own whose faces may touch it from outside, too: a link that was pushed into the
+    wall there is pushed back. Elsewhere faces touch a link from the lumen alone."""
+    capacity: int = 10
+    """Contacts kept a link, on average over the links of a world. A link in a bend of colon 1 has five to twenty, most
+    links of a scope have none. Contacts that find no room are counted (``ContactSearch.records.dropped``)."""
+    link_capacity: int = 64
+    """Contacts kept for any one link."""
 
 
 @configclass

@@ -29,14 +29,15 @@ class LinkShapes:
 
 @wp.struct
 class ContactRecords:
-    """Contacts of every link: up to ``capacity`` slots a link, one for each face near it.
+    """Contacts of every link, one for each face near it, in a pool of S slots a world, by link.
 
     Everything about a contact is a continuous function of where link and wall are, so that nothing flutters.
     """
 
-    capacity: int
-    count: wp.array[int]  # shape (W*L,)
-    face: wp.array[int]  # shape (W*L*capacity,)
+    capacity: int  # slots of a world, S
+    start: wp.array2d[int]  # first slot of each link in the pool of all worlds, and of none after the last, (W, L + 1)
+    link: wp.array[int]  # link of each slot, -1 where it is free, shape (W*S,)
+    face: wp.array[int]  # shape (W*S,)
     corners: wp.array[wp.vec3i]  # the face's three wall vertices
     bary: wp.array[wp.vec3]
     distance: wp.array[float]  # of the link's axis from the face [m]
@@ -44,9 +45,10 @@ class ContactRecords:
     direction: wp.array[wp.vec3]  # unit vector there from the link's axis
     normal: wp.array[wp.vec3]  # outward normal of the wall there at detection
     vertex_head: wp.array2d[int]  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
-    vertex_next: wp.array[int]  # shape (3*W*L*capacity,)
+    vertex_next: wp.array[int]  # shape (3*W*S,)
     ring_head: wp.array2d[int]  # first record whose lowest ring is this one, shape (R, W)
-    ring_next: wp.array[int]  # shape (W*L*capacity,)
+    ring_next: wp.array[int]  # shape (W*S,)
+    dropped: wp.array[int]  # contacts that found no slot since the last reset, shape (W,)
 
 
 @wp.struct
@@ -59,7 +61,6 @@ class ContactLaw:
     slip_velocity: float  # speed under which friction is viscous [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
     search_gap: float  # distance up to which records are kept [m]
-    max_distance: float  # links farther than this from the centre of their ring touch nothing [m]
 
 
 @wp.func

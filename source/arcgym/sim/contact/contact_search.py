@@ -17,10 +17,11 @@ MAX_RING_SHIFT = 4
 
 
 class ContactSearch:
-    """Finds the contacts of every link with the inner wall faces near it.
+    """Finds the contacts of every link with the inner wall faces near it, however the wall is gathered or folded.
 
-    A link's ring (its bin along the centreline) is tracked from step to step, so that only a few hundred faces are
-    tested a link and a neighbouring loop of the colon, however close, is never mistaken for its own.
+    Faces are found by distance, through spheres around rings and patches of them. A link's ring (its bin along the
+    centreline) is tracked from step to step: faces near it may touch the link from either side, faces elsewhere just
+    from the lumen, so that a neighboring loop of the colon, however close, is never mistaken for the link's own.
     """
 
     def __init__(
@@ -54,19 +55,20 @@ class ContactSearch:
         self.links.radius = wp.array(radius, dtype=float, device=device)
         self.law = self._law(cfg)
         self.law.wall_radius += surface_offset
-        self.law.max_distance = 2.0 * topology.radius + cfg.search_gap
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
-        shape = (num_envs, self.link_count, topology.candidates(cfg.search_reach))
-        self.distance = wp.zeros(shape, dtype=float, device=device)
-        self.records = self._records(cfg.capacity)
+        self.bounds = kernels.Bounds()
+        self.bounds.ring = wp.zeros((num_envs, self.ring_count), dtype=wp.vec4, device=device)
+        self.bounds.patch = wp.zeros((num_envs, len(topology.patch_start) - 1), dtype=wp.vec4, device=device)
+        self.candidates = self._candidates(cfg.link_capacity)
+        self.records = self._records(max(cfg.link_capacity, cfg.capacity * self.link_count))
 
     def _surface(self, topology: LumenTopology, reach: int) -> kernels.LumenSurface:
         surface = kernels.LumenSurface()
-        for name in ("rings", "faces", "neighbors", "ring_start"):
+        for name in ("rings", "faces", "neighbors", "patch_start", "ring_patch"):
             setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
         surface.reach = reach
         return surface
@@ -77,22 +79,32 @@ class ContactSearch:
             setattr(law, name, getattr(cfg, name))
         return law
 
+    def _candidates(self, capacity: int) -> kernels.Candidates:
+        shape = (self.num_envs, self.link_count)
+        candidates = kernels.Candidates()
+        candidates.capacity = capacity
+        candidates.face = wp.zeros((*shape, capacity), dtype=int, device=self.device)
+        candidates.distance = wp.zeros((*shape, capacity), dtype=float, device=self.device)
+        candidates.count = wp.zeros(shape, dtype=int, device=self.device)
+        return candidates
+
     def _records(self, capacity: int) -> ContactRecords:
-        rows = self.num_envs * self.link_count
+        slots = self.num_envs * capacity
         records = ContactRecords()
         records.capacity = capacity
-        records.count = wp.zeros(rows, dtype=int, device=self.device)
-        records.face = wp.zeros(rows * capacity, dtype=int, device=self.device)
-        records.corners = wp.zeros(rows * capacity, dtype=wp.vec3i, device=self.device)
-        records.direction = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
-        records.bary = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+        records.start = wp.zeros((self.num_envs, self.link_count + 1), dtype=int, device=self.device)
+        records.dropped = wp.zeros(self.num_envs, dtype=int, device=self.device)
+        records.link = wp.full(slots, -1, dtype=int, device=self.device)
+        records.face = wp.zeros(slots, dtype=int, device=self.device)
+        records.corners = wp.zeros(slots, dtype=wp.vec3i, device=self.device)
         for name in ("distance", "weight"):
-            setattr(records, name, wp.zeros(rows * capacity, dtype=float, device=self.device))
-        records.normal = wp.zeros(rows * capacity, dtype=wp.vec3, device=self.device)
+            setattr(records, name, wp.zeros(slots, dtype=float, device=self.device))
+        for name in ("bary", "direction", "normal"):
+            setattr(records, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
-        records.vertex_next = wp.full(3 * rows * capacity, -1, dtype=int, device=self.device)
+        records.vertex_next = wp.full(3 * slots, -1, dtype=int, device=self.device)
         records.ring_head = wp.full((self.ring_count, self.num_envs), -1, dtype=int, device=self.device)
-        records.ring_next = wp.full(rows * capacity, -1, dtype=int, device=self.device)
+        records.ring_next = wp.full(slots, -1, dtype=int, device=self.device)
         return records
 
     def update_centers(self, x: wp.array) -> None:
@@ -134,17 +146,26 @@ class ContactSearch:
 
     def _select(self, x: wp.array, body_q: wp.array) -> None:
         """Record the faces near each link."""
+        worlds, links = self.num_envs, self.link_count
         wp.launch(
-            kernels.face_distances,
-            self.distance.shape,
-            inputs=[x, body_q, self.links, self.surface, self.law, self.ring, self.ring_distance],
-            outputs=[self.distance],
+            kernels.bound_faces,
+            (worlds, self.ring_count),
+            inputs=[x, self.surface],
+            outputs=[self.bounds],
             device=self.device,
         )
         wp.launch(
-            kernels.select_contacts,
-            (self.num_envs, self.link_count),
-            inputs=[self.surface, self.ring, self.distance],
+            kernels.find_candidates,
+            (worlds, links),
+            inputs=[x, body_q, self.links, self.surface, self.bounds, self.law, self.ring, self.ring_distance],
+            outputs=[self.candidates],
+            device=self.device,
+        )
+        wp.launch(kernels.allot_slots, worlds, inputs=[self.candidates], outputs=[self.records], device=self.device)
+        wp.launch(
+            kernels.fill_slots,
+            (worlds, links + 1),
+            inputs=[self.candidates],
             outputs=[self.records],
             device=self.device,
         )
@@ -154,7 +175,7 @@ class ContactSearch:
         links = (self.num_envs, self.link_count)
         wp.launch(
             kernels.locate_contacts,
-            (*links, self.records.capacity),
+            (self.num_envs, self.records.capacity),
             inputs=[x, body_q, self.links, self.surface],
             outputs=[self.records],
             device=self.device,
@@ -170,7 +191,7 @@ class ContactSearch:
         wp.launch(
             kernels.build_contact_lists,
             self.num_envs,
-            inputs=[self.vertex_ring, self.link_count],
+            inputs=[self.vertex_ring],
             outputs=[self.records],
             device=self.device,
         )

@@ -1,9 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Narrow phase between capsule links and the inner wall, binned along the centreline.
+"""Contact search between capsule links and the inner wall, by distance: rings, then patches, then faces.
 
-Launch dimensions: W worlds, L links a world, R rings (centreline bins), M candidate faces a link, V wall vertices.
+W worlds, L links a world, R rings (centreline bins), P patches of faces, C candidate faces a link, S contact slots a
+world, V wall vertices.
 """
 
 import warp as wp
@@ -28,8 +29,27 @@ class LumenSurface:
     rings: wp.array2d[int]  # inner vertices of each ring, padded with the first, shape (R, S)
     faces: wp.array2d[int]  # shape (F, 3)
     neighbors: wp.array2d[int]  # face across the edge opposite to each corner or -1, shape (F, 3)
-    ring_start: wp.array[int]  # first face of each ring, shape (R + 1,)
-    reach: int  # rings searched on either side of a link's own
+    patch_start: wp.array[int]  # first face of each patch, shape (P + 1,)
+    ring_patch: wp.array[int]  # first patch of each ring, shape (R + 1,)
+    reach: int  # rings on either side of a link's own whose faces may touch it from outside, too
+
+
+@wp.struct
+class Bounds:
+    """Spheres around the faces of each patch and of each ring: center [m] and radius [m]."""
+
+    patch: wp.array2d[wp.vec4]  # shape (W, P)
+    ring: wp.array2d[wp.vec4]  # shape (W, R)
+
+
+@wp.struct
+class Candidates:
+    """Faces near each link."""
+
+    capacity: int  # of one link, C
+    face: wp.array3d[int]  # shape (W, L, C)
+    distance: wp.array3d[float]  # from the link's axis [m], shape (W, L, C)
+    count: wp.array2d[int]  # of all, also beyond the capacity, shape (W, L)
 
 
 @wp.kernel
@@ -55,7 +75,7 @@ def track_rings(
 
     Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1.
 
-    A link whose centre is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
+    A link whose center is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
     """
     w, link = wp.tid()
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
@@ -86,41 +106,124 @@ def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> b
 
 
 @wp.kernel
-def face_distances(
+def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
+    """Enclose the faces of each ring, patch by patch. Launch (W, R)."""
+    w, r = wp.tid()
+    first = surface.ring_patch[r]
+    last = surface.ring_patch[r + 1]
+    middle = wp.vec3(0.0)
+    for p in range(first, last):
+        center = wp.vec3(0.0)
+        faces = surface.patch_start[p + 1] - surface.patch_start[p]
+        for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
+            for k in range(3):
+                center += x[surface.faces[f, k], w]
+        center = center / float(3 * faces)
+        radius = float(0.0)
+        for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
+            for k in range(3):
+                radius = wp.max(radius, wp.length_sq(x[surface.faces[f, k], w] - center))
+        bounds.patch[w, p] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
+        middle += center
+    middle = middle / float(wp.max(1, last - first))
+    radius = float(0.0)
+    for p in range(first, last):
+        sphere = bounds.patch[w, p]
+        radius = wp.max(radius, wp.length(wp.vec3(sphere[0], sphere[1], sphere[2]) - middle) + sphere[3])
+    bounds.ring[w, r] = wp.vec4(middle[0], middle[1], middle[2], radius)
+
+
+@wp.func
+def sphere_reached(sphere: wp.vec4, center: wp.vec3, axis: wp.vec3, limit: float) -> bool:
+    """Whether a sphere comes within ``limit`` of the segment from ``center`` - ``axis`` to ``center`` + ``axis``."""
+    p = wp.vec3(sphere[0], sphere[1], sphere[2])
+    t = segment_parameter(p, center - axis, center + axis)
+    reach = limit + sphere[3]
+    return wp.length_sq(p - center - (2.0 * t - 1.0) * axis) < reach * reach
+
+
+@wp.func
+def face_distance(
+    surface: LumenSurface,
+    face: int,
+    x: wp.array2d[wp.vec3],
+    w: int,
+    center: wp.vec3,
+    axis: wp.vec3,
+    limit: float,
+    both_sides: bool,
+) -> float:
+    """Return the distance of a face from the segment from ``center`` - ``axis`` to ``center`` + ``axis`` [m].
+
+    FAR beyond ``limit``, and where the middle of the segment is not on the lumen's side unless ``both_sides``.
+    """
+    a = x[surface.faces[face, 0], w] - center
+    b = x[surface.faces[face, 1], w] - center
+    c = x[surface.faces[face, 2], w] - center
+    normal = wp.cross(b - a, c - a)
+    if (both_sides or wp.dot(normal, a) > 0.0) and plane_reached(a, normal, axis, limit):
+        d = segment_triangle(-axis, axis, a, b, c)[3]
+        if d < limit:
+            return d
+    return FAR
+
+
+@wp.kernel
+def find_candidates(
     x: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
     links: LinkShapes,
     surface: LumenSurface,
+    bounds: Bounds,
     law: ContactLaw,
     ring: wp.array2d[int],
     ring_distance: wp.array2d[float],
-    distance: wp.array3d[float],
+    candidates: Candidates,
 ):
-    """Distance from each link's axis to each candidate face, or FAR. Launch (W, L, M)."""
-    w, link, m = wp.tid()
-    if ring_distance[w, link] > law.max_distance + links.half_length[link] + links.radius[link]:
-        distance[w, link, m] = FAR
-        return
-    nr = surface.ring_start.shape[0] - 1
-    face = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)] + m
-    d = float(FAR)
-    if face < surface.ring_start[wp.min(nr, ring[w, link] + surface.reach + 1)]:
-        a = x[surface.faces[face, 0], w]
-        b = x[surface.faces[face, 1], w]
-        c = x[surface.faces[face, 2], w]
+    """Find the faces near each link, wherever along the colon they are. Launch (W, L).
+
+    Far along the colon from the link's own ring, faces count that have the link on their lumen's side: the wall
+    gathered around the link, but not the outside of a neighboring loop.
+    """
+    w, link = wp.tid()
+    n = int(0)
+    if ring_distance[w, link] < FAR:
         pose = body_q[w * ring.shape[1] + link]
         center = wp.transform_get_translation(pose)
         axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
         limit = links.radius[link] + law.wall_radius + law.search_gap
-        g = (a + b + c) / 3.0
-        size = wp.sqrt(wp.max(wp.length_sq(a - g), wp.max(wp.length_sq(b - g), wp.length_sq(c - g))))
-        t = segment_parameter(g, center - axis, center + axis)
-        near = wp.length_sq(g - center - (2.0 * t - 1.0) * axis) < (limit + size) * (limit + size)
-        if near and plane_reached(a - center, wp.cross(b - a, c - a), axis, limit):
-            u = segment_triangle(center - axis, center + axis, a, b, c)
-            if u[3] < limit:
-                d = u[3]
-    distance[w, link, m] = d
+        for r in range(bounds.ring.shape[1]):
+            if sphere_reached(bounds.ring[w, r], center, axis, limit):
+                near = wp.abs(r - ring[w, link]) <= surface.reach
+                for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
+                    if sphere_reached(bounds.patch[w, p], center, axis, limit):
+                        for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
+                            d = face_distance(surface, f, x, w, center, axis, limit, near)
+                            if d < FAR:
+                                if n < candidates.capacity:
+                                    candidates.face[w, link, n] = f
+                                    candidates.distance[w, link, n] = d
+                                n += 1
+    candidates.count[w, link] = n
+
+
+@wp.kernel
+def allot_slots(candidates: Candidates, records: ContactRecords):
+    """Give every link as many slots as it has candidates. Launch (W,)."""
+    w = wp.tid()
+    links = candidates.count.shape[1]
+    first = w * records.capacity
+    end = first + records.capacity
+    slot = first
+    dropped = int(0)
+    for link in range(links):
+        records.start[w, link] = slot
+        wanted = candidates.count[w, link]
+        given = wp.min(wp.min(wanted, candidates.capacity), end - slot)
+        dropped += wanted - given
+        slot += given
+    records.start[w, links] = slot
+    records.dropped[w] = records.dropped[w] + dropped
 
 
 @wp.func
@@ -190,37 +293,19 @@ def closest_point(
     return out
 
 
-@wp.func
-def free_slot(records: ContactRecords, distance: wp.array3d[float], w: int, link: int, n: int, d: float) -> int:
-    """Slot for a contact at distance ``d``: the next one, or the farthest contact's if all are taken, or -1."""
-    row = w * distance.shape[1] + link
-    if n < records.capacity:
-        return row * records.capacity + n
-    worst = int(-1)
-    for k in range(records.capacity):
-        slot = row * records.capacity + k
-        if records.distance[slot] > d:
-            d = records.distance[slot]
-            worst = slot
-    return worst
-
-
 @wp.kernel
-def select_contacts(surface: LumenSurface, ring: wp.array2d[int], distance: wp.array3d[float], records: ContactRecords):
-    """Make a record of every face near a link, the nearest where there are too many. Launch (W, L)."""
+def fill_slots(candidates: Candidates, records: ContactRecords):
+    """Copy the candidates into the slots of their links. Launch (W, L + 1); the last frees what is left over."""
     w, link = wp.tid()
-    row = w * ring.shape[1] + link
-    first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
-    n = int(0)
-    for m in range(distance.shape[2]):
-        d = distance[w, link, m]
-        if d < FAR:
-            slot = free_slot(records, distance, w, link, n, d)
-            if slot >= 0:
-                records.face[slot] = first + m
-                records.distance[slot] = d
-                n = wp.min(n + 1, records.capacity)
-    records.count[row] = n
+    if link == candidates.count.shape[1]:
+        for slot in range(records.start[w, link], (w + 1) * records.capacity):
+            records.link[slot] = -1
+        return
+    first = records.start[w, link]
+    for slot in range(first, records.start[w, link + 1]):
+        records.link[slot] = link
+        records.face[slot] = candidates.face[w, link, slot - first]
+        records.distance[slot] = candidates.distance[w, link, slot - first]
 
 
 @wp.kernel
@@ -231,13 +316,13 @@ def locate_contacts(
     surface: LumenSurface,
     records: ContactRecords,
 ):
-    """Find where every recorded face comes closest to its link. Launch (W, L, capacity)."""
-    w, link, k = wp.tid()
-    row = w * links.radius.shape[0] + link
-    if k >= records.count[row]:
+    """Find where every recorded face comes closest to its link. Launch (W, S)."""
+    w, k = wp.tid()
+    slot = w * records.capacity + k
+    link = records.link[slot]
+    if link < 0:
         return
-    slot = row * records.capacity + k
-    pose = body_q[row]
+    pose = body_q[w * links.radius.shape[0] + link]
     center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     face = records.face[slot]
@@ -258,35 +343,32 @@ def use_directions_as_normals(links: LinkShapes, records: ContactRecords):
     normal points away from the link, pushes it back then, too.
     """
     w, link = wp.tid()
-    row = w * links.radius.shape[0] + link
     nearest = float(FAR)
-    for k in range(records.count[row]):
-        nearest = wp.min(nearest, records.distance[row * records.capacity + k])
+    for slot in range(records.start[w, link], records.start[w, link + 1]):
+        nearest = wp.min(nearest, records.distance[slot])
     if nearest > CLEARANCE * links.radius[link]:
-        for k in range(records.count[row]):
-            slot = row * records.capacity + k
+        for slot in range(records.start[w, link], records.start[w, link + 1]):
             records.normal[slot] = records.direction[slot]
 
 
 @wp.kernel
-def build_contact_lists(vertex_ring: wp.array[int], links: int, records: ContactRecords):
+def build_contact_lists(vertex_ring: wp.array[int], records: ContactRecords):
     """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
 
     One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
     """
     w = wp.tid()
-    for step in range(links):
-        row = (w + 1) * links - 1 - step
-        n = records.count[row]
-        for back in range(n):
-            slot = row * records.capacity + n - 1 - back
-            face = records.corners[slot]
-            lowest = records.ring_head.shape[0]
-            for k in range(3):
-                entry = 3 * slot + k
-                v = face[k]
-                records.vertex_next[entry] = records.vertex_head[v, w]
-                records.vertex_head[v, w] = entry
-                lowest = wp.min(lowest, vertex_ring[v])
-            records.ring_next[slot] = records.ring_head[lowest, w]
-            records.ring_head[lowest, w] = slot
+    first = w * records.capacity
+    count = records.start[w, records.start.shape[1] - 1] - first
+    for back in range(count):
+        slot = first + count - 1 - back
+        face = records.corners[slot]
+        lowest = records.ring_head.shape[0]
+        for k in range(3):
+            entry = 3 * slot + k
+            v = face[k]
+            records.vertex_next[entry] = records.vertex_head[v, w]
+            records.vertex_head[v, w] = entry
+            lowest = wp.min(lowest, vertex_ring[v])
+        records.ring_next[slot] = records.ring_head[lowest, w]
+        records.ring_head[lowest, w] = slot

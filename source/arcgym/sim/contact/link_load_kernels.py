@@ -79,8 +79,7 @@ def load_contacts(
     pose = body_q[row]
     center = wp.transform_point(pose, com[link])
     total = ArticulatedBody()
-    for k in range(records.count[row]):
-        slot = row * records.capacity + k
+    for slot in range(records.start[w, link], records.start[w, link + 1]):
         f = records.corners[slot]
         u = records.bary[slot]
         wall_v = corner_point(v, f, u, w)

@@ -107,8 +107,8 @@ class ContactForce:
 def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d[wp.vec3], w: int) -> ContactForce:
     """Return the force of the contact in ``slot`` at the positions ``x`` of world ``w``; zero where nothing touches."""
     out = ContactForce()
-    row = slot // contacts.records.capacity
-    link = row % contacts.links.radius.shape[0]
+    link = contacts.records.link[slot]
+    row = w * contacts.links.radius.shape[0] + link
     f = contacts.records.corners[slot]
     u = contacts.records.bary[slot]
     p = corner_point(x, f, u, w)
@@ -164,15 +164,15 @@ class MeasuredContacts:
 
 @wp.kernel
 def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: MeasuredContacts):
-    """Measure every contact at wall positions ``x``. Launch (L, W)."""
-    link, w = wp.tid()
-    row = w * contacts.links.radius.shape[0] + link
-    for k in range(contacts.records.count[row]):
-        slot = row * contacts.records.capacity + k
-        c = contact_force_at(contacts, slot, x, w)
-        measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip
-        measured.normal[slot] = c.normal
-        measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
+    """Measure every contact at wall positions ``x``. Launch (S, W)."""
+    k, w = wp.tid()
+    slot = w * contacts.records.capacity + k
+    if contacts.records.link[slot] < 0:
+        return
+    c = contact_force_at(contacts, slot, x, w)
+    measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip
+    measured.normal[slot] = c.normal
+    measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
 
 
 @wp.func

@@ -170,8 +170,8 @@ class WallSolver:
         """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
         self.elements.measure(x, self.tissue)
         contacts.self_contact = self.self_contact.measure(contacts.x_prev)
-        links = (contacts.links.radius.shape[0], self.num_envs)
-        wp.launch(wall_kernels.measure_contacts, links, [contacts, x, self.measured], device=self.device)
+        slots = (contacts.records.capacity, self.num_envs)
+        wp.launch(wall_kernels.measure_contacts, slots, [contacts, x, self.measured], device=self.device)
         args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.measured, x, force]
         wp.launch(self.elements.residual, x.shape, args, device=self.device)
 

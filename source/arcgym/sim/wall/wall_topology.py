@@ -8,6 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+PATCH_FACES = 6
+"""Faces of a patch: a quarter of a ring of twelve vertices. The contact search looks at whole patches first."""
+
 
 @dataclass(frozen=True)
 class LumenTopology:
@@ -21,15 +24,10 @@ class LumenTopology:
     """Face across the edge opposite to each corner, or -1, shape (F, 3), int32."""
     ring_start: np.ndarray
     """First face of each ring, shape (R + 1,), int32."""
-    radius: float
-    """Largest distance at rest of an inner vertex from the centre of its ring [m]."""
-
-    def candidates(self, reach: int) -> int:
-        """Largest number of faces within ``reach`` rings on either side of one ring."""
-        count = len(self.ring_start) - 1
-        ring = np.arange(count)
-        last = self.ring_start[np.minimum(count, ring + reach + 1)]
-        return int((last - self.ring_start[np.maximum(0, ring - reach)]).max())
+    patch_start: np.ndarray
+    """First face of each patch, some neighboring faces of one ring, shape (P + 1,), int32."""
+    ring_patch: np.ndarray
+    """First patch of each ring, shape (R + 1,), int32."""
 
 
 def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, layer: np.ndarray) -> LumenTopology:
@@ -42,14 +40,39 @@ def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, laye
         layer: Layer of each wall vertex, 0 = inner, shape (V,).
     """
     lowest = ring[faces].min(axis=1)
-    order = np.argsort(lowest, kind="stable")
-    faces = faces[order].astype(np.int32)
     count = int(ring.max()) + 1
-    ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
     rings = members(np.where(layer == 0)[0], ring, count, pad_first=True)
-    away = points[rings] - points[rings].mean(axis=1, keepdims=True)
-    radius = float(np.linalg.norm(away, axis=2).max())
-    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, radius)
+    order = np.lexsort((_angle_around(points[faces].mean(axis=1) - points[rings].mean(axis=1)[lowest], lowest), lowest))
+    faces = faces[order].astype(np.int32)
+    ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
+    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, *_patches(ring_start))
+
+
+def _angle_around(arm: np.ndarray, ring: np.ndarray) -> np.ndarray:
+    """Angle of each face around its ring, in the plane in which the ring's faces spread most.
+
+    Args:
+        arm: From the ring's center to the face [m], shape (F, 3).
+        ring: Ring of each face, shape (F,).
+
+    Returns:
+        [rad], shape (F,).
+    """
+    angle = np.zeros(len(arm))
+    for r in np.unique(ring):
+        here = ring == r
+        axes = np.linalg.svd(arm[here], full_matrices=False)[2]
+        angle[here] = np.arctan2(arm[here] @ axes[1 % len(axes)], arm[here] @ axes[0])
+    return angle
+
+
+def _patches(ring_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Split the faces of each ring into patches; first face of each patch and first patch of each ring."""
+    starts = [
+        np.arange(a, b, PATCH_FACES, dtype=np.int32) for a, b in zip(ring_start[:-1], ring_start[1:], strict=True)
+    ]
+    ring_patch = np.cumsum([0, *map(len, starts)]).astype(np.int32)
+    return np.append(np.concatenate(starts), ring_start[-1]).astype(np.int32), ring_patch
 
 
 def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool) -> np.ndarray:
