@@ -146,7 +146,9 @@ def test_a_capsule_outside_comes_back(tiny_sim: TinySim) -> None:
     sim = tiny_sim("capsule")
     place(sim, depth=REACH + 0.002)
     sim.step(96)
-    assert sim.endoscope.data.body_pos_w[0, 0].numpy() @ SIDE < APOTHEM - REACH + 5e-4
+    records, n = sim.contact.records, count(sim)  # the capsule lies on the wall, which its drive dents
+    from_wall = (records.direction.numpy()[:n] @ SIDE) * records.distance.numpy()[:n]
+    assert from_wall.max() > REACH - 5e-4 and from_wall.min() > 0.0
 
 
 def test_a_sliding_capsule_feels_coulomb_friction(sim: Simulation) -> None:
@@ -169,6 +171,50 @@ def test_a_link_without_a_ring_is_searched_along_the_whole_colon(sim: Simulation
     sim.contact.detect(sim.nodal_pos, sim.state.body_q)
     assert sim.contact.ring.numpy()[0, 0] == 12  # 150 mm / 12.5 mm
     assert count(sim) >= 1
+
+
+def brute_force(sim: Simulation, limit: float) -> set[int]:
+    """Faces within ``limit`` [m] of the capsule's axis, by sampling both densely; the axis is in the lumen."""
+    pose = sim.state.body_q.numpy()[0]
+    half = float(sim.contact.links.half_length.numpy()[0])
+    turn = np.array(wp.quat_rotate(wp.quat(*pose[3:].tolist()), wp.vec3(0.0, 0.0, 1.0)))
+    axis = pose[:3] + np.linspace(-half, half, 41)[:, None] * turn
+    grid = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, 41)] * 2), axis=2).reshape(-1, 2)
+    grid = grid[grid.sum(axis=1) <= 1.0 + 1e-9]
+    bary = np.column_stack([1.0 - grid.sum(axis=1), grid])
+    corners = sim.nodal_pos.numpy()[:, 0][sim.contact.surface.faces.numpy()]
+    near = np.linalg.norm(corners.mean(axis=1) - pose[:3], axis=1) < 0.04
+    found = set()
+    for face in np.flatnonzero(near):
+        points = bary @ corners[face]
+        if np.linalg.norm(points[:, None] - axis[None], axis=2).min() < limit:
+            found.add(int(face))
+    return found
+
+
+@pytest.mark.parametrize("gathered", [1.0, 0.25])
+def test_the_search_finds_every_face_near_a_link_however_the_wall_is_gathered(
+    tiny_sim: TinySim, gathered: float
+) -> None:
+    # The tube between 0.05 m and 0.15 m is pushed together to a quarter: rings 3 mm apart, eight beside the capsule.
+    sim = tiny_sim("capsule", colon={"wall_model": "solid"})
+    rest = sim.colon.wall.points.astype(np.float32)
+    height = np.interp(
+        rest[:, 2], [0.0, 0.05, 0.15, 1.0], [0.0, 0.05, 0.05 + 0.1 * gathered, 1.0 - 0.1 * (1 - gathered)]
+    )
+    sim.nodal_pos.assign(np.column_stack([rest[:, :2], height])[:, None])
+    place(sim, depth=5.0e-4, z=0.055 + 0.03 * gathered)
+    records, n = sim.contact.records, count(sim)
+    found, limit = records.distance.numpy()[:n], REACH + ContactCfg().search_gap
+    expected = brute_force(sim, limit - 2e-4)
+    assert len(expected) >= 3 and expected <= set(records.face.numpy()[:n].tolist())
+    assert found.max() < limit and int(records.dropped.numpy()[0]) == 0
+
+
+def test_contacts_beyond_the_capacity_are_counted(tiny_sim: TinySim) -> None:
+    sim = tiny_sim("capsule", colon={"wall_model": "solid"}, contact=ContactCfg(capacity=1, link_capacity=2))
+    place(sim, depth=5.0e-4)
+    assert count(sim) == 2 and int(sim.contact.records.dropped.numpy()[0]) > 0
 
 
 def resting(tiny_sim: TinySim, along: float) -> Simulation:

@@ -62,8 +62,14 @@ def test_neighbors_of_two_triangles() -> None:
     np.testing.assert_array_equal(face_neighbors(faces), [[1, -1, -1], [-1, -1, 0]])
 
 
-def test_candidates_within_one_ring_are_three_bands(lumen: LumenTopology) -> None:
-    assert lumen.candidates(reach=1) == 3 * 2 * SECTORS
+def test_patches_split_each_ring_into_compact_pieces(wall: WallMesh, lumen: LumenTopology) -> None:
+    # 16 faces of a ring in patches of 6, 6 and 4; six neighboring faces reach around at most 3 + 1 of the 8 sectors.
+    assert lumen.ring_patch[-1] == len(lumen.patch_start) - 1 and lumen.patch_start[-1] == len(lumen.faces)
+    np.testing.assert_array_equal(lumen.patch_start[lumen.ring_patch], lumen.ring_start)
+    for first, last in zip(lumen.patch_start[:-3], lumen.patch_start[1:-2], strict=True):
+        corners = wall.points[np.unique(lumen.faces[first:last]), :2]
+        widest = np.linalg.norm(corners[:, None] - corners, axis=2).max()
+        assert widest <= 2 * 0.020 * np.sin(0.5 * 4 * 2 * np.pi / SECTORS) + 1e-6
 
 
 def test_members_pads_short_rings() -> None:
