@@ -28,10 +28,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import torch
-from _loops import Loop, crossings, from_front, measure_loop
 from PIL import Image
 
 from arcgym.assets import PROXIMAL_CFG, ColonCfg
+from arcgym.benchmarks.loops import Loop, crossings, from_front, measure_loop
 from arcgym.experts import PushExpert
 from arcgym.scene import InteractiveScene, InteractiveSceneCfg
 from arcgym.sensors import SkinnedSurface

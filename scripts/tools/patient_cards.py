@@ -21,10 +21,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--no-pictures", action="store_true", help="write the tables only")
     args = parser.parse_args()
-    from preview_colon import draw_page
-
     from arcgym.anatomy import read_colon
     from arcgym.anatomy.generator.patients import PATIENTS
+    from arcgym.viewers.colon_page import draw_page
 
     cards = []
     for name in PATIENTS:

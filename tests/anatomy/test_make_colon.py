@@ -160,7 +160,7 @@ def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 def test_bad_spec_leaves_nothing_behind(tmp_path: Path) -> None:
     result = run(write(tmp_path, "sigmoid_shape: knot"), tmp_path / "out")
-    assert result.returncode == 1 and "'knot' is unknown; expected one of plain" in result.stderr
+    assert result.returncode == 2 and "'knot' is unknown; expected one of plain" in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["spec.yaml"]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 BENDING_WEIGHT = 0.36
 """Share c in the hinge stiffness c D 3 L^2 / (A1 + A2) (weights of Grinspun et al. 2003). A grid of right-angled
 triangles bends about its edges with 1/3; the twist it lacks is made up for by a little more, chosen by the row
-``wall_ring`` of scripts/benchmarks/fidelity.py."""
+``wall_ring`` of ``arcgym bench fidelity``."""
 
 
 @dataclass(frozen=True)

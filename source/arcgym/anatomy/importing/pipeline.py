@@ -264,7 +264,7 @@ def _stage(
             "patient": settings.patient,
             "posture": settings.posture,
             "gravityInScan": GRAVITY[settings.posture],
-            "provenance": f"imported from {path.name} with scripts/tools/import_colon.py",
+            "provenance": f"imported from {path.name} with arcgym import-colon",
             "licence": settings.licence,
             **transform,
         },

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every check of a stage that needs no simulation; what ``scripts/tools/validate_colon.py`` prints."""
+"""Every check of a stage that needs no simulation; ``arcgym validate`` prints them."""
 
 from __future__ import annotations
 
