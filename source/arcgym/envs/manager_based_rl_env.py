@@ -59,7 +59,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
     @property
     def max_episode_length_s(self) -> float:
         """Longest episode [s]."""
-        return self.cfg.episode_length_s
+        return self.cfg.max_episode_length_s
 
     @property
     def max_episode_length(self) -> int:

@@ -43,6 +43,11 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
     """Whether ``extras["final_obs"]`` holds the observations before the reset in steps where a world is done.
     Off-policy algorithms need it; it evaluates all observations a second time in those steps."""
 
+    @property
+    def max_episode_length_s(self) -> float:
+        """Longest episode [s]; a subclass may derive it from other fields."""
+        return self.episode_length_s
+
     def validate_config(self) -> None:
         """Checks numbers.
 
@@ -50,5 +55,5 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
             ValueError: If the decimation is below one or the episode has no length.
         """
         super().validate_config()
-        if self.episode_length_s <= 0.0:
-            raise ValueError(f"episode_length_s must be positive, got {self.episode_length_s}.")
+        if self.max_episode_length_s <= 0.0:
+            raise ValueError(f"episode_length_s must be positive, got {self.max_episode_length_s}.")
