@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from label_volumes import RADIUS, course, write_volume
 
-from arcgym.anatomy.importing.centerline import FoundPath, find_path
+from arcgym.anatomy.importing.anal_end import into_the_canal
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.clearance import coarse_clearance
-from arcgym.anatomy.importing.ends import into_the_canal
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.path_search import FoundPath, find_path
 from arcgym.anatomy.importing.tree import lumen_tree
 from arcgym.anatomy.importing.volumes import read_volume
 

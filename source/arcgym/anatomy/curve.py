@@ -9,11 +9,12 @@ from copy import copy
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.segments import SEGMENTS
 
 
 class Curve:
-    """Centreline of a generated colon, sampled every 2 mm and interpolated between."""
+    """Centerline of a colon, sampled every 2 mm and interpolated between."""
 
     def __init__(self, points: np.ndarray, segment_ends: np.ndarray, spacing: float = 0.002) -> None:
         """Fits the curve.
@@ -23,10 +24,10 @@ class Curve:
             segment_ends: Arc length at the end of each segment [m], shape (8,); the last is the curve's end.
             spacing: Distance of the samples [m].
         """
-        chord = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+        chord = arc_lengths(points)
         first = CubicSpline(chord, points)
         fine = np.linspace(0, chord[-1], 20 * len(points))
-        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(first(fine), axis=0), axis=1))]
+        arc = arc_lengths(first(fine))
         self.length = float(arc[-1])
         self.s = np.linspace(0, self.length, round(self.length / spacing) + 1)
         self.points = first(np.interp(self.s, arc, fine))
@@ -54,6 +55,14 @@ class Curve:
         normal -= (normal * tangent).sum(-1, keepdims=True) * tangent
         normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
         return tangent, normal, np.cross(tangent, normal)
+
+    def outwards(self, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return unit vectors across the curve at ``s``, ``theta`` [rad] from the normal towards the binormal.
+
+        The shapes of ``s`` and ``theta`` are broadcast; the result has one more axis, of 3.
+        """
+        _, normal, binormal = self.frame(s)
+        return np.cos(theta)[..., None] * normal + np.sin(theta)[..., None] * binormal
 
     def turned(self, angle: np.ndarray) -> Curve:
         """Returns the same curve with its frames turned about it by ``angle`` at the samples [rad], shape (n,)."""

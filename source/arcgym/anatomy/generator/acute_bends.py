@@ -28,7 +28,7 @@ _LEAST_TURN = np.radians(17.0)
 
 
 @dataclass(frozen=True)
-class Knees:
+class BendTargets:
     """Bends to make."""
 
     index: np.ndarray
@@ -49,7 +49,7 @@ class Knees:
         return shift / np.maximum(uses, 1.0)[:, None]
 
 
-def choose_knees(points: np.ndarray, spacing: float, radius: np.ndarray, spec: ColonSpec) -> list[int]:
+def choose_bends(points: np.ndarray, spacing: float, radius: np.ndarray, spec: ColonSpec) -> list[int]:
     """Returns the points that turn most, far enough from each other, where the lumen is narrow enough for a bend.
 
     Args:
@@ -69,12 +69,12 @@ def choose_knees(points: np.ndarray, spacing: float, radius: np.ndarray, spec: C
     return chosen
 
 
-def make_knees(places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec) -> Knees:
-    """Returns the bends at the given points; arguments as for :func:`choose_knees`."""
+def make_bends(places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec) -> BendTargets:
+    """Returns the bends at the given points; arguments as for :func:`choose_bends`."""
     reach = round(_REACH / spacing)
     index = np.array(places, int)[:, None] + np.arange(-reach, reach + 1)
     shapes = [_arc_with_legs(float(_arc_radius(radius[k], spec)), reach, spacing) for k in places]
-    return Knees(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
+    return BendTargets(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
 
 
 def _arc_radius(radius: np.ndarray, spec: ColonSpec) -> np.ndarray:

@@ -12,6 +12,7 @@ from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.relaxation import relax
 from arcgym.anatomy.generator.routes import control_points, sample_route
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.segments import RETROPERITONEAL, SEGMENTS
 
 SAMPLE_SPACING = 0.005
@@ -44,7 +45,7 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
         places = [int(np.abs(share - s).argmin()) for s in acute_bends(reference.points, reference.s)]
     points = relax(route, edge, base_radius(spec, arc), hold, spec, places)
     points = _smoothed(points)
-    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    arc = arc_lengths(points)
     ends = arc[np.cumsum(counts)]
     if spec.iliac_fossa is not None:
         ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])

@@ -13,13 +13,13 @@ import numpy as np
 from arcgym.anatomy.generator.centerline import make_centerline
 from arcgym.anatomy.generator.lesions import Lesion, place_lesions
 from arcgym.anatomy.generator.posture import make_posed, repose
-from arcgym.anatomy.generator.quantize import compact
+from arcgym.anatomy.generator.quantize import quantize
 from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.generator.surface import Surface
-from arcgym.anatomy.generator.texture import write_textures
 from arcgym.anatomy.generator.visual import sample_visual
 from arcgym.anatomy.generator.wall import sample_wall
 from arcgym.anatomy.landmarks import find_landmarks
+from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import Centerline, ColonStage
 from arcgym.anatomy.validation.validate import failed, validate_curve, validate_wall
 
@@ -73,8 +73,8 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     return ColonStage(
         name=spec.name,
         wall=wall,
-        visual=compact(sample_visual(surface, wall, lesions, *fine)),
-        visual_proxy=compact(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1)),
+        visual=quantize(sample_visual(surface, wall, lesions, *fine)),
+        visual_proxy=quantize(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1)),
         centerline=_sample_centerline(surface),
         landmarks=find_landmarks(surface.curve, openings),
         material=spec.material,

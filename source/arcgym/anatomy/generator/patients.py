@@ -7,7 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from arcgym.anatomy.generator.spec import ColonSpec, MucosaSpec, PolypSpec, SegmentSpec, default_segments
+from arcgym.anatomy.generator.spec import ColonSpec, PolypSpec, SegmentSpec, default_segments
+from arcgym.anatomy.mucosa.spec import MucosaSpec
 
 
 def colon_1() -> ColonSpec:

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from arcgym.anatomy.generator.spec import ColonSpec, MucosaSpec
+from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.mucosa.spec import MucosaSpec
 from arcgym.anatomy.segments import SEGMENTS
 
 LENGTH_MEAN = {"woman": 1.933, "man": 1.854}

@@ -6,8 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from arcgym.anatomy.generator.acute_bends import choose_knees, make_knees
+from arcgym.anatomy.generator.acute_bends import choose_bends, make_bends
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.polyline import restore_lengths
 
 MAX_CURVATURE_RADIUS = 0.80
 """Curvature times lumen radius that relaxation aims to stay below; at 1 the inside of a bend folds over."""
@@ -48,22 +49,22 @@ def relax(
     other_loop = np.abs(arc[:, None] - arc[None]) > 1.9 * need
     sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
     canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
-    knees = None
+    made = None
     for k in range(_ITERATIONS):
         if spec.acute_bends and k in _CHOOSING:
             spacing = float(edge.mean())
-            places = choose_knees(points, spacing, radius, spec) if bends is None else bends
-            knees = make_knees(places, spacing, radius, spec)
+            places = choose_bends(points, spacing, radius, spec) if bends is None else bends
+            made = make_bends(places, spacing, radius, spec)
         if k % _NEIGHBOR_AGE == 0:
             a, b = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
         points += _push_apart(points, a, b, need[a, b])
         points += hold[:, None] * (route - points)
-        if knees:
-            points += knees.pull(points)
+        if made:
+            points += made.pull(points)
         points += _unbend(points, edge, sharpest)
         for _ in range(6):
             points[:_CANAL_POINTS] = canal
-            _restore_lengths(points, edge)
+            restore_lengths(points, edge)
     points[:_CANAL_POINTS] = canal
     return points
 
@@ -116,14 +117,3 @@ def _excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: i
 
 def _relative_excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: int) -> np.ndarray:
     return np.clip(1.0 - sharpest[reach:-reach] / np.maximum(_curvature(points, edge, reach), 1e-9), 0.0, 0.9)
-
-
-def _restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
-    """Moves both ends of every edge so that it gets its length; even edges first, then odd ones."""
-    for first in (0, 1):
-        a, b = points[first:-1:2], points[first + 1 :: 2]
-        offset = b - a
-        length = np.linalg.norm(offset, axis=1, keepdims=True)
-        half = 0.5 * offset * (1.0 - edge[first::2, None] / length)
-        a += half
-        b -= half

@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from arcgym.anatomy.generator.courses import FIXED_ROUTES, SIGMOID_SHAPES, STRAIGHT_CECUM, TRANSVERSE_SHAPES
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.segments import RETROPERITONEAL, SEGMENTS
 
 _ROUTE_SLACK = 1.15
@@ -94,7 +95,7 @@ def sample_route(points: dict[str, np.ndarray], lengths: dict[str, float], spaci
     parts = [curve(np.zeros(1))]
     for name in SEGMENTS:
         fine = np.linspace(*bounds[name], 400)
-        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(curve(fine), axis=0), axis=1))]
+        arc = arc_lengths(curve(fine))
         count = round(lengths[name] / spacing)
         parts.append(curve(np.interp(np.linspace(0, arc[-1], count + 1)[1:], arc, fine)))
     return np.concatenate(parts)

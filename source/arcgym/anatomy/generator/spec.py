@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from arcgym.anatomy.generator.spec_checks import check_spec
+from arcgym.anatomy.mucosa.spec import MucosaSpec
 from arcgym.anatomy.stage.types import TissueMaterial
 
 
@@ -54,22 +55,6 @@ class PolypSpec:
     """Diameter [m]; up to 5 mm is diminutive, 10 mm and more large."""
     paris: str = "Is"
     """Shape by the Paris classification: Ip (stalked), Is (sessile) or IIa (flat elevated)."""
-
-
-@dataclass(frozen=True)
-class MucosaSpec:
-    """Look of the mucosa."""
-
-    width: int = 1024
-    """Pixels of the textures around the lumen; they are twice as long. Halve it for files a quarter the size."""
-    paleness: float = 0.45
-    """Share of paler mucosa, 0 to 1."""
-    redness: float = 0.20
-    """Share of redder mucosa, 0 to 1."""
-    vessels: float = 1.0
-    """How clearly vessels shine through; 0 hides them."""
-    stool: float = 0.0
-    """Share of the mucosa under residual stool, 0 to 0.5."""
 
 
 def default_segments() -> dict[str, SegmentSpec]:

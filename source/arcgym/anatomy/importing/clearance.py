@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far the lumen's voxels are from its wall, and what it costs to pass them."""
+"""Clearance of the lumen's voxels from its wall, and the cost of passing them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,19 @@ OUTSIDE = -1.0
 """Cost of voxels that no path may enter, as scikit-image wants it."""
 
 _WIDE = (0.010, 0.016)
+"""Range of clearances below which passing costs [m]: a fold leaves more room than that."""
+
 _WIDE_SHARE = 0.6
+"""That clearance as a share of the lumen's radius nearby."""
+
 _REACH = 0.013
+"""Distance within which the lumen's radius is taken [m]."""
+
 _POWER = 6
+"""Power by which the cost rises as the clearance falls."""
+
 _DEAREST = 2e4
+"""Largest cost of a voxel."""
 
 
 def coarse_clearance(grid: Grid) -> Grid:

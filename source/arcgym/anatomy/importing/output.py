@@ -24,7 +24,7 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
     Args:
         path: Label volume or surface.
         out: Folder to make.
-        settings: What the caller knows better.
+        settings: Import settings.
         overwrite: Replaces a folder that is empty or was made by an import.
 
     Returns:
@@ -41,8 +41,8 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
         made.mkdir()
         imported = import_colon(path, settings, made)
         write_colon(imported.stage, made / "colon.usda")
-        told = write_report(imported, made)
+        report = write_report(imported, made)
         if out.exists():
             shutil.rmtree(out)
         made.rename(out)
-    return told
+    return report

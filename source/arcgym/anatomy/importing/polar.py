@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.blending import soft_limit
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.importing.grid import Grid
 
@@ -15,8 +16,13 @@ REACH = 0.060
 """Length of the rays [m]."""
 
 _STEP = 0.0006
+"""Distance of the samples along a ray [m]."""
+
 _BEND_LIMIT = 0.85
+"""Largest radius over the bend's on its inside."""
+
 _CHUNK = 200
+"""Cross-sections that are cast at once, which bounds the memory."""
 
 
 def cast_rings(grid: Grid, curve: Curve, s: np.ndarray, sectors: int) -> np.ndarray:
@@ -26,9 +32,7 @@ def cast_rings(grid: Grid, curve: Curve, s: np.ndarray, sectors: int) -> np.ndar
         Distance to where the lumen ends [m], shape (n, sectors); sector j stands at ``2 pi j / sectors``.
     """
     theta = np.arange(sectors) * 2 * np.pi / sectors
-    _, normal, binormal = curve.frame(s)
-    outwards = np.cos(theta)[:, None] * normal[:, None] + np.sin(theta)[:, None] * binormal[:, None]
-    return cast(grid, curve.position(s), outwards)
+    return cast(grid, curve.position(s), curve.outwards(s[:, None], theta))
 
 
 def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
@@ -59,8 +63,7 @@ def bounded(
     across = np.stack([(bend * normal).sum(1), (bend * binormal).sum(1)], 1)
     towards = across[:, :1] * np.cos(theta) + across[:, 1:] * np.sin(theta)
     limit = np.where(towards > 1e-3, share / np.maximum(towards, 1e-3) - wall, 1.0)
-    excess = np.maximum(radius - 0.8 * limit, 0.0)
-    return np.minimum(radius, 0.8 * limit) + 0.2 * limit * np.tanh(excess / (0.2 * limit))
+    return soft_limit(radius, limit)
 
 
 def own_loop(curve: Curve, s: np.ndarray, radius: np.ndarray) -> np.ndarray:

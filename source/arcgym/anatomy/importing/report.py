@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an import tells beside the stage: ``report.json`` and a page of pictures."""
+"""Report of an import beside the stage: figures in ``report.json`` and a page of pictures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _COLORS = ("#4c72b0", "#dd8452", "#55a868", "#c44e52", "#8172b3", "#937860", "#d
 
 
 def figures(imported: ImportedColon) -> dict[str, Any]:
-    """Returns everything there is to tell about an import, ready for JSON."""
+    """Return all figures of an import, ready for JSON."""
     stage = imported.stage
     bounds = stage.segment_bounds()
     radii = ring_radii(stage.wall)
@@ -51,10 +51,10 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
 
 def write_report(imported: ImportedColon, folder: Path) -> dict[str, Any]:
     """Writes ``report.json`` and ``report.png`` and returns the figures."""
-    told = figures(imported)
-    (folder / REPORT_NAME).write_text(json.dumps(told, indent=2) + "\n")
+    report = figures(imported)
+    (folder / REPORT_NAME).write_text(json.dumps(report, indent=2) + "\n")
     _draw_page(imported, folder / PAGE_NAME)
-    return told
+    return report
 
 
 def _mm(value: float) -> float:
@@ -72,8 +72,8 @@ def _draw_page(imported: ImportedColon, path: Path) -> None:
         _draw_projection(figure.add_subplot(views[0, column]), imported, axes)
     _draw_radius(figure.add_subplot(views[1, :]), imported.stage)
     _draw_unrolled(figure.add_subplot(views[2, :]), imported.stage)
-    told = "\n".join(_cleaning_lines(imported.report["cleaning"]))
-    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm\n{told}", fontsize=9)
+    lines = "\n".join(_cleaning_lines(imported.report["cleaning"]))
+    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm\n{lines}", fontsize=9)
     figure.savefig(path, dpi=110)
 
 

@@ -14,8 +14,13 @@ from arcgym.anatomy.importing.formats import UNITS
 from arcgym.anatomy.importing.grid import Grid
 
 _COLON_EXTENT = (0.18, 0.80)
+"""Least and largest extent of a colon [m], by which the unit is told."""
+
 _LARGEST_HOLE = 0.08
+"""Radius of the largest hole that is closed [m]."""
+
 _MARGIN = 0.006
+"""Room that is left round the lumen [m]."""
 
 
 def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel: float) -> tuple[Grid, str]:

@@ -8,15 +8,24 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.generator.visual import dome_texture, grid_triangles, skin_to_rings, smooth_normals, tube_texture
 from arcgym.anatomy.importing.polar import bounded
 from arcgym.anatomy.importing.wall_fitting import FittedWall
 from arcgym.anatomy.measures import face_normals
+from arcgym.anatomy.meshing.surface_grid import (
+    dome_texture,
+    grid_triangles,
+    skin_to_rings,
+    smooth_normals,
+    tube_texture,
+)
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage.types import VisualMesh
 
 _LEAST_RADIUS = 0.005
+"""Least distance of the visual surface from the centerline [m]."""
+
 _DOME_STEPS = 10
+"""Rows of the dome of the cecum."""
 
 
 def fit_visual(
@@ -93,8 +102,7 @@ def _positions(curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndar
     theta = np.where(theta > 2 * np.pi - 1e-9, 0.0, theta)
     center = np.r_[rows, np.full(len(polar), rows[-1])]
     lift = np.r_[np.zeros(len(rows)), polar]
-    tangent, normal, binormal = curve.frame(center)
-    flat = np.cos(theta)[:, None] * normal[:, None] + np.sin(theta)[:, None] * binormal[:, None]
-    way = np.cos(lift)[:, None, None] * flat + np.sin(lift)[:, None, None] * tangent[:, None]
-    points = curve.position(center)[:, None] + rho[..., None] * way
+    tangent, flat = curve.frame(center)[0], curve.outwards(center[:, None], theta)
+    direction = np.cos(lift)[:, None, None] * flat + np.sin(lift)[:, None, None] * tangent[:, None]
+    points = curve.position(center)[:, None] + rho[..., None] * direction
     return points.reshape(-1, 3).astype(np.float32)

@@ -18,9 +18,16 @@ from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
 
 _PLAUSIBLE_SPACING = (0.2, 6.0)
+"""Least and largest voxel spacing of a CT [mm]."""
+
 _MARGIN = 0.006
+"""Room that is left round the lumen [m]."""
+
 _MOST_LABELS = 150
+"""Number of different values above which a volume is taken for grey values."""
+
 _SAMPLE = 997
+"""Every how many voxels these are looked for; a prime."""
 
 
 def read_volume(

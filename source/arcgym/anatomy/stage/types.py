@@ -125,7 +125,7 @@ class ColonStage:
     albedo_texture: Path
     """Colour of the mucosa, periodic in both directions."""
     detail_texture: Path
-    """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.generator.texture`)."""
+    """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.mucosa.texture`)."""
     metadata: dict[str, Any] = field(default_factory=dict)
     """Provenance, licence, patient, frame."""
 

@@ -20,8 +20,8 @@ from arcgym.anatomy import (
     read_colon,
     segment_index,
 )
-from arcgym.anatomy.generator.visual import grid_triangles, skin_to_rings, smooth_normals
-from arcgym.anatomy.generator.wall import build_wall
+from arcgym.anatomy.meshing.surface_grid import grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.meshing.wall import build_wall
 from arcgym.anatomy.stage.types import TEXTURE_LENGTH
 from arcgym.assets import ColonCfg
 from arcgym.utils.paths import resolve_asset

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.cecum_fit import to_fitted_pole
+from arcgym.anatomy.importing.cecum_fit import lead_to_fitted_pole
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.smooth_centerline import resample
+from arcgym.anatomy.polyline import resample
 
 RADIUS, LENGTH, BEND = 0.030, 0.25, 4.0
 
@@ -33,5 +33,5 @@ def test_pole_is_the_end_of_the_axis(sideways: tuple[float, float]) -> None:
     grid.values[:] = inside.reshape(size)
     pole = line[-1] + RADIUS * (line[-1] - line[-2]) / np.linalg.norm(line[-1] - line[-2])
     wrong = np.concatenate([line[::6], line[-1:] + [[*sideways, -0.02]]])
-    found = to_fitted_pole(grid, resample(wrong, 0.003))
+    found = lead_to_fitted_pole(grid, resample(wrong, 0.003))
     assert np.linalg.norm(found[-1] - pole) < 0.006

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cuts what hangs on the colon off at its neck, and fills the hole that a rectal tube leaves."""
+"""Cut attached lumen off at its neck, and fill the hole that a rectal tube leaves; both change the grid."""
 
 from __future__ import annotations
 
@@ -10,18 +10,25 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.importing.attached_lumen import AttachedLumen
 from arcgym.anatomy.importing.cleaning import in_millimeters
-from arcgym.anatomy.importing.ends import Attached
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.tree import caliber
 
 _MARGIN = 0.006
+"""How far beyond the piece's largest clearance voxels are looked at [m]."""
+
 _FOLDS = 1.3
+"""Largest lumen radius over the clearance that is taken for the colon's: folds stand between them."""
+
 _TUBE_REACH = 0.12
+"""Half the edge of the box round the anus in which holes are filled [m]."""
+
 _TUBE_SECTION = 3e-4
+"""Largest section of a hole that is filled [m^2], about that of a disc of 20 mm."""
 
 
-def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: np.ndarray) -> list[dict[str, Any]]:
+def cut_off(grid: Grid, attached: list[AttachedLumen], path: np.ndarray, clearance: np.ndarray) -> list[dict[str, Any]]:
     """Sets the voxels of attached pieces to 0, in place.
 
     A voxel goes with the piece whose wall it is deeper within: the colon's or that of what hangs on it.
@@ -36,7 +43,7 @@ def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: n
         What was cut, for the report.
     """
     colon, width = cKDTree(path), np.minimum(caliber(clearance, path), _FOLDS * clearance)
-    told = []
+    reports = []
     for piece in attached:
         reach = float(piece.clearance.max()) + _MARGIN
         low = np.maximum(np.floor(grid.index(piece.points.min(0) - reach)).astype(int), 0)
@@ -52,13 +59,13 @@ def cut_off(grid: Grid, attached: list[Attached], path: np.ndarray, clearance: n
         gone = depth < distance - width[own]
         lumen = grid.values[tuple(index[gone].T)] > 0.5
         grid.values[tuple(index[gone].T)] = 0.0
-        told.append(_told(piece, float(lumen.sum()) * grid.spacing**3))
+        reports.append(_as_report(piece, float(lumen.sum()) * grid.spacing**3))
     if attached:
         _keep_connected(grid, path)
-    return told
+    return reports
 
 
-def _told(piece: Attached, volume: float) -> dict[str, Any]:
+def _as_report(piece: AttachedLumen, volume: float) -> dict[str, Any]:
     return {
         "kind": piece.kind,
         "length_mm": round(1e3 * piece.length),

@@ -1,6 +1,9 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Segments from the course of the centreline: the tops of the flexures and heights between them."""
+"""Borders of the segments from the course of the centerline: tops of the flexures, heights between them.
+
+The rules and where they come from: docs/importing.md, "Where segments end".
+"""
 
 from __future__ import annotations
 
@@ -29,16 +32,37 @@ HEPATIC_FLEXURE, LIMB_SHARE = 0.107, 0.185
 limb to the caecum. That upper part is the mean of where the limb is steep, 3 cm and 8 cm below the top."""
 
 _SHORTEST_SEGMENT = 0.02
+"""Least length of a segment [m]; where one is shorter, all borders are set to typical shares."""
+
 _TOPS = (0.01, 0.05)
+"""Depths below the top of the left flexure at which its middle is taken [m]."""
+
 _LONGEST_TOP = 0.10
+"""Half the length in which a flexure's top is looked at [m]."""
+
 _LIMB_DROPS = (0.03, 0.08)
+"""Depths below the top of the right flexure at which its descending limb is taken [m]."""
+
 _LONGEST_LIMB = 0.16
+"""Length behind that top in which the limb is looked for [m]."""
+
 _STEEP = 0.8
+"""Slope from which the limb counts as steep [m/m]."""
+
 _SLOPE_LENGTH = 0.008
+"""Standard deviation of the smoothing of slopes [m]."""
+
 _LEVEL_SLOPE = 0.35
+"""Slope below which the descending colon has turned into the sigmoid [m/m]."""
+
 _NEAR_FOSSA = 0.07
+"""How far above the iliac fossa it may have turned, as a share of the left flexure's height."""
+
 _NEAR_TOP = 0.06
+"""Least length of the descending colon [m]."""
+
 _TYPICAL_SHARES = (0.088, 0.402, 0.532, 0.599, 0.818, 0.882, 0.963)
+"""Share of the length at each border of the generator's average colon."""
 
 
 def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, float]) -> tuple[np.ndarray, list[str]]:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joins the pieces of a collapsed or fluid-filled lumen, end to end, into the chain that is the colon."""
+"""Bridge the gaps between pieces of a collapsed or fluid-filled lumen, end to end: the chain is the colon."""
 
 from __future__ import annotations
 
@@ -13,13 +13,31 @@ from arcgym.anatomy.importing.clearance import coarse_clearance
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.tree import LumenTree, lumen_tree
 
-_WITH_TREE = 3e-6
-_LOOK_BACK = 0.030
-_ROUND_CORNERS = 1.5
-_LEAST_FACING = -0.35
-_CLOSE = 0.008
-_THIN = 0.007
-_SMALL = 1.5e-5
+
+@dataclass(frozen=True)
+class BridgingSettings:
+    """Bounds of pieces and gaps.
+
+    Our choices, set on generated colons with gaps of 5 to 40 mm and small bowel (docs/importing.md, "How well").
+    """
+
+    least_tree_volume: float = 3e-6
+    """Volume of a piece above which its ends are those of a tree of paths [m^3]; below, those of its long axis."""
+    look_back: float = 0.030
+    """Length of a piece's end that shows in which direction its lumen goes on [m]."""
+    corner_cost: float = 1.5
+    """How much longer a gap counts by how far its tips look past each other."""
+    least_facing: float = -0.35
+    """Least cosine between the direction of a tip and that to the other tip, except in short gaps."""
+    short_gap: float = 0.008
+    """Largest gap that tips may bridge in any direction [m]."""
+    thin_radius: float = 0.007
+    """Mean radius of a piece below which it is thin, as small bowel is [m]."""
+    small_volume: float = 1.5e-5
+    """Volume of a piece below which it is small [m^3]."""
+
+
+SETTINGS = BridgingSettings()
 
 
 @dataclass(frozen=True)
@@ -28,7 +46,7 @@ class Tip:
 
     point: np.ndarray
     """In the middle of the lumen [m], shape (3,)."""
-    way: np.ndarray
+    direction: np.ndarray
     """Unit vector in which the lumen would go on, shape (3,)."""
     room: float
     """Distance from the point to the wall ahead [m], about the lumen's radius."""
@@ -52,12 +70,13 @@ class Piece:
     @property
     def thin(self) -> bool:
         """Whether it is small and thin: a small bowel loop or a tube, unless it lies between two wider pieces."""
-        return self.volume < _SMALL and np.sqrt(self.volume / (np.pi * max(self.length, 1e-3))) < _THIN
+        radius = np.sqrt(self.volume / (np.pi * max(self.length, 1e-3)))
+        return self.volume < SETTINGS.small_volume and radius < SETTINGS.thin_radius
 
 
 @dataclass(frozen=True)
 class Bridge:
-    """A straight way from one piece to the next."""
+    """A straight line from one piece to the next."""
 
     start: np.ndarray
     """First point, inside the lumen [m], shape (3,)."""
@@ -77,15 +96,15 @@ def make_piece(
     middle = voxels.points(np.argwhere(part)).mean(0)
     if single:
         return Piece(label, volume, middle, 1.0, [])
-    if volume < _WITH_TREE:
-        return _compact(voxels, label, volume, middle)
+    if volume < SETTINGS.least_tree_volume:
+        return _small_piece(voxels, label, volume, middle)
     tree = lumen_tree(coarse_clearance(voxels))
-    reach = max(float(tree.step[tree.up(tip)].sum()) for tip in tree.tips)
+    reach = max(float(tree.step[tree.to_root(tip)].sum()) for tip in tree.tips)
     return Piece(label, volume, middle, reach, [_tip(tree, tip, voxels) for tip in tree.tips])
 
 
-def _compact(voxels: Grid, label: int, volume: float, middle: np.ndarray) -> Piece:
-    """Takes the ends of a small piece's long axis."""
+def _small_piece(voxels: Grid, label: int, volume: float, middle: np.ndarray) -> Piece:
+    """Return a small piece with the ends of its long axis."""
     points = voxels.points(np.argwhere(voxels.mask))
     axis = np.linalg.svd(points - middle, full_matrices=False)[2][0]
     along = (points - middle) @ axis
@@ -94,9 +113,9 @@ def _compact(voxels: Grid, label: int, volume: float, middle: np.ndarray) -> Pie
 
 
 def _tip(tree: LumenTree, node: int, voxels: Grid) -> Tip:
-    way = tree.up(node) if node else _from_root(tree)
-    points = tree.points[way]
-    back = points[min(len(points) - 1, int(np.searchsorted(np.cumsum(tree.step[way]), _LOOK_BACK)))]
+    path = tree.to_root(node) if node else _from_root(tree)
+    points = tree.points[path]
+    back = points[min(len(points) - 1, int(np.searchsorted(np.cumsum(tree.step[path]), SETTINGS.look_back)))]
     ahead = points[0] - back
     ahead = ahead / max(np.linalg.norm(ahead), 1e-9)
     ray = points[0] + 0.0005 * np.arange(1, 100)[:, None] * ahead
@@ -105,8 +124,8 @@ def _tip(tree: LumenTree, node: int, voxels: Grid) -> Tip:
 
 
 def _from_root(tree: LumenTree) -> list[int]:
-    longest = max((tip for tip in tree.tips if tip), key=lambda tip: float(tree.step[tree.up(tip)].sum()), default=0)
-    return tree.up(longest)[::-1]
+    branches = [tree.to_root(tip) for tip in tree.tips if tip]
+    return max(branches, key=lambda path: float(tree.step[path].sum()), default=[0])[::-1]
 
 
 def join_pieces(pieces: list[Piece], max_gap: float) -> tuple[list[Piece], list[Bridge]]:
@@ -146,8 +165,8 @@ def _matches(pieces: list[Piece], max_gap: float) -> list[tuple[float, Piece, Pi
                 if gap > max_gap:
                     continue
                 ahead = offset / max(distance, 1e-9)
-                facing = (float(first.way @ ahead), float(-last.way @ ahead))
-                if min(facing) < _LEAST_FACING and gap > _CLOSE:
+                facing = (float(first.direction @ ahead), float(-last.direction @ ahead))
+                if min(facing) < SETTINGS.least_facing and gap > SETTINGS.short_gap:
                     continue
-                found.append((gap * (1.0 + _ROUND_CORNERS * (2.0 - sum(facing))), a, b, first, last))
+                found.append((gap * (1.0 + SETTINGS.corner_cost * (2.0 - sum(facing))), a, b, first, last))
     return found

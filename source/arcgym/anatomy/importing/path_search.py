@@ -1,6 +1,8 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Way through the lumen from one end to the other, kept in its middle so that touching loops are not short-cut."""
+"""The path through the lumen on voxels, end to end, kept in the middle: touching loops are not short-cut.
+
+:mod:`smooth_centerline` makes the smooth curve of it."""
 
 from __future__ import annotations
 
@@ -10,25 +12,36 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.importing.clearance import coarse_clearance
-from arcgym.anatomy.importing.ends import Course, find_course
+from arcgym.anatomy.importing.colon_path import ColonPath, find_colon_path
+from arcgym.anatomy.importing.cutting import cut_off, fill_tube
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.leaks import cut_off, fill_tube
-from arcgym.anatomy.importing.poles import off_the_wall, to_pole
-from arcgym.anatomy.importing.smooth_centerline import resample
+from arcgym.anatomy.importing.poles import lead_to_pole, trim_open_end
 from arcgym.anatomy.importing.tree import LumenTree, lumen_tree
+from arcgym.anatomy.polyline import resample
 
 _SHORTEST = 0.4
+"""Least length of a path through a colon [m]; adults have three times as much."""
+
 _WIDEST = 0.065
+"""Largest radius of a ball that fits into a colon [m]; radiology's upper bound for the cecum is 0.045."""
+
 _FARTHEST_END = 0.05
+"""Largest distance of a given end from the lumen [m]."""
+
 _CECUM_LOOK = 0.04
+"""Length of the path's end in which the widest place of the cecum is sought [m]."""
+
+_END_REACH = 0.012
+"""How much farther than the nearest voxel a given end may be moved, to where the lumen is widest [m]."""
+
 LEAST_HOLE = 3e-7
-"""Holes in the rectum below this volume [m^3] are folds and noise, and are not told."""
+"""Least volume of a hole in the rectum that is reported [m^3]; smaller ones are folds and noise."""
 
 
 @dataclass(frozen=True)
 class FoundPath:
-    """Way through the colon and what was changed in the lumen to find it."""
+    """Path through the colon and what was changed in the lumen to find it."""
 
     points: np.ndarray
     """Positions from one end to the other [m], shape (n, 3)."""
@@ -39,7 +52,7 @@ class FoundPath:
 
 
 def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPath:
-    """Finds the way between both ends of the colon and cuts off, in the grid, what hangs on it.
+    """Find the path between both ends of the colon and cuts off, in the grid, what hangs on it.
 
     Args:
         grid: The cleaned lumen; its values are changed where something is cut off or filled.
@@ -49,16 +62,16 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
     Raises:
         ColonImportError: A given end is not in the lumen, or the lumen is too wide or too short for a colon.
     """
-    tree, course, clearance = _search(grid, ends, frame)
-    hole = fill_tube(grid, tree.points[course.nodes[0]])
+    tree, colon, clearance = _search(grid, ends, frame)
+    hole = fill_tube(grid, tree.points[colon.nodes[0]])
     if hole > LEAST_HOLE:
-        tree, course, clearance = _search(grid, ends, frame)
-    cut = cut_off(grid, course.attached, tree.points[course.nodes], tree.clearance[course.nodes])
+        tree, colon, clearance = _search(grid, ends, frame)
+    cut = cut_off(grid, colon.attached, tree.points[colon.nodes], tree.clearance[colon.nodes])
     if cut:
-        tree, course, clearance = _search(grid, ends, frame, prune=False)
-    points = resample(tree.points[course.nodes], 2 * grid.spacing)
-    points = to_pole(clearance, points, _CECUM_LOOK) if ends[1] is None else points
-    points = off_the_wall(clearance, points[::-1])[::-1] if ends[0] is None else points
+        tree, colon, clearance = _search(grid, ends, frame, prune=False)
+    points = resample(tree.points[colon.nodes], 2 * grid.spacing)
+    points = lead_to_pole(clearance, points, _CECUM_LOOK) if ends[1] is None else points
+    points = trim_open_end(clearance, points[::-1])[::-1] if ends[0] is None else points
     length = float(np.linalg.norm(np.diff(points[::5], axis=0), axis=1).sum())
     if length < _SHORTEST:
         raise ColonImportError(
@@ -70,7 +83,7 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
 
 def _search(
     grid: Grid, ends: list[np.ndarray | None], frame: str, prune: bool = True
-) -> tuple[LumenTree, Course, Grid]:
+) -> tuple[LumenTree, ColonPath, Grid]:
     clearance = coarse_clearance(grid)
     widest = float(clearance.values.max())
     if widest > _WIDEST:
@@ -86,7 +99,7 @@ def _search(
         fixed = (0, None if ends[1] is None else tree.tips[1])
     else:
         fixed = (None, None if ends[1] is None else 0)
-    return tree, find_course(tree, frame, fixed, prune), clearance
+    return tree, find_colon_path(tree, frame, fixed, prune), clearance
 
 
 def _nearest_voxel(clearance: Grid, point: np.ndarray) -> np.ndarray:
@@ -98,5 +111,5 @@ def _nearest_voxel(clearance: Grid, point: np.ndarray) -> np.ndarray:
             f"The end given at {where} mm is {1e3 * distance.min():.0f} mm away from the lumen",
             "Pass --anus and --cecum in millimetres along the patient's right, anterior and cranial axes.",
         )
-    near = inside[distance < distance.min() + 0.012]
+    near = inside[distance < distance.min() + _END_REACH]
     return near[clearance.values[tuple(near.T)].argmax()]

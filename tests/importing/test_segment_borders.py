@@ -9,7 +9,7 @@ import pytest
 
 from arcgym.anatomy.generator.centerline import make_centerline
 from arcgym.anatomy.generator.population import draw_spec
-from arcgym.anatomy.importing.landmarks import find_segment_ends
+from arcgym.anatomy.importing.segment_borders import find_segment_ends
 from arcgym.anatomy.landmarks import BORDERS
 
 

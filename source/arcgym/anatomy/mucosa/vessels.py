@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 from scipy.ndimage import gaussian_filter
 
-from arcgym.anatomy.generator.vessel_styles import STYLES, VesselStyle
+from arcgym.anatomy.mucosa.vessel_styles import STYLES, VesselStyle
 
 _STEP = 6.0
 _SUPERSAMPLE = 2

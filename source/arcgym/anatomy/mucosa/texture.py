@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from arcgym.anatomy.generator.spec import MucosaSpec
-from arcgym.anatomy.generator.vessels import draw_vessels
+from arcgym.anatomy.mucosa.spec import MucosaSpec
+from arcgym.anatomy.mucosa.vessels import draw_vessels
 
 WIDTH, HEIGHT = 1024, 2048
 """Pixels around the lumen and along 0.24 m of colon; about 0.12 mm each at a lumen of 39 mm."""
