@@ -40,8 +40,14 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
     the control frequency. Set it to False to reproduce work that adds up one value a step."""
 
     compute_final_obs: bool = False
-    """Whether ``extras["final_obs"]`` holds the observations before the reset in steps where a world is done.
-    Off-policy algorithms need it; it evaluates all observations a second time in those steps."""
+    """Whether extras hold Gymnasium's ``final_obs`` and ``final_info``, observations and metrics before the reset, in
+    steps where a world is done. Off-policy algorithms need it; it evaluates all observations a second time in those
+    steps."""
+
+    autoreset: bool = True
+    """Whether a world that is done starts again within the step (Gymnasium's ``AutoresetMode.SAME_STEP``). False leaves
+    that to ``env.reset(options={"reset_mask": terminated | truncated})`` (``AutoresetMode.DISABLED``), which Gymnasium's
+    vector wrappers of observations need."""
 
     @property
     def max_episode_length_s(self) -> float:
