@@ -31,9 +31,7 @@ def refuse_unknown(arguments: Collection[str]) -> None:
             raise TypeError(f"The environment has no argument '{name}'. {did_you_mean(name, ARGUMENTS)}")
 
 
-def choose_cfg(
-    cfg: Any, entry_point: str | None, *, num_envs: int | None, device: str | None, seed: int | None
-) -> Any:
+def choose_cfg(cfg: Any, entry_point: str | None, *, num_envs: int | None, device: str | None, seed: int | None) -> Any:
     """Return the configuration to build.
 
     Args:

@@ -33,7 +33,7 @@ logger = logging.getLogger(__name__)
 class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     """Steps a scene under actions and returns observations, for all worlds at once.
 
-    It is a :class:`gymnasium.vector.VectorEnv`, and a :class:`gymnasium.Env` besides, which ``gymnasium.make`` asks for.
+    It is a :class:`gymnasium.vector.VectorEnv`, and a :class:`gymnasium.Env` because ``gymnasium.make`` asks for one.
     Actions are NumPy arrays or torch tensors. Observations, rewards and flags are torch tensors on :attr:`device` that
     no later step writes to: they may be kept, but not written to, because the next frame stack is made of the last.
     Steps and resets leave torch's inference mode, so that the state of terms made inside can be changed outside.
@@ -82,7 +82,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
             logger.warning("No seed is set: runs will differ. Set env.seed for runs that can be repeated.")
         else:
             cfg.seed = self.seed(cfg.seed)
-        self.scene = _build_scene(cfg)
+        self.scene: InteractiveScene = _class_of(cfg.scene)(cfg.scene, cfg.sim)
         self.sim = self.scene.sim
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
         self._refresh_all()
@@ -128,12 +128,12 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         return self.cfg.sim.dt * self.cfg.decimation
 
     @cached_property
-    def single_observation_space(self) -> gym.spaces.Dict:
+    def single_observation_space(self) -> gym.spaces.Dict:  # type: ignore[override]
         """Observation of one world: a space for each group."""
         return observation_space(self.observation_manager)
 
     @cached_property
-    def single_action_space(self) -> gym.spaces.Box:
+    def single_action_space(self) -> gym.spaces.Box:  # type: ignore[override]
         """Action of one world, shape (A,), unbounded: actions are clipped by their terms."""
         return gym.spaces.Box(-np.inf, np.inf, (self.action_manager.total_action_dim,), np.float32)
 
@@ -227,7 +227,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     def render_world(self, env_id: int) -> np.ndarray:
         """Return the picture of one world from the view that ``cfg.viewer`` configures, uint8, shape (H, W, 3)."""
         if self._view is None:
-            self._view = class_of(self.cfg.viewer)(self, self.cfg.viewer)
+            self._view = _class_of(self.cfg.viewer)(self, self.cfg.viewer)
         return self._view.frame(env_id)
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -244,7 +244,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     def _managers(self) -> list[Any]:
         return [self.event_manager, self.action_manager, self.observation_manager, self.recorder_manager]
 
-    def _advance(self, action: torch.Tensor) -> None:
+    def _advance(self, action: torch.Tensor | np.ndarray) -> None:
         """Apply an action for a control step of physics and update the sensors.
 
         One call makes all physics steps: the simulation replays captured graphs and averages the forces over them.
@@ -293,5 +293,6 @@ def _replaced(old: dict[str, Any], new: dict[str, Any], env_ids: torch.Tensor) -
     }
 
 
-def _build_scene(cfg: ManagerBasedEnvCfg) -> InteractiveScene:
-    return class_of(cfg.scene)(cfg.scene, cfg.sim)
+def _class_of(cfg: Any) -> Any:
+    """Return the class that a configuration names."""
+    return resolve_callable(cfg.class_type) if isinstance(cfg.class_type, str) else cfg.class_type

@@ -45,9 +45,9 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
     steps."""
 
     autoreset: bool = True
-    """Whether a world that is done starts again within the step (Gymnasium's ``AutoresetMode.SAME_STEP``). False leaves
-    that to ``env.reset(options={"reset_mask": terminated | truncated})`` (``AutoresetMode.DISABLED``), which Gymnasium's
-    vector wrappers of observations need."""
+    """Whether a world that is done starts again within the step (Gymnasium's ``AutoresetMode.SAME_STEP``). False
+    (``AutoresetMode.DISABLED``) leaves that to ``env.reset(options={"reset_mask": terminated | truncated})``, as
+    Gymnasium's vector wrappers of observations want it."""
 
     @property
     def max_episode_length_s(self) -> float:

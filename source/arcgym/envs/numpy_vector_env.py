@@ -36,7 +36,7 @@ class NumpyVectorEnv(VectorWrapper):
     def __init__(self, env: ManagerBasedRLEnv) -> None:
         """Wrap an environment and let it compute final observations, if it resets worlds by itself."""
         super().__init__(env)
-        base = env.unwrapped
+        base: Any = env.unwrapped
         base.cfg.compute_final_obs = base.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -77,7 +77,7 @@ def _one_a_world(obs: dict[str, Any], ended: np.ndarray) -> np.ndarray:
     """Return the observations of the worlds that ended, None for the others, as an array of objects, shape (N,)."""
     entries = np.full(len(ended), None, dtype=object)
     for world in np.flatnonzero(ended):
-        entries[world] = _of_world(obs, world)
+        entries[world] = _of_world(obs, int(world))
     return entries
 
 

@@ -2,8 +2,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures and videos of the environments for people to look at; nothing here is seen by a policy."""
 
-from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
-from arcgym.viewers.two_pane import TwoPaneCfg, TwoPaneView
-from arcgym.viewers.video import VideoRecorder
+import importlib
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["OutsideView", "OutsideViewCfg", "TwoPaneCfg", "TwoPaneView", "VideoRecorder"]
+from arcgym.viewers.viewer_cfg import OutsideViewCfg, ViewerCfg
+
+if TYPE_CHECKING:
+    from arcgym.viewers.outside_view import OutsideView
+    from arcgym.viewers.two_pane import TwoPaneView
+    from arcgym.viewers.video import VideoRecorder
+
+_LAZY = {
+    "OutsideView": "arcgym.viewers.outside_view",
+    "TwoPaneView": "arcgym.viewers.two_pane",
+    "VideoRecorder": "arcgym.viewers.video",
+}
+
+__all__ = ["OutsideView", "OutsideViewCfg", "TwoPaneView", "VideoRecorder", "ViewerCfg"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import the classes that draw only when one is asked for."""
+    if name in _LAZY:
+        return getattr(importlib.import_module(_LAZY[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
