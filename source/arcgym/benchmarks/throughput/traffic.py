@@ -13,7 +13,7 @@ from arcgym.benchmarks.timing import median_ms
 
 COPIED_MIB = {"cuda": 1024, "cpu": 128}
 """Size of the array that is copied to measure the bandwidth, by kind of device [MiB]; far beyond the caches."""
-NOT_STEPPED = {"_library", "_start", "snapshots"}
+NOT_STEPPED = {"_library", "snapshots"}
 """Attributes of a simulation with arrays that no step touches."""
 WALKED = ("arcgym.", "newton.", "mujoco_warp.")
 """Beginnings of the names of modules whose objects are searched for arrays."""
