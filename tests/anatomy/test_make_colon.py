@@ -142,7 +142,7 @@ def test_same_seed_same_patient() -> None:
 
 
 def first_valid_surface(spec: ColonSpec) -> Surface:
-    """Returns the surface of the first seed that the generator would accept."""
+    """Return the surface of the first seed that the generator would accept."""
     for attempt in range(spec.max_attempts):
         try:
             surface, lesions = draw_surface(spec, spec.seed + 1000 * attempt)

@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 
 def surface_samples(points: np.ndarray, faces: np.ndarray, spacing: float, seed: int = 0) -> np.ndarray:
-    """Returns random points spread evenly over a surface, about one per square of edge ``spacing``, shape (n, 3)."""
+    """Return random points spread evenly over a surface, about one per square of edge ``spacing``, shape (n, 3)."""
     a, b, c = (points[faces[:, k]].astype(float) for k in range(3))
     area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     rng = np.random.default_rng(seed)
@@ -20,7 +20,7 @@ def surface_samples(points: np.ndarray, faces: np.ndarray, spacing: float, seed:
 
 
 def hausdorff95(a: np.ndarray, b: np.ndarray) -> tuple[float, float]:
-    """Returns the 95th percentile of the distance from ``a`` to ``b`` and from ``b`` to ``a``.
+    """Return the 95th percentile of the distance from ``a`` to ``b`` and from ``b`` to ``a``.
 
     Args:
         a: Samples of one surface [m], shape (n, 3).

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small bowel and a rectal tube that hang on the lumen are cut off and told; gaps are bridged end to end."""
+"""Small bowel and a rectal tube that hang on the lumen are cut off and reported; gaps are bridged end to end."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def length(path: np.ndarray) -> float:
 
 
 def tube(start: np.ndarray, *moves: tuple[float, float, float]) -> np.ndarray:
-    """Returns points every 2 mm along straight pieces."""
+    """Return points every 2 mm along straight pieces."""
     corners = np.cumsum([start, *np.array(moves)], axis=0)
     pieces = zip(corners[:-1], corners[1:], strict=True)
     return np.concatenate(

@@ -16,7 +16,7 @@ RADIUS, LENGTH, BEND = 0.030, 0.25, 4.0
 
 
 def axis(s: np.ndarray) -> np.ndarray:
-    """Runs down and, over its last 12 cm, forwards [m], shape (n, 3)."""
+    """Run down and, over its last 12 cm, forwards [m], shape (n, 3)."""
     angle = BEND * np.maximum(s - LENGTH + 0.12, 0.0)
     way = np.stack([0 * s, np.sin(angle), -np.cos(angle)], 1)
     return np.cumsum(way, axis=0) * (s[1] - s[0])

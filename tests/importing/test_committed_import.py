@@ -35,7 +35,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module", params=KINDS)
 def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[ColonStage, ColonStage]:
-    """A committed colon, and what its inner surface, open at the anus, was imported to."""
+    """Return a committed colon, and what its inner surface, open at the anus, was imported to."""
     truth = read_colon(COLONS / request.param / "colon.usda")
     suffix, unit, inside_out = KINDS[request.param]
     points, faces = truth.visual.points.astype(float), truth.visual.faces
@@ -74,6 +74,6 @@ def test_landmarks(pair: tuple[ColonStage, ColonStage]) -> None:
 
 
 def place(stage: ColonStage, landmark: str) -> np.ndarray:
-    """Returns the position of a landmark [m]."""
+    """Return the position of a landmark [m]."""
     line = stage.centerline
     return np.array([np.interp(stage.landmarks[landmark], line.arc, line.points[:, k]) for k in range(3)])

@@ -19,7 +19,7 @@ SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "tools" / "import_col
 
 @pytest.fixture
 def mask(tmp_path: Path) -> Path:
-    """A file with the name of a label volume, which nothing can read."""
+    """Return a file with the name of a label volume, which nothing can read."""
     path = tmp_path / "mask.nii.gz"
     path.write_bytes(b"no volume")
     return path

@@ -35,7 +35,7 @@ def test_directions_put_the_lumen_where_it_is(kind: str, tmp_path: Path) -> None
 
 @pytest.fixture(scope="module")
 def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The tube with a gap of 15 mm and, beside it, a loop that is no colon."""
+    """Import the tube with a gap of 15 mm and, beside it, a loop that is no colon."""
     folder = tmp_path_factory.mktemp("colon")
     loop = np.array([0.0, 0.02, 0.42]) + np.linspace(0, 0.1, 60)[:, None] * [1.0, 0.0, 0.0]
     volume = write_volume(folder / "tube.nii.gz", DIRECTIONS["flipped_xy"], gap=0.015 + 2 * RADIUS, extra=loop)

@@ -47,7 +47,7 @@ def test_path_into_a_corner_is_led_to_the_middle() -> None:
 
 
 def opened(tmp_path: Path, s: float, normal: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the tube without what lies within 10 cm of its start and behind a plane at an arc length."""
+    """Return the tube without what lies within 10 cm of its start and behind a plane at an arc length."""
     grid = read_volume(write_volume(tmp_path / "tube.mha"), None, None, 0.003)
     points, faces, *_ = marching_cubes(grid.values, 0.5)
     points = grid.points(points)

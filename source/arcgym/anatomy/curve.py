@@ -17,7 +17,7 @@ class Curve:
     """Centerline of a colon, sampled every 2 mm and interpolated between."""
 
     def __init__(self, points: np.ndarray, segment_ends: np.ndarray, spacing: float = 0.002) -> None:
-        """Fits the curve.
+        """Fit the curve.
 
         Args:
             points: Positions along the curve [m], shape (n, 3).
@@ -45,11 +45,11 @@ class Curve:
         return np.linalg.norm(self.curvature_vector, axis=1)
 
     def position(self, s: np.ndarray) -> np.ndarray:
-        """Returns positions at arc lengths ``s`` [m], shape ``(*s.shape, 3)``."""
+        """Return positions at arc lengths ``s`` [m], shape ``(*s.shape, 3)``."""
         return self._spline(np.clip(s, 0, self.length))
 
     def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Returns unit tangent, normal and binormal at ``s``, each of shape ``(*s.shape, 3)``."""
+        """Return unit tangent, normal and binormal at ``s``, each of shape ``(*s.shape, 3)``."""
         tangent, normal = self.interpolate(s, self._tangent), self.interpolate(s, self._normal)
         tangent /= np.linalg.norm(tangent, axis=-1, keepdims=True)
         normal -= (normal * tangent).sum(-1, keepdims=True) * tangent
@@ -65,29 +65,29 @@ class Curve:
         return np.cos(theta)[..., None] * normal + np.sin(theta)[..., None] * binormal
 
     def turned(self, angle: np.ndarray) -> Curve:
-        """Returns the same curve with its frames turned about it by ``angle`` at the samples [rad], shape (n,)."""
+        """Return the same curve with its frames turned about it by ``angle`` at the samples [rad], shape (n,)."""
         curve = copy(self)
         _, normal, binormal = self.frame(self.s)
         curve._normal = np.cos(angle)[:, None] * normal + np.sin(angle)[:, None] * binormal
         return curve
 
     def interpolate(self, s: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Interpolates values given at the samples, shape (n, k), linearly at ``s``."""
+        """Interpolate values given at the samples, shape (n, k), linearly at ``s``."""
         return np.stack([np.interp(s, self.s, values[:, k]) for k in range(values.shape[1])], -1)
 
     def segment(self, s: np.ndarray) -> np.ndarray:
-        """Returns the segment index at ``s``, int32."""
+        """Return the segment index at ``s``, int32."""
         index = np.searchsorted(self.ends, s, side="right")
         return np.minimum(index, len(SEGMENTS) - 1).astype(np.int32)
 
     def bounds(self, name: str) -> tuple[float, float]:
-        """Returns arc length at start and end of a segment [m]."""
+        """Return arc length at start and end of a segment [m]."""
         k = SEGMENTS.index(name)
         return float(self.starts[k]), float(self.ends[k])
 
 
 def _untwisted_normals(points: np.ndarray, tangents: np.ndarray) -> np.ndarray:
-    """Carries a normal along the curve without twist (double reflection, Wang et al., ACM TOG 2008)."""
+    """Carry a normal along the curve without twist (double reflection, Wang et al., ACM TOG 2008)."""
     normals = np.zeros_like(tangents)
     first = np.cross(tangents[0], [1.0, 0.0, 0.0])
     normals[0] = first / np.linalg.norm(first)

@@ -15,7 +15,7 @@ from arcgym.anatomy.generator.surface import Surface
 
 
 def distance_to(surface: Surface, lesion: Lesion, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Returns the distance on the unrolled surface from each point to a lesion's middle [m]."""
+    """Return the distance on the unrolled surface from each point to a lesion's middle [m]."""
     radius = float(surface.lumen_radius(np.array(lesion.s)))
     return np.hypot(s - lesion.s, (theta - lesion.theta) * radius)
 
@@ -23,7 +23,7 @@ def distance_to(surface: Surface, lesion: Lesion, s: np.ndarray, theta: np.ndarr
 def shape_lesion(
     surface: Surface, lesion: Lesion, s: np.ndarray, theta: np.ndarray, points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Moves the surface points of one patch onto the lesion.
+    """Move the surface points of one patch onto the lesion.
 
     Args:
         surface: The colon.
@@ -49,7 +49,7 @@ def shape_lesion(
 
 
 def _profile(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Returns distance from the axis, height along the outward axis, tint and weight at shares ``t`` of the patch."""
+    """Return distance from the axis, height along the outward axis, tint and weight at shares ``t`` of the patch."""
     if lesion.kind in ("valve", "appendix"):
         spread, rise, tint = (_lips if lesion.kind == "valve" else _dimple)(lesion, t, angle)
         return spread, rise, tint, 1.0 - smooth_step(0.75, 1.0, t)
@@ -62,7 +62,7 @@ def _profile(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarr
 
 
 def _sac(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A sac behind a narrower neck with a rounded rim."""
+    """Return spread and rise of a sac behind a narrower neck with a rounded rim."""
     knots = [0.0, 0.13, 0.27, 0.40, 0.52, 0.62, 0.72, 0.80, 0.90, 1.0]
     neck, sac = lesion.size, lesion.size * lesion.swell
     spread = [
@@ -82,7 +82,7 @@ def _sac(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _stalk(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A round head on a narrower stalk."""
+    """Return spread and rise of a round head on a narrower stalk."""
     knots = [0, 0.2, 0.4, 0.55, 0.68, 0.78, 0.88, 1.0]
     spread = [*(share * lesion.size for share in (0, 0.6, 0.97, 0.92, 0.62, 0.60, 0.8)), lesion.patch]
     rise = np.array([1.0, 0.93, 0.75, 0.55, 0.33, 0.15, 0.03, 0.0]) * lesion.depth
@@ -91,14 +91,14 @@ def _stalk(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _dome(lesion: Lesion, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A broad-based bump."""
+    """Return spread and rise of a broad-based bump."""
     spread = lesion.patch * t * (1 - 0.25 * np.sin(np.pi * np.clip(t, 0, 1)))
     cap = np.sqrt(np.clip(1 - (t / 0.85) ** 2, 0, 1))
     return spread, -lesion.depth * (0.75 * cap + 0.05 * np.clip(1 - t, 0, 1))
 
 
 def _lips(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Two lips across the lumen's length with a slit between them, as the ileocaecal valve shows them from below."""
+    """Return spread, rise and tint of two lips with a slit between them, as the ileocecal valve shows from below."""
     along, around = t * np.cos(angle), t * np.sin(angle)
     slit = np.exp(-((along / 0.12) ** 2)) * (1.0 - smooth_step(0.45, 0.75, np.abs(around)))
     mound = np.sqrt(np.clip(1.0 - (along / 0.75) ** 2 - (around / 0.95) ** 2, 0.0, 1.0))
@@ -106,14 +106,14 @@ def _lips(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray,
 
 
 def _dimple(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A narrow pit with a crescent of mucosa round half of it: the appendix orifice."""
+    """Return spread, rise and tint of a pit with a crescent of mucosa round half of it, as the appendix's orifice."""
     pit = np.exp(-((t / 0.32) ** 2))
     rim = np.exp(-(((t - 0.55) / 0.14) ** 2)) * (0.6 + 0.4 * np.cos(angle))
     return lesion.patch * t, lesion.depth * pit - 0.0013 * rim, -0.45 * pit
 
 
 def wall_bulge(surface: Surface, lesions: Sequence[Lesion], s: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Returns how far diverticula that a tip can enter push the simulated wall out [m], shape like ``s``."""
+    """Return how far diverticula that a tip can enter push the simulated wall out [m], shape like ``s``."""
     bulge = np.zeros_like(s)
     for lesion in lesions:
         if lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK:

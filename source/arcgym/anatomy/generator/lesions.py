@@ -46,7 +46,7 @@ class Lesion:
 
 
 def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
-    """Places the lesions that the spec asks for, off the folds and off each other.
+    """Place the lesions that the spec asks for, off the folds and off each other.
 
     Raises:
         ValueError: A segment has no room for its lesions.
@@ -64,7 +64,7 @@ def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
 
 
 def _openings(surface: Surface) -> list[Lesion]:
-    """Places the ileocaecal valve on its fold at the medial wall, the appendix orifice 28 mm below."""
+    """Place the ileocaecal valve on its fold at the medial wall, the appendix orifice 28 mm below."""
     s, theta = surface.ileum
     below = min(s + 0.028, surface.curve.length - DOME_LENGTH - 0.008)
     angle = surface.medial_angle(below)
@@ -72,7 +72,7 @@ def _openings(surface: Surface) -> list[Lesion]:
 
 
 def _meets(surface: Surface, row: int, theta: float) -> bool:
-    """Tells whether the folds of a row reach to an angle."""
+    """Return whether the folds of a row reach to an angle."""
     return bool(np.cos(theta - surface.taenia - (row + 0.5) * 2 * np.pi / 3) > 0.3)
 
 
@@ -107,14 +107,14 @@ def _draw(surface: Surface, kind: str | PolypSpec, s: float, theta: float, rng: 
 
 
 def _between_rings(surface: Surface, s: float, theta: float) -> tuple[float, float]:
-    """Returns the middle of the wall's cell at a place: its four vertices then carry the sac together."""
+    """Return the middle of the wall's cell at a place: its four vertices then carry the sac together."""
     arc, step = surface.ring_arc(), 2 * np.pi / surface.spec.sectors
     k = int(np.clip(np.searchsorted(arc, s), 1, len(arc) - 1))
     return float(0.5 * (arc[k - 1] + arc[k])), float((np.floor(theta / step) + 0.5) * step)
 
 
 def _off_folds(surface: Surface, lesion: Lesion) -> bool:
-    """Tells whether there is no fold or rectal valve on the patch, nor the inside of a bend behind a wide sac."""
+    """Return whether there is no fold or rectal valve on the patch, nor the inside of a bend behind a wide sac."""
     wide = lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK
     if wide:
         s = lesion.s + np.array([-_BEND_NEAR, 0.0, _BEND_NEAR])

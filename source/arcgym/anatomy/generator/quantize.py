@@ -11,6 +11,7 @@ import numpy as np
 from arcgym.anatomy.stage.types import VisualMesh
 
 _POINT, _NORMAL, _UV, _WEIGHT = 2.0**-17, 2.0**-8, 2.0**-14, 2.0**-9
+"""Steps to which is rounded: powers of two, as float32 holds them exactly."""
 
 
 def quantize(visual: VisualMesh) -> VisualMesh:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a generated colon shall be like: the generator's only input."""
+"""Specification of a generated colon: the generator's only input."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class PolypSpec:
 
 
 def default_segments() -> dict[str, SegmentSpec]:
-    """Returns an average insufflated adult colon of 1.64 m.
+    """Return an average insufflated adult colon of 1.64 m.
 
     Lengths from CT colonography (Khashab et al., Endoscopy 2009; Hanson et al., AJR 2007; the sum is 1.5-1.9 m),
     distended diameters below the upper bounds of radiology (transverse 6 cm, caecum 9 cm), flexures counted apart:
@@ -95,7 +95,7 @@ class ColonSpec:
     transverse_shape: str = "plain"
     """Course of the transverse colon, a key of :data:`arcgym.anatomy.generator.courses.TRANSVERSE_SHAPES`."""
     acute_bends: int | None = 10
-    """How many places shall turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
+    """How many places turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
     None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
     min_bend_radius: float = 0.030
     """Least radius of the centreline [m]. A colonoscope's bending section turns on about 25-30 mm."""
@@ -158,7 +158,7 @@ class ColonSpec:
     """How many seeds are tried before the spec is given up."""
 
     def __post_init__(self) -> None:
-        """Checks every value.
+        """Check every value.
 
         Raises:
             ValueError: Names the field, its value and what is allowed.

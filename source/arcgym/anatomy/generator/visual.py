@@ -26,7 +26,7 @@ from arcgym.anatomy.stage.types import VisualMesh, WallMesh
 def sample_visual(
     surface: Surface, wall: WallMesh, lesions: list[Lesion], rows: int, columns: int, refinements: int
 ) -> VisualMesh:
-    """Samples a surface finely and skins it to the wall's inner layer.
+    """Sample a surface finely and skin it to the wall's inner layer.
 
     Args:
         surface: The colon.
@@ -62,7 +62,7 @@ def sample_visual(
 
 
 def _parameter_grid(surface: Surface, rows: int, columns: int) -> tuple[np.ndarray, ...]:
-    """Returns arc length, angle, triangles and a dome mark; the dome of the caecum has vertices of its own.
+    """Return arc length, angle, triangles and a dome mark; the dome of the caecum has vertices of its own.
 
     The seam of the texture at angle 0 and the edge of the dome have their vertices twice, once for each chart.
     """
@@ -84,7 +84,7 @@ def _parameter_grid(surface: Surface, rows: int, columns: int) -> tuple[np.ndarr
 def _shaped_points(
     surface: Surface, lesions: list[Lesion], s: np.ndarray, theta: np.ndarray, min_width: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns positions [m] and tint of all vertices."""
+    """Return positions [m] and tint of all vertices."""
     around = np.where(theta > 2 * np.pi - 1e-9, 0.0, theta)
     points = surface.points(s, around, 1.0, min_width)
     tint = np.zeros(len(s))
@@ -96,7 +96,7 @@ def _shaped_points(
 
 
 def _texture_coordinates(surface: Surface, s: np.ndarray, theta: np.ndarray, dome: np.ndarray) -> np.ndarray:
-    """Returns u round the lumen and v along it, shape (M, 2)."""
+    """Return u round the lumen and v along it, shape (M, 2)."""
     bounds = {name: surface.curve.bounds(name) for name in SEGMENTS}
     uv = tube_texture(s, theta, bounds)
     edge = surface.curve.length - DOME_LENGTH

@@ -19,21 +19,15 @@ In reading order:
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.anatomy.importing.errors import ColonImportError, ImportArgumentError
 from arcgym.anatomy.importing.settings import ImportSettings
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.anatomy.importing.output import import_to_folder
 
 __all__ = ["ColonImportError", "ImportArgumentError", "ImportSettings", "import_to_folder"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import the pipeline, and with it SciPy, when it is asked for."""
-    if name != "import_to_folder":
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    from arcgym.anatomy.importing.output import import_to_folder
-
-    return import_to_folder
+__getattr__ = lazy_names(__name__, {"import_to_folder": "arcgym.anatomy.importing.output"})

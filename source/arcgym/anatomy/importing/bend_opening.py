@@ -24,7 +24,7 @@ _LARGEST_CURVATURE = 0.8
 
 
 def open_bends(points: np.ndarray, half_width: np.ndarray, iterations: int = 400) -> np.ndarray:
-    """Opens bends that are too sharp for the wall and moves loops apart where the wall would not fit between them.
+    """Open bends that are too sharp for the wall and move loops apart where the wall would not fit between them.
 
     Lengths are kept: a bend is opened by moving it outwards, not by cutting its corner.
 
@@ -53,7 +53,7 @@ def open_bends(points: np.ndarray, half_width: np.ndarray, iterations: int = 400
 
 
 def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:
-    """Returns a smooth shift that takes points of other loops apart where they are nearer than ``need``."""
+    """Return a smooth shift that takes points of other loops apart where they are nearer than ``need``."""
     shift = np.zeros_like(points)
     if not len(a):
         return shift
@@ -66,7 +66,7 @@ def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarr
 
 
 def _unbend(points: np.ndarray, half_width: np.ndarray) -> np.ndarray:
-    """Returns a shift towards the neighbours' middle where curvature times half width is above 0.8."""
+    """Return a shift towards the neighbours' middle where curvature times half width is above 0.8."""
     shift = np.zeros_like(points)
     shift[1:-1] = 0.5 * (points[:-2] + points[2:]) - points[1:-1]
     edge = 0.5 * np.linalg.norm(points[2:] - points[:-2], axis=1)

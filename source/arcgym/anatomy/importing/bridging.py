@@ -89,7 +89,7 @@ class Bridge:
 def make_piece(
     grid: Grid, labels: np.ndarray, box: tuple[slice, ...], label: int, volume: float, single: bool
 ) -> Piece:
-    """Finds the ends of a piece; of a single one they are not needed."""
+    """Find the ends of a piece; of a single one they are not needed."""
     part = np.pad(labels[box] == label, 1)
     origin = grid.origin + grid.spacing * (np.array([s.start for s in box]) - 1)
     voxels = Grid(part.astype(np.float32), origin, grid.spacing)
@@ -129,7 +129,7 @@ def _from_root(tree: LumenTree) -> list[int]:
 
 
 def join_pieces(pieces: list[Piece], max_gap: float) -> tuple[list[Piece], list[Bridge]]:
-    """Joins tips that face each other, the best match first, and returns the chain with the greatest volume.
+    """Join tips that face each other, the best match first, and return the chain with the greatest volume.
 
     A tip is joined once and no ring is closed. A chain's last piece is left out where it is small and thin.
     """
@@ -154,7 +154,7 @@ def join_pieces(pieces: list[Piece], max_gap: float) -> tuple[list[Piece], list[
 
 
 def _matches(pieces: list[Piece], max_gap: float) -> list[tuple[float, Piece, Piece, Tip, Tip]]:
-    """Returns every pair of tips within reach, with the gap made longer by how far they look past each other."""
+    """Return every pair of tips within reach, with the gap made longer by how far they look past each other."""
     found = []
     for a, b in combinations(pieces, 2):
         for first in a.tips:

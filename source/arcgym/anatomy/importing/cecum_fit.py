@@ -90,13 +90,13 @@ class _Bullet:
     """Length of the dome over its radius."""
 
     def position(self, t: np.ndarray) -> np.ndarray:
-        """Returns points of the axis at arc lengths ``t`` from its base [m], shape (n, 3)."""
+        """Return points of the axis at arc lengths ``t`` from its base [m], shape (n, 3)."""
         curvature = np.linalg.norm(self.bend) + 1e-9
         turned, towards = curvature * t[:, None], self.bend / curvature
         return self.base + (np.sin(turned) * self.direction + (1.0 - np.cos(turned)) * towards) / curvature
 
     def excess(self, points: np.ndarray) -> np.ndarray:
-        """Returns how far points are outside of the surface, negative inside [m], shape (n,)."""
+        """Return how far points are outside of the surface, negative inside [m], shape (n,)."""
         curvature = np.linalg.norm(self.bend) + 1e-9
         offset, towards = points - self.base, self.bend / curvature
         along, inwards = offset @ self.direction, offset @ towards
@@ -110,7 +110,7 @@ class _Bullet:
 
 
 def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Leads the last of a centreline along the fitted axis of the caecum to its pole.
+    """Lead the last of a centreline along the fitted axis of the caecum to its pole.
 
     Args:
         grid: The lumen, +X right, +Y anterior, +Z cranial.
@@ -135,14 +135,14 @@ def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
 
 
 def _typical_radius(grid: Grid, curve: Curve) -> float:
-    """Returns the radius between folds near the end [m]."""
+    """Return the radius between folds near the end [m]."""
     s = np.arange(curve.length - 0.08, curve.length - 0.015, SETTINGS.step)
     between = np.quantile(cast_rings(grid, curve, s, 48), 0.7, axis=1)
     return float(np.clip(np.median(between), *SETTINGS.radius_range))
 
 
 def _wall_points(grid: Grid, curve: Curve, start: float, radius: float) -> np.ndarray:
-    """Returns voxels at the wall, beyond an arc length and not far from the curve [m], shape (n, 3)."""
+    """Return voxels at the wall, beyond an arc length and not far from the curve [m], shape (n, 3)."""
     s = np.arange(0.0, curve.length, SETTINGS.step)
     line = curve.position(s)
     near = line[s >= start]
@@ -156,7 +156,7 @@ def _wall_points(grid: Grid, curve: Curve, start: float, radius: float) -> np.nd
 
 
 def _fit(wall: np.ndarray, base: np.ndarray, direction: np.ndarray, length: float, radius: float) -> _Bullet:
-    """Returns the bullet whose surface most of the wall lies on; folds, which reach inwards, count less."""
+    """Return the bullet whose surface most of the wall lies on; folds, which reach inwards, count less."""
     across = np.linalg.svd(direction[None])[2][1:]
     frame = _Frame(base, direction, across)
     first = np.r_[np.zeros(6), length, radius, 0.0, SETTINGS.aspect]
@@ -179,7 +179,7 @@ def _fit(wall: np.ndarray, base: np.ndarray, direction: np.ndarray, length: floa
 
 
 def _bullet(frame: _Frame, values: np.ndarray) -> _Bullet:
-    """Builds a bullet from shifts (2), turns (2) and curvatures (2) across the frame, length, radius and shape."""
+    """Build a bullet from shifts (2), turns (2) and curvatures (2) across the frame, length, radius and shape."""
     direction = frame.direction + values[2:4] @ frame.across
     direction /= np.linalg.norm(direction)
     bend = values[4:6] @ frame.across
@@ -188,7 +188,7 @@ def _bullet(frame: _Frame, values: np.ndarray) -> _Bullet:
 
 
 def _axis(grid: Grid, bullet: _Bullet) -> np.ndarray:
-    """Returns the axis from the bullet's base to where it leaves the lumen [m], shape (n, 3)."""
+    """Return the axis from the bullet's base to where it leaves the lumen [m], shape (n, 3)."""
     t = np.arange(0.0, bullet.length + bullet.radius, 0.5 * SETTINGS.step)
     points = bullet.position(t)
     out = (grid.sample(points) < 0.5) & (t > bullet.length - bullet.radius)
@@ -196,7 +196,7 @@ def _axis(grid: Grid, bullet: _Bullet) -> np.ndarray:
 
 
 def _blended(curve: Curve, start: float, axis: np.ndarray) -> np.ndarray:
-    """Returns the curve, passing over to the axis in the axis' first half."""
+    """Return the curve, passing over to the axis in the axis' first half."""
     before = curve.position(np.arange(0.0, start, SETTINGS.step))
     arc = 0.5 * SETTINGS.step * np.arange(len(axis))
     share = smooth_step(0.0, 1.0, 2.0 * arc / arc[-1])[:, None]

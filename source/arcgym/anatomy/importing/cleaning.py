@@ -47,7 +47,7 @@ class Cleaning:
 
 
 def keep_colon(grid: Grid, max_gap: float) -> tuple[Grid, Cleaning]:
-    """Keeps the chain of pieces, joined end to end, that holds most.
+    """Keep the chain of pieces, joined end to end, that holds most.
 
     Args:
         grid: The lumen.
@@ -94,12 +94,12 @@ def _report_pieces(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[P
 
 
 def in_millimeters(point: np.ndarray) -> list[int]:
-    """Returns a position in whole millimetres."""
+    """Return a position in whole millimetres."""
     return [round(1e3 * float(value)) for value in point]
 
 
 def _drawn(grid: Grid, keep: np.ndarray, bridges: list[Bridge]) -> Grid:
-    """Returns the field of what is kept, with bridges drawn and holes filled."""
+    """Return the field of what is kept, with bridges drawn and holes filled."""
     for bridge in bridges:
         start, end = (np.rint(grid.index(point)).astype(int) for point in (bridge.start, bridge.end))
         _draw_bridge(keep, start, end, _BRIDGE_RADIUS / grid.spacing)
@@ -122,7 +122,7 @@ def _check_extent(keep: np.ndarray, spacing: float) -> None:
 
 
 def _draw_bridge(mask: np.ndarray, start: np.ndarray, end: np.ndarray, radius: float) -> None:
-    """Sets the voxels within a capsule."""
+    """Set the voxels within a capsule."""
     low = np.maximum(np.minimum(start, end) - int(radius) - 2, 0)
     high = np.minimum(np.maximum(start, end) + int(radius) + 3, mask.shape)
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))

@@ -29,7 +29,7 @@ _DEAREST = 2e4
 
 
 def coarse_clearance(grid: Grid) -> Grid:
-    """Returns the distance to the wall [m] on voxels of twice the size, the largest of eight: nothing is cut off."""
+    """Return the distance to the wall [m] on voxels of twice the size, the largest of eight: nothing is cut off."""
     import SimpleITK as sitk
 
     mask = grid.mask
@@ -43,13 +43,13 @@ def coarse_clearance(grid: Grid) -> Grid:
 
 
 def widest_near(clearance: Grid) -> np.ndarray:
-    """Returns the largest clearance within 13 mm of each voxel [m], same shape."""
+    """Return the largest clearance within 13 mm of each voxel [m], same shape."""
     size = 2 * round(_REACH / clearance.spacing) + 1
     return maximum_filter(clearance.values, size)
 
 
 def passing_cost(clearance: Grid, widest: np.ndarray) -> np.ndarray:
-    """Returns the cost of passing each voxel, :data:`OUTSIDE` beyond the wall.
+    """Return the cost of passing each voxel, :data:`OUTSIDE` beyond the wall.
 
     It rises with the sixth power of the nearness of the wall once that is below 10 to 16 mm, or 0.6 times the lumen's
     radius: a fold leaves more room than that, a window between two touching loops does not, so that a path goes the

@@ -29,7 +29,7 @@ _TUBE_SECTION = 3e-4
 
 
 def cut_off(grid: Grid, attached: list[AttachedLumen], path: np.ndarray, clearance: np.ndarray) -> list[dict[str, Any]]:
-    """Sets the voxels of attached pieces to 0, in place.
+    """Set the voxels of attached pieces to 0, in place.
 
     A voxel goes with the piece whose wall it is deeper within: the colon's or that of what hangs on it.
 
@@ -77,7 +77,7 @@ def _as_report(piece: AttachedLumen, volume: float) -> dict[str, Any]:
 
 
 def _keep_connected(grid: Grid, path: np.ndarray) -> None:
-    """Drops what the cut has left without a way to the colon."""
+    """Drop what the cut has left without a way to the colon."""
     labels, _ = ndimage.label(grid.values > 0)
     index = np.rint(grid.index(path)).astype(int)
     names = labels[tuple(index.T)]
@@ -86,7 +86,7 @@ def _keep_connected(grid: Grid, path: np.ndarray) -> None:
 
 
 def fill_tube(grid: Grid, anus: np.ndarray, axis: int = 2) -> float:
-    """Fills, in place, holes in cross-sections of the rectum: a tube's wall and its own lumen, and so its balloon.
+    """Fill, in place, holes in cross-sections of the rectum: a tube's wall and its own lumen, and so its balloon.
 
     Args:
         grid: The lumen in the patient's frame.

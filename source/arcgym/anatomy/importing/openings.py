@@ -31,12 +31,12 @@ class Opening:
     """Length of its rim over two pi [m]."""
 
     def turned(self, rotation: np.ndarray) -> Opening:
-        """Returns the opening on other axes."""
+        """Return the opening on other axes."""
         return replace(self, center=rotation @ self.center)
 
 
 def find_openings(points: np.ndarray, faces: np.ndarray) -> list[Opening]:
-    """Finds the holes of a surface.
+    """Find the holes of a surface.
 
     Args:
         points: Vertices [m]; those in the same place are taken for one, shape (n, 3).
@@ -61,7 +61,7 @@ def find_openings(points: np.ndarray, faces: np.ndarray) -> list[Opening]:
 
 
 def lead_to_opening(path: np.ndarray, openings: Sequence[Opening]) -> np.ndarray | None:
-    """Leads the end of a path to the middle of the opening there, whichever way that was cut.
+    """Lead the end of a path to the middle of the opening there, whichever way that was cut.
 
     Args:
         path: Path to the end, evenly spaced [m], shape (n, 3).

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which end is the anus, and for surfaces which way the file's axes point: by likeness to a typical course."""
+"""Find the anal end, and for surfaces the file's axes, by likeness to a typical course."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Orientation:
 
 
 def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
-    """Tells the ends apart and finds the frame.
+    """Tell the ends apart and find the frame.
 
     Args:
         path: Course from one end to the other in the file's axes [m], shape (n, 3).
@@ -87,7 +87,7 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
 
 
 def likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:
-    """Returns the correlation with a typical course at equal shares of the length, 1 at best.
+    """Return the correlation with a typical course at equal shares of the length, 1 at best.
 
     Args:
         path: Course [m], shape (n, 3).

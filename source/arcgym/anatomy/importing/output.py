@@ -17,7 +17,7 @@ from arcgym.anatomy.stage import write_colon
 
 
 def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite: bool = False) -> dict[str, Any]:
-    """Imports a colon into a folder with ``colon.usda``, what it refers to, ``report.json`` and ``report.png``.
+    """Import a colon into a folder with ``colon.usda``, what it refers to, ``report.json`` and ``report.png``.
 
     Everything is made in a folder beside it that is renamed at the end; when the import fails, nothing stays.
 

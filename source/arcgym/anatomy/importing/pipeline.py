@@ -71,7 +71,7 @@ class _Progress:
 
 
 def import_colon(path: Path, settings: ImportSettings, folder: Path) -> ImportedColon:
-    """Imports a colon.
+    """Import a colon.
 
     Args:
         path: Label volume or surface.
@@ -117,7 +117,7 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
 
 
 def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], dict[str, str]]:
-    """Returns the lumen, where it is open if it was a surface, and what was read."""
+    """Return the lumen, where it is open if it was a surface, and what was read."""
     if path.name.lower().endswith(VOLUME_SUFFIXES):
         grid = read_volume(path, settings.label, settings.spacing, settings.voxel)
         return grid, [], {"kind": "volume", "units": "mm"}

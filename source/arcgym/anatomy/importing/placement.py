@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""From the file's axes to the stage's: right, anterior, cranial, the anal verge at the origin, the canal upright."""
+"""Turn and move a colon from the file's axes to the stage's: anal verge at the origin, canal upright."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def turned_grid(grid: Grid, path: np.ndarray, rotation: np.ndarray) -> tuple[Gri
 
 
 def place(measured: Measured) -> tuple[Curve, Measured, float]:
-    """Returns the curve in the stage's frame, what was measured in its frames, and the turn of the canal [rad]."""
+    """Return the curve in the stage's frame, what was measured in its frames, and the turn of the canal [rad]."""
     old = measured.curve
     points, angle = turn_canal_upright(old.points)
     curve = plain_curve(points)
@@ -59,14 +59,14 @@ def place(measured: Measured) -> tuple[Curve, Measured, float]:
 
 
 def _rolled(values: np.ndarray, columns: float) -> np.ndarray:
-    """Shifts columns round by a fraction, shape kept."""
+    """Shift columns round by a fraction, shape kept."""
     whole = int(np.floor(columns))
     share = columns - whole
     return (1 - share) * np.roll(values, -whole, 1) + share * np.roll(values, -whole - 1, 1)
 
 
 def given_landmarks(settings: ImportSettings, curve: Curve, rotation: np.ndarray, length: float) -> dict[str, float]:
-    """Returns the arc length [m] of the landmarks that the caller knows, of positions the nearest."""
+    """Return the arc length [m] of the landmarks that the caller knows, of positions the nearest."""
     arcs = {}
     for name, position in settings.landmarks.items():
         if isinstance(position, float | int):
@@ -83,7 +83,7 @@ def given_landmarks(settings: ImportSettings, curve: Curve, rotation: np.ndarray
 
 
 def describe_transform(orientation: Orientation, measured: Measured, curve: Curve, canal: float) -> dict[str, Any]:
-    """Describes how the file's coordinates became the stage's."""
+    """Describe how the file's coordinates became the stage's."""
     half = np.array(0.5 * curve.length)
     offset = curve.position(half) - measured.curve.position(half * measured.curve.length / curve.length)
     return {
@@ -96,7 +96,7 @@ def describe_transform(orientation: Orientation, measured: Measured, curve: Curv
 
 
 def turn_canal_upright(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Turns the first centimetres until the anal canal rises along +Z, and puts the anal verge at the origin.
+    """Turn the first centimetres until the anal canal rises along +Z, and put the anal verge at the origin.
 
     Returns:
         The new points [m] and the angle by which the canal was turned [rad]; lengths are kept, and everything beyond

@@ -26,7 +26,7 @@ _CHUNK = 200
 
 
 def cast_rings(grid: Grid, curve: Curve, s: np.ndarray, sectors: int) -> np.ndarray:
-    """Casts rays in the plane across the curve at each ``s``.
+    """Cast rays in the plane across the curve at each ``s``.
 
     Returns:
         Distance to where the lumen ends [m], shape (n, sectors); sector j stands at ``2 pi j / sectors``.
@@ -36,7 +36,7 @@ def cast_rings(grid: Grid, curve: Curve, s: np.ndarray, sectors: int) -> np.ndar
 
 
 def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Casts rays from centres, shape (n, 3), in unit directions, shape (n, k, 3); returns lengths [m], (n, k)."""
+    """Cast rays from centres, shape (n, 3), in unit directions, shape (n, k, 3); returns lengths [m], (n, k)."""
     rho = _STEP * np.arange(round(REACH / _STEP) + 1)
     out = np.zeros(directions.shape[:2])
     for start in range(0, len(centers), _CHUNK):
@@ -56,7 +56,7 @@ def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
 def bounded(
     curve: Curve, s: np.ndarray, radius: np.ndarray, wall: float = 0.0, share: float = _BEND_LIMIT
 ) -> np.ndarray:
-    """Limits radii softly on the inside of bends, where a swept surface would fold over; shape (n, sectors)."""
+    """Limit radii softly on the inside of bends, where a swept surface would fold over; shape (n, sectors)."""
     theta = np.arange(radius.shape[1]) * 2 * np.pi / radius.shape[1]
     _, normal, binormal = curve.frame(s)
     bend = curve.interpolate(s, curve.curvature_vector)
@@ -67,7 +67,7 @@ def bounded(
 
 
 def own_loop(curve: Curve, s: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Cuts rays that run through a window or a leak: at the border to a neighbouring loop, and where they stick out.
+    """Cut rays that run through a window or a leak: at the border to a neighbouring loop, and where they stick out.
 
     The border between two loops is the power plane of their mean circles, moved out by a tenth.
     """
@@ -79,7 +79,7 @@ def own_loop(curve: Curve, s: np.ndarray, radius: np.ndarray) -> np.ndarray:
 
 
 def _loop_border(curve: Curve, s: np.ndarray, typical: np.ndarray, sectors: int) -> np.ndarray:
-    """Returns the distance along each ray to the border with other loops [m], shape (n, sectors)."""
+    """Return the distance along each ray to the border with other loops [m], shape (n, sectors)."""
     centers, theta = curve.position(s), np.arange(sectors) * 2 * np.pi / sectors
     _, normal, binormal = curve.frame(s)
     limit = np.full((len(s), sectors), REACH)

@@ -32,7 +32,7 @@ _TIP = 0.020
 
 
 def lead_to_pole(clearance: Grid, path: np.ndarray, look: float) -> np.ndarray:
-    """Leads the last part of a path through the middle of the lumen to its blind end, not into a corner.
+    """Lead the last part of a path through the middle of the lumen to its blind end, not into a corner.
 
     It ends at the centre of the largest ball that fits in there; the pole is straight on.
 
@@ -51,7 +51,7 @@ def lead_to_pole(clearance: Grid, path: np.ndarray, look: float) -> np.ndarray:
 
 
 def _largest_ball(clearance: Grid, path: np.ndarray) -> tuple[np.ndarray, float]:
-    """Returns centre and radius [m] of the largest ball near a path, the mean of centres that are nearly as good."""
+    """Return centre and radius [m] of the largest ball near a path, the mean of centres that are nearly as good."""
     reach = _NEAR / clearance.spacing
     index = clearance.index(path)
     low = np.maximum(np.floor(index.min(0) - reach).astype(int), 0)
@@ -70,7 +70,7 @@ def _largest_ball(clearance: Grid, path: np.ndarray) -> tuple[np.ndarray, float]
 
 
 def trim_open_end(clearance: Grid, path: np.ndarray) -> np.ndarray:
-    """Leaves out the last of a path as far as its end is wide: an open end is cut off square and has corners."""
+    """Leave out the last of a path as far as its end is wide: an open end is cut off square and has corners."""
     step = float(np.linalg.norm(np.diff(path, axis=0), axis=1).mean())
     index = np.clip(np.rint(clearance.index(path)).astype(int), 0, np.array(clearance.values.shape) - 1)
     room = clearance.values[tuple(index.T)]

@@ -50,7 +50,7 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
 
 
 def write_report(imported: ImportedColon, folder: Path) -> dict[str, Any]:
-    """Writes ``report.json`` and ``report.png`` and returns the figures."""
+    """Write ``report.json`` and ``report.png`` and return the figures."""
     report = figures(imported)
     (folder / REPORT_NAME).write_text(json.dumps(report, indent=2) + "\n")
     _draw_page(imported, folder / PAGE_NAME)
@@ -78,7 +78,7 @@ def _draw_page(imported: ImportedColon, path: Path) -> None:
 
 
 def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
-    """Returns in words what was bridged, dropped and cut off, at most six lines."""
+    """Return in words what was bridged, dropped and cut off, at most six lines."""
     lines = [f"bridged a gap of {b['gap_mm']:.0f} mm at {b['place_mm']}" for b in cleaning["bridges"]]
     for cut in cleaning["cut"]:
         size = f", {cut['length_mm']} mm long, {cut['caliber_mm']:.0f} mm wide" if "length_mm" in cut else ""
@@ -89,7 +89,7 @@ def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
 
 
 def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) -> None:
-    """Draws the cleaned lumen seen through, with the centreline in the colours of its segments."""
+    """Draw the cleaned lumen seen through, with the centreline in the colours of its segments."""
     grid = imported.grid
     (hidden,) = set(range(3)) - set(axes)
     depth = grid.values.sum(hidden) * grid.spacing
@@ -124,7 +124,7 @@ def _draw_radius(axis: Any, stage: ColonStage) -> None:
 
 
 def _draw_unrolled(axis: Any, stage: ColonStage) -> None:
-    """Draws the visual surface cut open along its seam: distance from the centreline, dark on folds."""
+    """Draw the visual surface cut open along its seam: distance from the centreline, dark on folds."""
     visual, line, wall = stage.visual, stage.centerline, stage.wall
     arc = (visual.skin_weights * wall.ring_arc[wall.ring[visual.skin_indices]]).sum(1)
     columns = int(np.argmax(arc > arc[0]))

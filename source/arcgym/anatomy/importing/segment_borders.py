@@ -66,7 +66,7 @@ _TYPICAL_SHARES = (0.088, 0.402, 0.532, 0.599, 0.818, 0.882, 0.963)
 
 
 def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, float]) -> tuple[np.ndarray, list[str]]:
-    """Finds the arc length at the end of each of the eight segments.
+    """Find the arc length at the end of each of the eight segments.
 
     Args:
         points: Centreline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
@@ -89,7 +89,7 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
 
 
 def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
-    """Finds the borders by the tops of both flexures, their limbs, and the height of the iliac fossa."""
+    """Find the borders by the tops of both flexures, their limbs, and the height of the iliac fossa."""
     length, share, height = arc[-1], arc / arc[-1], points[:, 2]
     splenic = _top(points * [-1, 1, 1], arc, (share > 0.30) & (share < 0.75), lateral=0.0)
     after = (arc > splenic + 0.12) & (arc < length - 0.12)
@@ -109,7 +109,7 @@ def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
 
 
 def _middle_of_top(arc: np.ndarray, height: np.ndarray, top: float) -> float:
-    """Returns the middle of a flexure: a top may be flat, or have two humps, so that its highest point moves about."""
+    """Return the middle of a flexure: a top may be flat, or have two humps, so that its highest point moves about."""
     near, level = np.abs(arc - top) < _LONGEST_TOP, np.interp(top, arc, height)
     middles = []
     for depth in _TOPS:
@@ -119,7 +119,7 @@ def _middle_of_top(arc: np.ndarray, height: np.ndarray, top: float) -> float:
 
 
 def _limb(arc: np.ndarray, height: np.ndarray, top: float) -> float:
-    """Returns the mean of where the course is steep behind a top and where it is well below it."""
+    """Return the mean of where the course is steep behind a top and where it is well below it."""
     near = (arc > top) & (arc < top + _LONGEST_LIMB)
     level = np.interp(top, arc, height)
     low = [arc[near & (height > level - drop)].max(initial=top) for drop in _LIMB_DROPS]
@@ -133,7 +133,7 @@ def _slope(arc: np.ndarray, height: np.ndarray) -> np.ndarray:
 
 
 def _groove_end(arc: np.ndarray, height: np.ndarray, top: float) -> float:
-    """Follows the descending colon down to the iliac fossa, or to where it turns up again just above it."""
+    """Follow the descending colon down to the iliac fossa, or to where it turns up again just above it."""
     tall = float(np.interp(top, arc, height) - height[0])
     level = height[0] + min(ILIAC_FOSSA, 0.6 * tall)
     turned = (_slope(arc, height) < _LEVEL_SLOPE) & (height < level + _NEAR_FOSSA * tall)
@@ -145,6 +145,6 @@ def _groove_end(arc: np.ndarray, height: np.ndarray, top: float) -> float:
 
 
 def _top(points: np.ndarray, arc: np.ndarray, where: np.ndarray, lateral: float) -> float:
-    """Returns where the course turns at the top of a flank: high, and on the side of positive x."""
+    """Return where the course turns at the top of a flank: high, and on the side of positive x."""
     height = points[:, 2] + lateral * np.minimum(points[:, 0] - np.quantile(points[:, 0], 0.9), 0.0)
     return float(arc[np.where(where, height, -np.inf).argmax()])

@@ -40,14 +40,14 @@ _END_LENGTH = 0.03
 
 
 def plain_curve(points: np.ndarray) -> Curve:
-    """Returns the curve through points before its segments are known."""
+    """Return the curve through points before its segments are known."""
     return Curve(points, np.linspace(0.0, 1.0, len(SEGMENTS) + 1)[1:])
 
 
 def center_path(
     grid: Grid, path: np.ndarray, find_pole: bool = True, openings: Sequence[Opening] = (), rounds: int = 6
 ) -> np.ndarray:
-    """Smooths a path, moves it to the centroids of the lumen's cross-sections and goes on to the wall at both ends.
+    """Smooth a path, move it to the centroids of the lumen's cross-sections and lead it to the wall at both ends.
 
     Args:
         grid: The lumen.
@@ -71,7 +71,7 @@ def center_path(
 
 
 def _center_once(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Returns points moved to the centroids and smoothed."""
+    """Return points moved to the centroids and smoothed."""
     curve = plain_curve(points)
     s = np.linspace(0.0, curve.length, round(curve.length / SPACING) + 1)
     shift, radius = _centroid_shift(grid, curve, s)
@@ -80,7 +80,7 @@ def _center_once(grid: Grid, points: np.ndarray) -> np.ndarray:
 
 
 def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Smooths over a share of the lumen's radius: where it is narrow, its bends may be as narrow."""
+    """Smooth over a share of the lumen's radius: where it is narrow, its bends may be as narrow."""
     level = np.interp(_SMOOTHING_SHARE * radius, _SMOOTHING, np.arange(len(_SMOOTHING)))
     out = np.zeros_like(points)
     for k, sigma in enumerate(_SMOOTHING):
@@ -90,7 +90,7 @@ def _smoothed_to_fit(points: np.ndarray, radius: np.ndarray) -> np.ndarray:
 
 
 def _to_the_wall(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Goes straight on from the last point to the wall."""
+    """Go straight on from the last point to the wall."""
     start = points[-1]
     end = _wall_ahead(grid, start, start - points[-1 - round(_END_LENGTH / SPACING)])
     if np.linalg.norm(end - start) < 0.5 * SPACING:
@@ -99,14 +99,14 @@ def _to_the_wall(grid: Grid, points: np.ndarray) -> np.ndarray:
 
 
 def _wall_ahead(grid: Grid, start: np.ndarray, direction: np.ndarray, step: float = 0.0005) -> np.ndarray:
-    """Returns the last point of the lumen on a ray, at most 80 mm away."""
+    """Return the last point of the lumen on a ray, at most 80 mm away."""
     ray = start + step * np.arange(160)[:, None] * direction / max(float(np.linalg.norm(direction)), 1e-9)
     inside = grid.sample(ray) > 0.5
     return ray[-1] if inside.all() else ray[max(int(inside.argmin()) - 1, 0)]
 
 
 def _centroid_shift(grid: Grid, curve: Curve, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the way from the curve to the centroid of each cross-section [m], shape (n, 3), and the radius, (n,)."""
+    """Return the shift from the curve to the centroid of each cross-section [m], shape (n, 3), and the radius, (n,)."""
     rays = cast_rings(grid, curve, s, _SECTORS)
     typical = gaussian_filter1d(np.median(rays, axis=1), 3.0, mode="nearest")
     radius = np.minimum(rays, 1.6 * typical[:, None])

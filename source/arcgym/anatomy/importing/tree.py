@@ -72,14 +72,14 @@ class LumenTree:
 
 
 def caliber(clearance: np.ndarray, points: np.ndarray, reach: float = 0.012) -> np.ndarray:
-    """Returns the lumen radius between folds along a path [m]: the largest clearance nearby, smoothed, shape (n,)."""
+    """Return the lumen radius between folds along a path [m]: the largest clearance nearby, smoothed, shape (n,)."""
     step = max(float(np.linalg.norm(np.diff(points, axis=0), axis=1).mean()) if len(points) > 1 else 1.0, 1e-5)
     widest = maximum_filter1d(clearance, 2 * round(reach / step) + 1, mode="nearest")
     return gaussian_filter1d(widest, 0.5 * reach / step, mode="nearest")
 
 
 def lumen_tree(clearance: Grid, given: Sequence[np.ndarray] = ()) -> LumenTree:
-    """Covers a lumen with paths, the longest first, until nothing sticks out (after Sato et al., TEASAR, 2000).
+    """Cover a lumen with paths, the longest first, until nothing sticks out (after Sato et al., TEASAR, 2000).
 
     Args:
         clearance: Distance to the wall [m], of one connected lumen.
@@ -125,7 +125,7 @@ class _Growth:
         self.tips: list[int] = []
 
     def beyond(self, path: list[tuple[int, ...]]) -> np.ndarray:
-        """Returns the part of a path from the last voxel that the tree has, shape (n, 3)."""
+        """Return the part of a path from the last voxel that the tree has, shape (n, 3)."""
         known = max(k for k, voxel in enumerate(path) if tuple(voxel) in self.number)
         return np.array(path[known:])
 
@@ -140,7 +140,7 @@ class _Growth:
 
 
 def _passes_through(tree: LumenTree) -> bool:
-    """Tells whether branches leave the root in at least two directions, so that the root is no tip."""
+    """Return whether branches leave the root in at least two directions, so that the root is no tip."""
     if len(tree.tips) < 2:
         return False
     reach = 2.0 * tree.clearance[0] + _LEAST_BRANCH

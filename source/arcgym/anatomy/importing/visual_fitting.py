@@ -31,7 +31,7 @@ _DOME_STEPS = 10
 def fit_visual(
     curve: Curve, s: np.ndarray, radius: np.ndarray, dome: np.ndarray, fitted: FittedWall, spacing: float, columns: int
 ) -> VisualMesh:
-    """Samples the measured surface, moved along with the wall where that was widened or narrowed.
+    """Sample the measured surface, moved along with the wall where that was widened or narrowed.
 
     Args:
         curve: Centreline.
@@ -75,7 +75,7 @@ def fit_visual(
 def _texture_coordinates(
     curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndarray, rho: np.ndarray
 ) -> np.ndarray:
-    """Returns u and v of tube and dome, each stretch in the band of its vessels, shape (M, 2)."""
+    """Return u and v of tube and dome, each stretch in the band of its vessels, shape (M, 2)."""
     bounds = {name: curve.bounds(name) for name in SEGMENTS}
     s, angle = (grid.ravel() for grid in np.meshgrid(rows, theta, indexing="ij"))
     rim = float(rho[len(rows)].mean())
@@ -85,7 +85,7 @@ def _texture_coordinates(
 
 
 def _resampled(s: np.ndarray, values: np.ndarray, rows: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Interpolates values on a grid that closes around, shape (len(rows), len(theta))."""
+    """Interpolate values on a grid that closes around, shape (len(rows), len(theta))."""
     at = np.interp(rows, s, np.arange(len(s)))
     column = theta * values.shape[1] / (2 * np.pi)
     index = np.stack(np.meshgrid(at, column, indexing="ij"))
@@ -98,7 +98,7 @@ def _change(fitted: FittedWall, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
 
 
 def _positions(curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndarray, rho: np.ndarray) -> np.ndarray:
-    """Returns the vertices of tube and dome [m], those of seam and rim the same twice, shape (M, 3), float32."""
+    """Return the vertices of tube and dome [m], those of seam and rim the same twice, shape (M, 3), float32."""
     theta = np.where(theta > 2 * np.pi - 1e-9, 0.0, theta)
     center = np.r_[rows, np.full(len(polar), rows[-1])]
     lift = np.r_[np.zeros(len(rows)), polar]

@@ -56,7 +56,7 @@ class FittedWall:
 
 
 def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSettings) -> FittedWall:
-    """Fits the wall.
+    """Fit the wall.
 
     Args:
         curve: Centreline.
@@ -94,7 +94,7 @@ def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSe
 
 
 def _on_rings(s: np.ndarray, radius: np.ndarray, arc: np.ndarray, sectors: int) -> np.ndarray:
-    """Averages measured radii about each vertex of the ring grid: a coarse grid would turn sharp folds into spikes."""
+    """Average measured radii about each vertex of the ring grid: a coarse grid would turn sharp folds into spikes."""
     step, columns = s[1] - s[0], radius.shape[1]
     soft = gaussian_filter(
         radius, (0.35 * (arc[1] - arc[0]) / step, 0.35 * columns / sectors), mode=("nearest", "wrap")
@@ -112,7 +112,7 @@ def _build(curve: Curve, arc: np.ndarray, inner: np.ndarray, thickness: float) -
 
 
 def _inverted(wall: WallMesh) -> np.ndarray:
-    """Marks the grid vertices of badly shaped elements with 1, shape (R, S)."""
+    """Mark the grid vertices of badly shaped elements with 1, shape (R, S)."""
     bad = wall.tets[tet_quality(wall.points, wall.tets) < _LEAST_QUALITY]
     grid = wall.num_rings * wall.num_sectors
     mark = np.zeros(grid)
@@ -121,7 +121,7 @@ def _inverted(wall: WallMesh) -> np.ndarray:
 
 
 def _crossing(wall: WallMesh) -> np.ndarray:
-    """Marks the grid vertices of edges that pass through faces, and of these faces, with 2, shape (R, S)."""
+    """Mark the grid vertices of edges that pass through faces, and of these faces, with 2, shape (R, S)."""
     grid = wall.num_rings * wall.num_sectors
     mark = np.zeros(grid)
     mark[find_crossings(wall.points, boundary_faces(wall.tets)).ravel() % grid] = _CROSSING_WEIGHT
@@ -129,7 +129,7 @@ def _crossing(wall: WallMesh) -> np.ndarray:
 
 
 def _too_near(wall: WallMesh, settings: ImportSettings) -> np.ndarray:
-    """Marks the grid vertices that are too near another loop with 1, shape (R, S)."""
+    """Mark the grid vertices that are too near another loop with 1, shape (R, S)."""
     shape = (wall.num_rings, wall.num_sectors)
     outer = wall.points[wall.layer == 1].reshape(*shape, 3).astype(float)
     middle = outer.mean(1)

@@ -5,3 +5,25 @@
 - :mod:`wall`: the tetrahedral wall of rings and sectors;
 - :mod:`surface_grid`: triangles, normals, texture coordinates and skin weights of a visual surface.
 """
+
+from __future__ import annotations
+
+from arcgym.anatomy.meshing.surface_grid import (
+    dome_texture,
+    grid_triangles,
+    skin_to_rings,
+    smooth_normals,
+    tube_texture,
+)
+from arcgym.anatomy.meshing.wall import build_wall, ring_arcs, wall_layers
+
+__all__ = [
+    "build_wall",
+    "dome_texture",
+    "grid_triangles",
+    "ring_arcs",
+    "skin_to_rings",
+    "smooth_normals",
+    "tube_texture",
+    "wall_layers",
+]

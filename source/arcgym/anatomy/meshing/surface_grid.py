@@ -20,7 +20,7 @@ _DOME_ROW = 0.875
 
 
 def grid_triangles(rows: int, columns: int) -> np.ndarray:
-    """Returns the triangles of an open grid (rows along, columns around), facing the lumen, shape (F, 3), int32."""
+    """Return the triangles of an open grid (rows along, columns around), facing the lumen, shape (F, 3), int32."""
     i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
     a, b = i * columns + j, (i + 1) * columns + j
     c, d = b + 1, a + 1
@@ -31,7 +31,7 @@ def grid_triangles(rows: int, columns: int) -> np.ndarray:
 
 
 def smooth_normals(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Returns area-weighted vertex normals, continuous over the texture seam, shape (M, 3), float32.
+    """Return area-weighted vertex normals, continuous over the texture seam, shape (M, 3), float32.
 
     Vertices at the same place (to 1 um) share one normal.
     """
@@ -47,7 +47,7 @@ def smooth_normals(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 def skin_to_rings(
     s: np.ndarray, theta: np.ndarray, ring_arc: np.ndarray, sectors: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Returns bilinear weights of surface points on the wall's inner grid.
+    """Return bilinear weights of surface points on the wall's inner grid.
 
     Args:
         s: Arc length of each point [m], shape (M,).
@@ -71,7 +71,7 @@ def skin_to_rings(
 
 
 def tube_texture(s: np.ndarray, theta: np.ndarray, bounds: Mapping[str, tuple[float, float]]) -> np.ndarray:
-    """Returns u round the lumen and v along it, in the band that shows the segment's vessels, shape (n, 2).
+    """Return u round the lumen and v along it, in the band that shows the segment's vessels, shape (n, 2).
 
     u turns slowly with the arc length, so that no two passes over a band of the texture look the same.
 
@@ -84,7 +84,7 @@ def tube_texture(s: np.ndarray, theta: np.ndarray, bounds: Mapping[str, tuple[fl
 
 
 def dome_texture(meridian: np.ndarray, theta: np.ndarray, rim: float) -> np.ndarray:
-    """Returns u and v on the dome of the caecum, equal distances from the pole in every direction, shape (n, 2).
+    """Return u and v on the dome of the caecum, equal distances from the pole in every direction, shape (n, 2).
 
     A polar chart would squeeze the texture into streaks at the pole.
 

@@ -4,12 +4,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.measures import tet_volumes
 from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from arcgym.anatomy.stage.types import WallMesh
+
+if TYPE_CHECKING:
+    from arcgym.anatomy.curve import Curve
 
 LAST_RING_GAP = 0.003
 """Distance of the last ring from the cecal pole [m]: it stands short of the pole, where the dome is wide."""
@@ -48,7 +52,7 @@ def wall_layers(curve: Curve, ring_arc: np.ndarray, radius: np.ndarray, thicknes
 
 
 def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarray, capped: bool = True) -> WallMesh:
-    """Builds the wall from the rest positions of its vertex layers.
+    """Build the wall from the rest positions of its vertex layers.
 
     Args:
         layers: Positions of layer, ring and sector [m], shape (2, R, S, 3), the lumen side first.
@@ -77,7 +81,7 @@ def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarra
 
 
 def tube_triangles(rings: int, sectors: int) -> np.ndarray:
-    """Returns the triangles of a tube of ``rings`` closed rings, with alternating diagonals, shape (F, 3), int32."""
+    """Return the triangles of a tube of ``rings`` closed rings, with alternating diagonals, shape (F, 3), int32."""
     i, j = np.meshgrid(np.arange(rings - 1), np.arange(sectors), indexing="ij")
     after = (j + 1) % sectors
     a, b, c, d = i * sectors + j, (i + 1) * sectors + j, (i + 1) * sectors + after, i * sectors + after
@@ -88,7 +92,7 @@ def tube_triangles(rings: int, sectors: int) -> np.ndarray:
 
 
 def polygon_triangles(sectors: int) -> np.ndarray:
-    """Returns a triangulation of a ring by a zigzag across it, shape (sectors - 2, 3), int32."""
+    """Return a triangulation of a ring by a zigzag across it, shape (sectors - 2, 3), int32."""
     low, high, triangles = 0, sectors - 1, []
     while high - low > 1:
         triangles.append((low, low + 1, high))
@@ -99,7 +103,7 @@ def polygon_triangles(sectors: int) -> np.ndarray:
 
 
 def _extrude(points: np.ndarray, triangles: np.ndarray, stride: int) -> np.ndarray:
-    """Splits each prism between a triangle and its copy one layer out into three tetrahedra.
+    """Split each prism between a triangle and its copy one layer out into three tetrahedra.
 
     Prisms are split by ascending vertex number, so that neighbours agree on the diagonal of the face they share.
     """
@@ -119,7 +123,7 @@ def _extrude(points: np.ndarray, triangles: np.ndarray, stride: int) -> np.ndarr
 
 
 def _anchors(ring: np.ndarray, layer: np.ndarray, segment: np.ndarray, rings: int) -> np.ndarray:
-    """Fixes the ends and ties the outer side of the retroperitoneal segments."""
+    """Fix the ends and tie the outer side of the retroperitoneal segments."""
     tied = np.isin(segment, [SEGMENTS.index(name) for name in RETROPERITONEAL]) & (layer == layer.max())
     anchor = np.where(tied, ANCHOR_ELASTIC, ANCHOR_FREE)
     ends = (ring < FIXED_RINGS_START) | (ring >= rings - FIXED_RINGS_END)
@@ -127,7 +131,7 @@ def _anchors(ring: np.ndarray, layer: np.ndarray, segment: np.ndarray, rings: in
 
 
 def _frame_neighbors(layers: int, rings: int, sectors: int) -> np.ndarray:
-    """Returns next ring, previous ring, next around and previous around of each vertex, shape (V, 4)."""
+    """Return next ring, previous ring, next around and previous around of each vertex, shape (V, 4)."""
     index = np.arange(layers * rings * sectors, dtype=np.int32).reshape(layers, rings, sectors)
     forward = np.concatenate([index[:, 1:], index[:, -1:]], 1)
     back = np.concatenate([index[:, :1], index[:, :-1]], 1)

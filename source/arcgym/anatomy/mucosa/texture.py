@@ -29,7 +29,7 @@ _PIXEL = 0.12
 
 
 def write_textures(folder: Path, seed: int, look: MucosaSpec | None = None) -> tuple[Path, Path]:
-    """Writes ``mucosa_albedo.jpg`` (RGB) and ``mucosa_detail.png`` (RGBA) and returns their paths."""
+    """Write ``mucosa_albedo.jpg`` (RGB) and ``mucosa_detail.png`` (RGBA) and return their paths."""
     look = look or MucosaSpec()
     albedo, detail = make_textures(seed, look=look)
     if look.width != WIDTH:
@@ -42,7 +42,7 @@ def write_textures(folder: Path, seed: int, look: MucosaSpec | None = None) -> t
 
 
 def _resize(image: np.ndarray, width: int) -> np.ndarray:
-    """Averages each channel over larger pixels; one by one, or Pillow would weight colour by the last as by opacity."""
+    """Average each channel over larger pixels; one by one, or Pillow would weight colour by the last as by opacity."""
     channels = [Image.fromarray(image[..., k]) for k in range(image.shape[2])]
     return np.stack([np.array(channel.resize((width, 2 * width), Image.Resampling.BOX)) for channel in channels], -1)
 
@@ -50,13 +50,13 @@ def _resize(image: np.ndarray, width: int) -> np.ndarray:
 def make_textures(
     seed: int, width: int = WIDTH, height: int = HEIGHT, look: MucosaSpec | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Makes the two textures.
+    """Make the two textures.
 
     Args:
         seed: Pattern; another seed is another patient.
         width: Pixels around the lumen.
         height: Pixels along the colon.
-        look: What it shall look like; its width is left to :func:`write_textures`.
+        look: How it looks; its width is left to :func:`write_textures`.
 
     Returns:
         Albedo, shape (height, width, 3), and detail, shape (height, width, 4), both uint8.
@@ -79,7 +79,7 @@ class _Noise:
         self.frequency[0, 0] = 1.0
 
     def __call__(self, shortest: float, longest: float, slope: float = 1.0) -> np.ndarray:
-        """Returns noise of unit variance with wavelengths from ``shortest`` to ``longest`` pixels."""
+        """Return noise of unit variance with wavelengths from ``shortest`` to ``longest`` pixels."""
         f = self.frequency
         gain = np.where((f > 1 / longest) & (f < 1 / shortest), f**-slope, 0.0)
         phase = self.rng.normal(size=f.shape) + 1j * self.rng.normal(size=f.shape)
@@ -117,7 +117,7 @@ def _detail(noise: _Noise, trunks: np.ndarray) -> np.ndarray:
 
 
 def _soil(noise: _Noise, albedo: np.ndarray, detail: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
-    """Covers a share of the mucosa with patches of turbid film and lumps of stool."""
+    """Cover a share of the mucosa with patches of turbid film and lumps of stool."""
     patches = noise(45, 420, 1.2) + 0.25 * noise(10, 40, 0.8)
     cover = np.clip((patches - np.quantile(patches, 1.0 - share)) / 0.5, 0.0, 1.0)[..., None]
     lumps = np.clip(0.5 + 0.5 * noise(5, 22, 0.8), 0.0, 1.0)[..., None]

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the submucosal vessels of each stretch of the colon look, and which band of the texture shows which stretch.
+"""Submucosal vessels of each stretch of the colon, and the band of the texture that shows it.
 
 The rectum has a dense venous plexus (Thomson, Br J Surg 1975; Standring, Gray's Anatomy, ch. 66); the vasa recta of
 the colon run round the wall from the mesenteric to the free border, long and sparsely branched on the right, shorter
@@ -50,7 +50,7 @@ STYLES = (
 
 
 def texture_rows(s: np.ndarray, bounds: Mapping[str, tuple[float, float]], repeat: float) -> np.ndarray:
-    """Returns the texture coordinate v of arc lengths: each stretch walks to and fro over its band, and on to the next.
+    """Return the texture coordinate v of arc lengths: each stretch walks to and fro over its band, and on to the next.
 
     Walking to and fro needs no seam; an odd number of passes, stretched or squeezed a little, ends at the next band.
 

@@ -13,11 +13,23 @@ from scipy.ndimage import gaussian_filter
 from arcgym.anatomy.mucosa.vessel_styles import STYLES, VesselStyle
 
 _STEP = 6.0
+"""Length of a vessel's piece [px]."""
+
 _SUPERSAMPLE = 2
+"""Pixels that are drawn for one of the image, along each axis."""
+
 _THINNEST = 0.7
+"""Width below which no branch is drawn [px]."""
+
 _FINE_STEPS = 24
+"""Largest number of pieces of a small vessel."""
+
 _FULL_WIDTH = 1024
+"""Width of the image for which vessels are counted [px]."""
+
 _OVER_THE_EDGE = 20.0
+"""How far a vessel may leave its band [px]."""
+
 _MURRAY = 1.0 / 3.0
 """By Murray's law (PNAS, 1926) the cubes of the branches' widths add up to the cube of their parent's."""
 
@@ -34,7 +46,7 @@ class _Branch:
 
 
 def draw_vessels(rng: np.random.Generator, height: int, width: int, fine: bool = False) -> np.ndarray:
-    """Draws random vessel trees, those of each stretch of the colon in its band of the image.
+    """Draw random vessel trees, those of each stretch of the colon in its band of the image.
 
     Args:
         rng: Source of randomness.
@@ -72,7 +84,7 @@ def _trunk(rng: np.random.Generator, height: int, width: int, style: VesselStyle
 def _grow(
     rng: np.random.Generator, branch: _Branch, branching: float, band: np.ndarray
 ) -> tuple[np.ndarray, list[_Branch]]:
-    """Walks along a smoothly winding vessel and lets side branches off; it ends in a fork, or where its band ends."""
+    """Walk along a smoothly winding vessel and let side branches off; it ends in a fork, or where its band ends."""
     bend = np.cumsum(rng.normal(0, 0.05, branch.steps)) + 0.28 * np.sin(np.arange(branch.steps) / rng.uniform(3, 7))
     angle = branch.angle + bend - bend[0]
     path = np.stack([branch.x + _STEP * np.cumsum(np.cos(angle)), branch.y + _STEP * np.cumsum(np.sin(angle))], 1)
@@ -105,7 +117,7 @@ def _child(branch: _Branch, at: np.ndarray, angle: float, share: float, length: 
 
 
 def _stroke(pen: ImageDraw.ImageDraw, path: np.ndarray, branch: _Branch, trunk: float, size: tuple[int, int]) -> None:
-    """Draws one vessel, thinning towards its end, on the image and on its periodic copies."""
+    """Draw one vessel, thinning towards its end, on the image and on its periodic copies."""
     if len(path) < 2:
         return
     ink = int(255 * min(1.0, 0.35 + 0.65 * branch.width / trunk))
