@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures and videos of the environments for people to look at; nothing here is seen by a policy."""
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from arcgym.utils.lazy import lazy_names
 from arcgym.viewers.viewer_cfg import OutsideViewCfg, ViewerCfg
 
 if TYPE_CHECKING:
@@ -20,9 +20,4 @@ _LAZY = {
 
 __all__ = ["OutsideView", "OutsideViewCfg", "TwoPaneView", "VideoRecorder", "ViewerCfg"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import the classes that draw only when one is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)
