@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from arcgym.benchmarks.loops import measure_loop
+from arcgym.benchmarks.looping.shape import measure_loop
 
 
 def curve(turn: float, rise: float) -> np.ndarray:

@@ -17,7 +17,10 @@ def winding_number(
     centers: wp.array2d(dtype=wp.vec3),
     winding: wp.array2d(dtype=float),
 ):
-    """How often the surface winds around each centre (solid angles: van Oosterom and Strackee 1983). Launch (W, L)."""
+    """Count how often the surface winds around each center. Launch (W, L).
+
+    Solid angles as in van Oosterom and Strackee 1983.
+    """
     w, i = wp.tid()
     p = centers[w, i]
     total = float(0.0)

@@ -11,12 +11,12 @@ from scipy.integrate import solve_bvp
 
 
 def small_deflection(force: float, length: float, rigidity: float) -> float:
-    """End of a clamped beam under an end load [m]: F L^3 / 3 EI (Euler-Bernoulli)."""
+    """Return the end of a clamped beam under an end load [m]: F L^3 / 3 EI (Euler-Bernoulli)."""
     return force * length**3 / (3.0 * rigidity)
 
 
 def elastica_deflection(force: float, length: float, rigidity: float) -> float:
-    """End of a clamped elastica under a dead end load across its rest direction [m].
+    """Return the end of a clamped elastica under a dead end load across its rest direction [m].
 
     EI theta'' = -F cos(theta), theta(0) = 0, theta'(L) = 0 (Bisshopp and Drucker 1945, Q. Appl. Math. 3).
     """
@@ -37,10 +37,13 @@ def elastica_deflection(force: float, length: float, rigidity: float) -> float:
 
 
 def clamped_pinned_load(length: float, rigidity: float) -> float:
-    """Buckling load of a column clamped at one end and guided at the other [N]: k^2 EI, tan(kL) = kL (Euler)."""
+    """Return the buckling load of a column clamped at one end and guided at the other [N].
+
+    k^2 EI with tan(kL) = kL (Euler).
+    """
     return rigidity * (4.493409457909064 / length) ** 2
 
 
 def capstan_ratio(friction: float, angle: float) -> float:
-    """Ratio of the tensions on both sides of a bend: e^(mu theta) (Euler, Eytelwein)."""
+    """Return the ratio of the tensions on both sides of a bend: e^(mu theta) (Euler, Eytelwein)."""
     return math.exp(friction * angle)

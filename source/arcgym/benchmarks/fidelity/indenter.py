@@ -54,16 +54,16 @@ class Curve:
     """[N], shape (P, S)."""
 
     def depth_at(self, load: float) -> np.ndarray:
-        """Depth under a load at each place [m], shape (P,)."""
+        """Return the depth under a load at each place [m], shape (P,)."""
         return np.array([_crossing(x, f, load) for x, f in zip(self.depth, self.force, strict=True)])
 
     def force_at(self, depth: float) -> float:
-        """Force at a depth, mean of the places [N]."""
+        """Return the force at a depth, mean of the places [N]."""
         return float(np.mean([np.interp(depth, x, f) for x, f in zip(self.depth, self.force, strict=True)]))
 
 
 def _crossing(depth: np.ndarray, force: np.ndarray, load: float) -> float:
-    """Depth at which the force first reaches the load; not a number if it never does."""
+    """Return the depth at which the force first reaches the load; not a number if it never does."""
     above = np.flatnonzero(force >= load)
     if len(above) == 0 or above[0] == 0:
         return math.nan
@@ -104,7 +104,7 @@ def indent(run: Run, tube: Tube, material: str, **cfg: Any) -> Curve:
 
 
 def indenter() -> EndoscopeSpec:
-    """A lone link with the radius of the colonoscope's tip."""
+    """Return a lone link with the radius of the colonoscope's tip."""
     return replace(
         capsule_spec(),
         link_radius=np.array([RADIUS]),
@@ -114,7 +114,7 @@ def indenter() -> EndoscopeSpec:
 
 
 def converged() -> dict[str, Any]:
-    """Small steps, eight sweeps, a contact ten times as stiff, and room for the contacts of a finer mesh.
+    """Return small steps, eight sweeps, a contact ten times as stiff, and room for the contacts of a finer mesh.
 
     With steps of 1/1920 s the fine ``in_situ`` wall blows up under 5 N.
     """

@@ -37,7 +37,7 @@ def add_loads(
 
 @wp.kernel
 def contact_on_wall(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), force: wp.array2d(dtype=wp.vec3)):
-    """Contact force on every wall vertex at the end of a step. Launch (V, W)."""
+    """Compute the contact force on every wall vertex at the end of a step. Launch (V, W)."""
     i, w = wp.tid()
     block = add_contact(VertexBlock(), contacts, x, i, w)
     force[i, w] = block.force

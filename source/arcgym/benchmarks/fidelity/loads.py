@@ -79,5 +79,5 @@ def settle(sim: Any, tolerance: float = 2.0e-6, longest: float = 30.0, block: in
 
 
 def places(sim: Any) -> torch.Tensor:
-    """Positions of all links and wall vertices [m], shape (N, L + V, 3)."""
+    """Return the positions of all links and wall vertices [m], shape (N, L + V, 3)."""
     return torch.cat([sim.endoscope.data.body_pos_w, sim.colon.data.nodal_pos_w], dim=1).clone()

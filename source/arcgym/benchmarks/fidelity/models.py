@@ -19,7 +19,7 @@ from arcgym.sim import Simulation, SimulationCfg
 
 
 def shaft_spec(links: int, **changes: Any) -> EndoscopeSpec:
-    """Shaft links of the shipped colonoscope, without its base link and its bending section."""
+    """Return the shaft links of the shipped colonoscope, without its base link and its bending section."""
     spec = proximal_spec()
     kept = slice(1, 1 + links)
     if spec.bending_links + links + 1 > len(spec.link_length):

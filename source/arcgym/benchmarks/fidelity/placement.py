@@ -12,7 +12,7 @@ from arcgym.benchmarks.fidelity.tubes import Tube
 
 
 def follow(sim: Any, tube: Tube, inserted: float) -> None:
-    """Lay the shaft along the centreline of a tube, inserted by a length [m]."""
+    """Lay the shaft along the centerline of a tube, inserted by a length [m]."""
     stage, data = sim.endoscope.stage, sim.endoscope.data
     ends = inserted - sim.endoscope.tip_offset + 0.5 * stage.link_length[-1]
     place = ends - stage.total_length + np.cumsum(stage.link_length)[:-1]

@@ -54,17 +54,17 @@ class Trace:
     """Smallest and largest volume ratio of the wall's elements."""
 
     def late(self, values: list[float]) -> float:
-        """Mean over the second half of the push, when the tip is in the bend or beyond it."""
+        """Return the mean over the second half of the push, when the tip is in the bend or beyond it."""
         return float(np.mean(values[len(values) // 2 :]))
 
 
 def converged() -> dict[str, Any]:
-    """Settings near the limit of small steps and many iterations."""
+    """Return settings near the limit of small steps and many iterations."""
     return {"dt": 1.0 / 1920.0, "wall": WallSolverCfg(repeats=4)}
 
 
 def tightest() -> dict[str, Any]:
-    """The shipped step with the wall solved six times over."""
+    """Return the shipped step with the wall solved six times over."""
     return {"wall": WallSolverCfg(repeats=6)}
 
 

@@ -35,7 +35,7 @@ ANGLES = np.linspace(0.1, 0.9, 9) * LOOP.bend
 
 
 def rope(run: Run) -> tuple[Any, LinkLoads]:
-    """Worlds of different friction with a limp shaft around the loop, its end loaded along the tube."""
+    """Return worlds of different friction with a limp shaft around the loop, its end loaded along the tube."""
     limp = {"shaft_rigidity": LIMP, "tip_rigidity": LIMP}
     sim = build(run, PROXIMAL_CFG, LOOP, len(FRICTION), endoscope=limp)
     loads = LinkLoads(sim)
@@ -48,7 +48,7 @@ def rope(run: Run) -> tuple[Any, LinkLoads]:
 
 
 def surface_lever(sim: Any) -> float:
-    """Distance of the shaft's surface from the bend's centre over that of its axis, both along the inner side.
+    """Return the surface's distance from the bend's center over that of the axis, both along the inner side.
 
     Friction acts on the surface, which turns on a shorter lever than the axis, where the tension is.
     """
@@ -75,7 +75,7 @@ def pull_rope(sim: Any, loads: LinkLoads, speed: float = 0.05) -> tuple[np.ndarr
 
 
 def tension_along(run: Run) -> np.ndarray:
-    """Tension at the angles of the bend, geometric mean over the pull [N], shape (W, A)."""
+    """Return the tension at the angles of the bend, geometric mean over the pull [N], shape (W, A)."""
     sim, loads = rope(run)
     still = torch.zeros(sim.num_envs, device=sim.device)
     sim.endoscope.set_insertion_command(still - SPEED, still)
@@ -90,7 +90,7 @@ def tension_along(run: Run) -> np.ndarray:
 
 
 def link_tensions(sim: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Tension at the base end of every link: angle to the load [rad] and size [N], shape (W, L).
+    """Return the tension at the base end of every link: angle to the load [rad], size [N], shape (W, L).
 
     It is the sum of the load and of what the wall does to the link and to those beyond it.
     """

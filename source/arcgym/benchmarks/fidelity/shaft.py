@@ -31,7 +31,7 @@ LINKS = 20
 
 
 def shaft_in_air(run: Run, num_envs: int, links: int = LINKS, **spec: Any) -> tuple[Any, LinkLoads]:
-    """Worlds with a straight shaft below a short tube, and the loads on it."""
+    """Return worlds with a straight shaft below a short tube, and the loads on it."""
     cfg = {"introducer": IntroducerCfg(**IN_AIR)}
     sim = build(run, shaft_spec(links, **spec), Tube(0.15), num_envs, {"anchor_stiffness": FREE}, cfg)
     for coordinate in (sim.endoscope.data.joint_pos, sim.endoscope.data.joint_pos_target):
@@ -41,7 +41,7 @@ def shaft_in_air(run: Run, num_envs: int, links: int = LINKS, **spec: Any) -> tu
 
 
 def beam(sim: Any, plane: int, links: int) -> tuple[float, float]:
-    """Length of the chain's beam in a plane [m] and place of its end in the frame of the last link [m]."""
+    """Return the length of the chain's beam in a plane [m] and its end's place in the frame of the last link [m]."""
     link = float(sim.endoscope.stage.link_length[0])
     last = links - 1
     own = [hinge for hinge in range(1, links) if (hinge % 2 == 0) == (plane == 0)]
@@ -50,19 +50,19 @@ def beam(sim: Any, plane: int, links: int) -> tuple[float, float]:
 
 
 def rigidity(sim: Any) -> float:
-    """EI of the shaft's hinges [N m^2]."""
+    """Return EI of the shaft's hinges [N m^2]."""
     stage = sim.endoscope.stage
     return float(stage.hinge_stiffness[0] * 2.0 * stage.link_length[0])
 
 
 def end_places(sim: Any, offsets: list[float]) -> np.ndarray:
-    """Places on the last links' axes [m], shape (N, 3)."""
+    """Return the places on the last links' axes [m], shape (N, 3)."""
     data = sim.endoscope.data
     local = torch.tensor([[0.0, 0.0, offset] for offset in offsets], device=sim.device)
     return (data.body_pos_w[:, -1] + quat_apply(data.body_quat_w[:, -1], local)).cpu().numpy()
 
 
 def twist_angle(sim: Any, link: int) -> float:
-    """Rotation of a link about the Z axis [rad]."""
+    """Return the rotation of a link about the Z axis [rad]."""
     x, y, z, w = sim.endoscope.data.body_quat_w[0, link].tolist()
     return 2.0 * math.atan2(z, w)

@@ -35,7 +35,7 @@ class TubeModel:
     """Elements along."""
 
     def nodes(self) -> np.ndarray:
-        """Cylinder coordinates (r, angle, z) of the nodes, shape (Z, A, 3, 3): along, around, across the wall."""
+        """Return the nodes' cylinder coordinates (r, angle, z), shape (Z, A, 3, 3): along, around, across the wall."""
         z = np.linspace(0.0, self.length, 2 * self.along + 1)
         angle = np.linspace(0.0, 2.0 * np.pi, 2 * self.around, endpoint=False)
         r = self.radius + self.thickness * np.array([0.0, 0.5, 1.0])
@@ -43,12 +43,12 @@ class TubeModel:
         return np.stack([r, angle, z], axis=-1)
 
     def points(self) -> np.ndarray:
-        """Positions of the nodes [m], shape (n, 3)."""
+        """Return the positions of the nodes [m], shape (n, 3)."""
         r, angle, z = self.nodes().reshape(-1, 3).T
         return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
 
     def bricks(self) -> np.ndarray:
-        """Nodes of the elements, shape (E, 27)."""
+        """Return the nodes of the elements, shape (E, 27)."""
         columns = 2 * self.around
         i, j = np.meshgrid(2 * np.arange(self.along), 2 * np.arange(self.around), indexing="ij")
         a, b, c = np.meshgrid(range(3), range(3), range(3), indexing="ij")
@@ -57,7 +57,7 @@ class TubeModel:
         return (z * columns + angle) * 3 + c.reshape(1, -1)
 
     def stiffness(self) -> sparse.csc_matrix:
-        """Stiffness matrix [N/m], shape (3n, 3n)."""
+        """Return the stiffness matrix [N/m], shape (3n, 3n)."""
         points, bricks = self.points(), self.bricks()
         ratio = self.poissons_ratio
         mu = self.youngs_modulus / (2.0 * (1.0 + ratio))
@@ -76,7 +76,7 @@ class TubeModel:
         return sparse.csc_matrix((blocks.ravel(), (rows, columns)), shape=(3 * len(points),) * 2)
 
     def loads(self, traction: Traction) -> np.ndarray:
-        """Nodal forces of a load on the inside, shape (n, 3); the sizes of the vectors add up to one."""
+        """Return the nodal forces of a load on the inside, shape (n, 3); the sizes of the vectors add up to one."""
         _, angle, z = self.nodes().reshape(-1, 3).T
         shape = self.nodes().shape[:3]
         weight = np.zeros(shape)
@@ -86,7 +86,7 @@ class TubeModel:
         return force / np.linalg.norm(force, axis=1).sum()
 
     def displacements(self, traction: Traction) -> np.ndarray:
-        """Displacement of the nodes under a load of one newton [m/N], shape (n, 3)."""
+        """Return the displacement of the nodes under a load of one newton [m/N], shape (n, 3)."""
         force, matrix = self.loads(traction), self.stiffness()
         z = self.points()[:, 2]
         free = np.repeat((z > 1.0e-9) & (z < self.length - 1.0e-9), 3)
@@ -95,7 +95,7 @@ class TubeModel:
         return moved.reshape(-1, 3)
 
     def compliance(self, traction: Traction, moved: np.ndarray | None = None) -> float:
-        """Displacement under the load, weighted by it, for a load of one newton [m/N].
+        """Return the displacement under the load, weighted by it, for a load of one newton [m/N].
 
         Args:
             traction: The load.
@@ -106,7 +106,7 @@ class TubeModel:
 
 
 def brick_rule() -> list[tuple[float, np.ndarray]]:
-    """Weights and slopes of the 27 shape functions, shape (27, 3), at the 27 Gauss points of the brick [-1, 1]^3."""
+    """Return weights and slopes, shape (27, 3), of the 27 shape functions at the Gauss points of [-1, 1]^3."""
     points, weights = np.polynomial.legendre.leggauss(3)
     value = [np.array([0.5 * t * (t - 1.0), 1.0 - t * t, 0.5 * t * (t + 1.0)]) for t in points]
     slope = [np.array([t - 0.5, -2.0 * t, t + 0.5]) for t in points]

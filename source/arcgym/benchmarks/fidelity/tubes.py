@@ -45,12 +45,12 @@ class Tube:
     bend_start: float = 0.0
     """Arc length at which it starts [m]."""
     bend_radius: float = 0.05
-    """Radius of the centreline in the bend [m]."""
+    """Radius of the centerline in the bend [m]."""
     refine: int = 1
     """Rings and sectors for each one of the shipped mesh."""
 
     def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Points of the centreline [m], shape (n, 3), and its angle from the Z axis [rad], shape (n,)."""
+        """Return the points of the centerline [m], shape (n, 3), and its angle from the Z axis [rad], shape (n,)."""
         angle = np.clip((s - self.bend_start) / self.bend_radius, 0.0, self.bend)
         before = np.minimum(s, self.bend_start) if self.bend else s
         after = np.maximum(0.0, s - self.bend_start - self.bend * self.bend_radius) if self.bend else 0.0 * s
@@ -59,7 +59,7 @@ class Tube:
         return np.stack([0.0 * s, y, z], axis=1), angle
 
     def surface(self, s: np.ndarray, theta: np.ndarray, radius: float) -> np.ndarray:
-        """Points at arc lengths, angles around and a distance from the centreline [m], shape (S, A, 3)."""
+        """Return the points at arc lengths, angles around and a distance from the centerline [m], shape (S, A, 3)."""
         center, angle = self.frame(s)
         inwards = np.stack([0.0 * s, np.cos(angle), -np.sin(angle)], axis=1)
         across = np.array([1.0, 0.0, 0.0])
@@ -83,7 +83,7 @@ class WallMeasures:
 
 @cache
 def shipped_stage() -> ColonStage:
-    """The colon that ships with ARCGym."""
+    """Return the colon that ships with ARCGym."""
     return read_colon(resolve_asset(ColonCfg().usd_path))
 
 
@@ -102,7 +102,7 @@ def wall_measures() -> WallMeasures:
 
 
 def tube_stage(tube: Tube) -> ColonStage:
-    """A tube with the ring spacing, sectors, radius and thickness of the shipped colon."""
+    """Return a tube with the ring spacing, sectors, radius and thickness of the shipped colon."""
     measures = wall_measures()
     sectors = measures.sectors * tube.refine
     arc = np.linspace(0.0, tube.length, round(tube.length / measures.spacing) * tube.refine + 1)
@@ -141,7 +141,7 @@ def _hold(wall: WallMesh, start: float, end: float) -> WallMesh:
 
 
 def _visual(tube: Tube, ring_arc: np.ndarray, sectors: int, radius: float) -> VisualMesh:
-    """The inner surface, which a stage must have."""
+    """Return the inner surface, which a stage must have."""
     rows, columns = len(ring_arc), sectors + 1
     arc, theta = np.linspace(0.0, tube.length, rows), np.linspace(0.0, 2.0 * np.pi, columns)
     points = tube.surface(arc, theta, radius).reshape(-1, 3).astype(np.float32)

@@ -13,7 +13,7 @@ from arcgym.anatomy.shell import ShellMesh
 
 
 def volume_ratios(sim: Any) -> tuple[float, float]:
-    """Smallest and largest volume of a wall element, relative to its rest volume.
+    """Return the smallest and largest volume of a wall element, relative to its rest volume.
 
     A shell's triangle keeps no record of its thickness; in plane stress it changes by the strain
     E33 = -nu / (1 - nu) (E11 + E22), and the volume by the area's ratio times sqrt(1 + 2 E33).
@@ -27,7 +27,7 @@ def volume_ratios(sim: Any) -> tuple[float, float]:
 
 
 def shell_volume_ratio(rest: np.ndarray, now: np.ndarray, triangles: np.ndarray, poissons_ratio: float) -> np.ndarray:
-    """Volume of a shell's triangles relative to their rest volume, shape (F,).
+    """Return the volume of a shell's triangles relative to their rest volume, shape (F,).
 
     Args:
         rest: Vertices at rest [m], shape (V, 3).

@@ -36,7 +36,7 @@ class Adversaries:
     """Draws the actions of all worlds, on the device."""
 
     def __init__(self, num_envs: int, num_actions: int, forward: int, step_dt: float, device: str, seed: int) -> None:
-        """Seeds a generator that the environment does not share.
+        """Seed a generator that the environment does not share.
 
         Args:
             num_envs: Worlds, N.
@@ -56,7 +56,7 @@ class Adversaries:
         self._frequency, self._phase, self._period = self._frequencies(), self._uniform(), self._periods()
 
     def act(self, force: torch.Tensor, restarted: torch.Tensor) -> torch.Tensor:
-        """Returns the next actions, shape (N, A).
+        """Return the next actions, shape (N, A).
 
         Args:
             force: Largest force on a link of each world [N], shape (N,).
@@ -87,13 +87,13 @@ class Adversaries:
         }
 
     def _driven(self, speed: torch.Tensor | float) -> torch.Tensor:
-        """The limits held, with another speed forwards."""
+        """Return the limits held, with another speed forwards."""
         actions = self._held.clone()
         actions[:, self._forward] = speed
         return actions
 
     def _renew(self, old: torch.Tensor, limits: torch.Tensor) -> None:
-        """Draws waves and periods of ``old`` worlds and the limits held of some, both bool, shape (N,)."""
+        """Draw waves and periods of ``old`` worlds and the limits held of some, both bool, shape (N,)."""
         switch = torch.rand(self._shape[0], generator=self._generator, device=self._device) < SWITCH
         self._switching = torch.where(switch[:, None], self._limits(), self._switching)
         self._held = torch.where(limits[:, None], self._limits(), self._held)
@@ -108,7 +108,7 @@ class Adversaries:
         return torch.where(self._uniform() < 0.5, -1.0, 1.0)
 
     def _frequencies(self) -> torch.Tensor:
-        """Log-uniform up to half the control rate [Hz], shape (N, A)."""
+        """Return frequencies, log-uniform up to half the control rate [Hz], shape (N, A)."""
         fastest = 0.5 / self._step_dt
         return SLOWEST_HZ * (fastest / SLOWEST_HZ) ** self._uniform()
 

@@ -19,7 +19,7 @@ class ResetGuard:
     """Compares, at every reset, the state of the other worlds before and after it, bit by bit."""
 
     def __init__(self, env: Any) -> None:
-        """Starts with no world disturbed."""
+        """Start with no world disturbed."""
         self._env = env
         self.resets = torch.zeros((), dtype=torch.long, device=env.device)
         """Worlds that were reset."""
@@ -30,7 +30,7 @@ class ResetGuard:
 
     @contextmanager
     def watch(self) -> Iterator[None]:
-        """Watches the environment's resets for a while."""
+        """Watch the environment's resets for a while."""
         reset = self._env._reset_idx
 
         def watched(env_ids: torch.Tensor) -> None:
@@ -48,7 +48,7 @@ class ResetGuard:
 
 @torch.no_grad()
 def neighbors_disturbed(env: Any, actions: torch.Tensor) -> int:
-    """Worlds whose next control step differs, in any bit, if the first world is reset before it.
+    """Count worlds whose next control step differs, in any bit, if the first world is reset before it.
 
     The same step is made three times from the same state: as it is, again, which must change no world, and after a
     reset of world 0, which may change world 0 alone. The state is put back.
@@ -74,7 +74,7 @@ def neighbors_disturbed(env: Any, actions: torch.Tensor) -> int:
 
 @torch.no_grad()
 def breakage_caught(env: Any) -> list[str]:
-    """Breaks the first world with a NaN, makes a step and returns what is wrong afterwards; empty if nothing is."""
+    """Break the first world with a NaN, make a step and return what is wrong afterwards; empty if nothing is."""
     failures = env.world_failures
     env.scene["colon"].data.nodal_pos_w[0, 0, 0] = float("nan")
     obs, reward, terminated, *_ = env.step(
@@ -92,7 +92,7 @@ def breakage_caught(env: Any) -> list[str]:
 
 
 def leaves(name: str, value: Any) -> dict[str, torch.Tensor]:
-    """Tensors of floats in nested dictionaries, by the path of their names."""
+    """Return the tensors of floats in nested dictionaries, by the path of their names."""
     if isinstance(value, dict):
         return {path: leaf for key, item in value.items() for path, leaf in leaves(f"{name}/{key}", item).items()}
     return {name: value} if isinstance(value, torch.Tensor) and value.is_floating_point() else {}
@@ -112,7 +112,7 @@ def restore(sim: Any, arrays: dict[str, torch.Tensor]) -> None:
 
 
 def different(one: dict[str, torch.Tensor], other: dict[str, torch.Tensor]) -> torch.Tensor:
-    """Worlds in which any number differs, bool, shape (N,). NaN equals NaN."""
+    """Return the worlds in which any number differs, bool, shape (N,). NaN equals NaN."""
     worlds = []
     for name, a in one.items():
         b = other[name]

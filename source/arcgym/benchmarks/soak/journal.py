@@ -79,7 +79,7 @@ class Journal:
     """File of JSON lines: ``start`` of a session, ``part`` (tally of some steps), ``event`` (world and step)."""
 
     def __init__(self, path: Path) -> None:
-        """Reads what the file holds already.
+        """Read what the file holds already.
 
         Raises:
             ValueError: If a line of it is no JSON object with a kind and a task.
@@ -105,15 +105,15 @@ class Journal:
             file.write(json.dumps(line) + "\n")
 
     def sessions(self, task: str) -> int:
-        """How often the task was started."""
+        """Return how often the task was started."""
         return len(self._of("start", task))
 
     def events(self, task: str) -> list[dict[str, Any]]:
-        """Worlds of a task that were recovered or had a link outside, with seed, step and kind of action."""
+        """Return the worlds of a task that were recovered or had a link outside, with seed, step and kind of action."""
         return self._of("event", task)
 
     def tally(self, task: str) -> Tally:
-        """Findings in the task in all sessions."""
+        """Return the findings in the task in all sessions."""
         total = Tally()
         for line in self._of("part", task):
             total.add(Tally(**line["tally"]))

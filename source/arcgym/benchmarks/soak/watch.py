@@ -25,7 +25,7 @@ class Watch:
     """Looks at every step; the counters stay on the device until they are read."""
 
     def __init__(self, env: Any, kind: torch.Tensor) -> None:
-        """Starts at zero.
+        """Start at zero.
 
         Args:
             env: The environment.
@@ -90,7 +90,7 @@ class Watch:
             largest.scatter_reduce_(0, self._kind, value.nan_to_num(0.0), "amax")
 
     def read(self, seconds: float) -> tuple[Tally, list[dict[str, Any]]]:
-        """Findings since the last call, and the events with what is needed to find them again; waits for the device.
+        """Return the findings since the last call, and the events with all that finds them again; wait for the device.
 
         Args:
             seconds: Time that the steps took [s].
@@ -117,7 +117,7 @@ class Watch:
         return tally, events
 
     def _events(self) -> list[dict[str, Any]]:
-        """The last time that each world was recovered or had a link outside, as what, world, step and action."""
+        """Return the last time that each world was recovered or had a link outside: kind, world, step and action."""
         events = []
         for what, last in self._last.items():
             for world in (last >= 0).nonzero().flatten().tolist():

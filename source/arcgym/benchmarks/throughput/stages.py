@@ -46,7 +46,7 @@ STAGES = {
 @one_thread()
 @torch.no_grad()
 def time_stages(env: Any, actions: torch.Tensor, repeats: int) -> dict[str, float]:
-    """Median duration of every stage, in milliseconds a control step.
+    """Return the median duration of every stage, in milliseconds a control step.
 
     Each call starts from the state that the environment is in now, so that the scope touches the wall as it does in the
     loop.
@@ -62,7 +62,7 @@ def time_stages(env: Any, actions: torch.Tensor, repeats: int) -> dict[str, floa
 
 
 def state_keeper(sim: Any) -> Action:
-    """Returns a function that puts the simulation back into its present state."""
+    """Return a function that puts the simulation back into its present state."""
     kept = {name: array.clone() for name, array in sim.world_arrays().items()}
 
     def restore() -> None:
@@ -74,7 +74,7 @@ def state_keeper(sim: Any) -> Action:
 
 
 def physics_stages(env: Any) -> dict[str, Action]:
-    """The physics of a control step, and its parts as often as they occur in it.
+    """Return the physics of a control step, and its parts as often as they occur in it.
 
     Contact search and wall step are called with the arguments that the coupling gives them; the scope is the rest of
     the coupling, whatever solver it has.
@@ -96,7 +96,7 @@ def physics_stages(env: Any) -> dict[str, Action]:
 
 
 def recorded_call(sim: Any, part: Any, method: str) -> Action:
-    """Returns the method's first call in a physics step, to be made again; makes that step."""
+    """Make a physics step and return the method's first call in it, to be made again."""
     original, calls = getattr(part, method), []
 
     def record(*args: Any, **kwargs: Any) -> None:
@@ -110,7 +110,7 @@ def recorded_call(sim: Any, part: Any, method: str) -> Action:
 
 
 def repeated(sim: Any, action: Action, count: int) -> Action:
-    """Returns ``action`` done ``count`` times, replayed from a graph as the simulation does it."""
+    """Return ``action`` done ``count`` times, replayed from a graph as the simulation does it."""
     action()
     with wp.ScopedCapture(device=sim.device) as capture:
         action()
@@ -124,7 +124,7 @@ def repeated(sim: Any, action: Action, count: int) -> Action:
 
 
 def camera_stages(env: Any) -> dict[str, Action]:
-    """Camera update of all worlds, uncaptured as in the loop, and the drawing alone."""
+    """Return the camera update of all worlds, uncaptured as in the loop, and the drawing alone."""
     if "camera" not in env.scene.sensors:
         return {}
     camera = env.scene["camera"]
@@ -132,7 +132,7 @@ def camera_stages(env: Any) -> dict[str, Action]:
 
 
 def manager_stages(env: Any, actions: torch.Tensor) -> dict[str, Action]:
-    """What is left of ``env.step`` without physics, camera and resets, and each manager alone."""
+    """Return the rest of ``env.step`` without physics, camera and resets, and each manager alone."""
 
     def rest() -> None:
         silent = silenced((env.sim, "step"), (env.sim, "forward"), (env, "_reset_idx"))
@@ -157,13 +157,13 @@ def manager_stages(env: Any, actions: torch.Tensor) -> dict[str, Action]:
 
 
 def new_frame(env: Any) -> None:
-    """Makes the terms score the camera's images as if they were new."""
+    """Make the terms score the camera's images as if they were new."""
     if "camera" in env.scene.sensors:
         env.scene["camera"].data.frame += 1
 
 
 def reset_stages(env: Any) -> dict[str, Action]:
-    """Reset of a share of the worlds with the redraw and scoring of their pictures, and without."""
+    """Return the reset of a share of the worlds, with and without redrawing and scoring their pictures."""
     count = max(1, round(RESET_SHARE * env.num_envs))
     env_ids = torch.randperm(env.num_envs, device=env.device)[:count]
     mask = torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
@@ -181,7 +181,7 @@ def reset_stages(env: Any) -> dict[str, Action]:
 
 @contextmanager
 def silenced(*methods: tuple[object, str]) -> Iterator[None]:
-    """Makes the named methods of objects do nothing for a while."""
+    """Make the named methods of objects do nothing for a while."""
     with ExitStack() as stack:
         for owner, name in methods:
             stack.enter_context(patch.object(owner, name, lambda *args, **kwargs: None))

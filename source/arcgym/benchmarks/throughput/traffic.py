@@ -20,7 +20,7 @@ WALKED = ("arcgym.", "newton.", "mujoco_warp.")
 
 
 def traffic(sim: Any, decimation: int, physics_ms: float) -> dict[str, float]:
-    """Estimate of the memory traffic of the physics, beside what the device can do.
+    """Estimate the memory traffic of the physics, beside the device's limit.
 
     A physics step is taken to read and to write every array of the simulation once. It may read some several times and
     others not at all, so that the share tells the order of magnitude.
@@ -41,7 +41,7 @@ def traffic(sim: Any, decimation: int, physics_ms: float) -> dict[str, float]:
 
 
 def copy_bandwidth(device: str) -> float:
-    """Bytes that a device reads and writes in a second while it copies a large array."""
+    """Return the bytes that a device reads and writes in a second while it copies a large array."""
     size = COPIED_MIB["cuda" if device.startswith("cuda") else "cpu"] * 2**20
     source = torch.zeros(size, dtype=torch.uint8, device=device)
     target = torch.empty_like(source)
@@ -50,7 +50,7 @@ def copy_bandwidth(device: str) -> float:
 
 
 def device_arrays(root: Any) -> dict[int, int]:
-    """Bytes of every array that an object holds, itself or through others, by address. Views count once."""
+    """Return the bytes of every array that an object holds, itself or through others, by address; views count once."""
     found: dict[int, int] = {}
     seen: set[int] = set()
     waiting = [root]
@@ -71,7 +71,7 @@ def device_arrays(root: Any) -> dict[int, int]:
 
 
 def members(item: Any) -> list[Any]:
-    """What a container or an object of the physics consists of."""
+    """Return the items of a container, or the attributes of an object of the physics."""
     if isinstance(item, dict):
         return list(item.values())
     if isinstance(item, list | tuple):

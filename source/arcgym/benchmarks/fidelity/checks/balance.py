@@ -16,7 +16,7 @@ from arcgym.sim.wall.wall_solver import wall_contacts
 
 
 def balance(run: Run) -> list[Row]:
-    """Forces on scope, wall and base once the scope rests in the bend, mean over a control step."""
+    """Measure the forces on scope, wall and base once the scope rests in the bend, mean over a control step."""
     sim = push(run, BEND, DEPTH, rest=2.0).sim
     steps, data = round(CONTROL_STEP / sim.physics_dt), sim.endoscope.data
     samples = []
@@ -33,7 +33,7 @@ def balance(run: Run) -> list[Row]:
 
 
 def balance_plot(samples: list[tuple[np.ndarray, np.ndarray, float]], dt: float) -> Plot:
-    """Sizes of both forces between wall and scope, and of both along the base, over time."""
+    """Draw both forces between wall and scope, and both along the base, over time."""
     time = 1.0e3 * dt * np.arange(len(samples))
     plot = Plot("balance", "time [ms]", "force [N]")
     plot.lines.append(("of the wall on the scope", time, [float(np.linalg.norm(s)) for s, _, _ in samples]))
@@ -44,7 +44,7 @@ def balance_plot(samples: list[tuple[np.ndarray, np.ndarray, float]], dt: float)
 
 
 def contact_force_on_wall(sim: Any) -> np.ndarray:
-    """Sum of the contact forces on the wall of a single world as its last step saw them [N], shape (3,)."""
+    """Return the sum of the contact forces on the wall of a single world in its last step [N], shape (3,)."""
     poses = (sim.state.body_q, sim.coupling.body_q_prev)
     contacts = wall_contacts(sim.contact, sim.cfg.dt, sim.wall.x_prev, *poses)
     out = wp.zeros_like(sim.nodal_pos)

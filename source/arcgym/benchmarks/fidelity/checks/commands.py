@@ -35,7 +35,7 @@ REDRAW = 0.2
 
 
 def scene(run: Run, robot: str, num_envs: int) -> Any:
-    """Worlds with a robot, its tip in the bend."""
+    """Return worlds with a robot, its tip in the bend."""
     from arcgym import assets
 
     sim = build(run, getattr(assets, f"{robot.upper()}_CFG"), BEND, num_envs, {"material": "in_situ"})
@@ -53,7 +53,7 @@ def scene(run: Run, robot: str, num_envs: int) -> Any:
 
 
 def limits(robot: str) -> Any:
-    """Action term of the robot's tasks."""
+    """Return the action term of the robot's tasks."""
     import arcgym_tasks  # noqa: F401
     from arcgym.utils.registry import load_cfg_from_registry
 
@@ -63,7 +63,7 @@ def limits(robot: str) -> Any:
 
 
 def commander(sim: Any, robot: str) -> tuple[int, Callable[[Any], None]]:
-    """Number of actions, and what hands actions in [-1, 1], shape (N, A), to the robot as its action term does."""
+    """Return the number of actions, and the function that gives actions in [-1, 1], shape (N, A), to the robot."""
     term, scope = limits(robot), sim.endoscope
     if robot != "proximal":
 
@@ -100,20 +100,20 @@ class Watch:
         self.force.append(self._sim.endoscope.data.wall_force_norm.amax(dim=1).cpu().numpy())
 
     def plot(self, name: str) -> Plot:
-        """Largest force on a link over time, in the worst of the worlds and in the median one."""
+        """Draw the largest force on a link over time, in the worst of the worlds and in the median one."""
         time, force = CONTROL_STEP * np.arange(1, len(self.force) + 1), np.array(self.force)
         plot = Plot(name, "time [s]", "largest force on a link [N]")
         plot.points += [("worst world", time, force.max(axis=1)), ("median world", time, np.median(force, axis=1))]
         return plot
 
     def row(self, name: str, what: str) -> Row:
-        """Events counted; each world that is not finite at the end is one."""
+        """Return the events counted; each world that is not finite at the end is one."""
         note = f"{what}: {self.worlds.sum()} of {len(self.worlds)} worlds, {self.broken} not finite"
         return absolute(name, float(self.outside + self.broken), 0.0, 0.0, "", note)
 
 
 def speeds(run: Run, robot: str) -> list[Row]:
-    """Every combination of full commands, each kept on in a world of its own; all three turns of a tip go together."""
+    """Give every combination of full commands to a world of its own; all three turns of a tip go together."""
     import torch
 
     corners = torch.tensor(list(itertools.product((-1.0, 1.0), repeat=4)), device=run.device)
@@ -131,7 +131,7 @@ def speeds(run: Run, robot: str) -> list[Row]:
 
 
 def random_actions(run: Run, robot: str) -> list[Row]:
-    """Uniform actions, each kept for five control steps on average."""
+    """Give uniform actions, each kept for five control steps on average."""
     import torch
 
     sim = scene(run, robot, RANDOM_WORLDS)

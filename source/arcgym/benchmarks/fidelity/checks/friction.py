@@ -32,7 +32,7 @@ def capstan(run: Run) -> list[Row]:
 
 
 def bend_loss(run: Run) -> list[Row]:
-    """Tension along a tether around the bend; the row is the share of ln T that a line over the angle explains.
+    """Measure the share of ln T along a tether around the bend that a line over the angle explains.
 
     The published shape of the loss is exponential in contact angle times friction (Huan et al. 2020, of the tether of a
     magnetic colonoscope), a straight line of ln T over the angle.

@@ -19,7 +19,7 @@ PORCINE = (0.8, 2.4)
 
 
 def indentation(run: Run, material: str) -> list[Row]:
-    """Depth of the tip under a load, mean of the places, against a finer mesh with a stiffer contact.
+    """Measure the depth of the tip under a load, mean of the places, against a finer mesh.
 
     The row is of the load with the largest error; all errors go into the note.
     """
@@ -48,6 +48,6 @@ def indentation(run: Run, material: str) -> list[Row]:
 
 
 def _shown(curve: Curve, place: int, top: float) -> tuple[np.ndarray, np.ndarray]:
-    """Depth [mm] and force [N] from the first touch up to a load."""
+    """Return the depth [mm] and force [N] from the first touch up to a load."""
     shown = (curve.depth[place] >= 0.0) & (curve.force[place] <= 1.1 * top)
     return 1.0e3 * curve.depth[place][shown], curve.force[place][shown]

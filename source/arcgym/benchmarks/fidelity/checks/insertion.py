@@ -24,7 +24,7 @@ PRESETS = {"stiff": "paper", "soft": "in_situ"}
 
 
 def straight_advance(run: Run) -> list[Row]:
-    """Advance of the tip for a given advance of the base in a straight tube."""
+    """Measure the advance of the tip for a given advance of the base in a straight tube."""
     trace = push(run, STRAIGHT, DEPTH)
     tip = float(trace.tip[-1][2] - trace.tip[0][2])
     base = trace.inserted[-1] - trace.inserted[0]
@@ -37,7 +37,7 @@ def straight_advance(run: Run) -> list[Row]:
 
 
 def volume(run: Run) -> list[Row]:
-    """Volume ratio of the wall's elements while the scope is pushed through the bend."""
+    """Measure the volume ratio of the wall's elements while the scope is pushed through the bend."""
     rows, plot = [], Plot("volume", "inserted length [m]", "volume ratio, least and largest")
     for name, material in PRESETS.items():
         trace = push(run, BEND, DEPTH, material, rest=2.0)
@@ -73,14 +73,14 @@ def sigmoid_deep(run: Run) -> list[Row]:
 
 
 def late_distances(run: Run, tube: Tube | None, depth: float, rest: float = 0.0) -> np.ndarray:
-    """How far the tips of the push and of the converged one are apart in the second half [m]."""
+    """Return how far the tips of the push and of the converged one are apart in the second half [m]."""
     ours, limit = push(run, tube, depth, rest=rest), push(run, tube, depth, **converged())
     apart = np.linalg.norm(np.array(ours.tip) - np.array(limit.tip), axis=1)
     return apart[len(apart) // 2 :]
 
 
 def compare_pushes(run: Run, name: str, tube: Tube | None, depth: float) -> list[Row]:
-    """Mean force of the second half of the push, and the farthest that the tips are apart in it."""
+    """Compare the mean force of the second half, and the largest distance of the tips in it."""
     rest = 2.0 if tube == BEND else 0.0
     ours, limit = push(run, tube, depth, rest=rest), push(run, tube, depth, **converged())
     late = late_distances(run, tube, depth, rest)
@@ -118,7 +118,7 @@ def plain_newton(run: Run) -> list[Row]:
 
 
 def wall_motion(run: Run) -> list[Row]:
-    """Largest wall displacement while pushing into the S of the shipped colon, against the tightest inner solve."""
+    """Measure the largest wall displacement while pushing into the sigmoid's S, against the tightest inner solve."""
     rows, plot = [], Plot("wall_motion", "inserted length [m]", "largest displacement of the wall [mm]")
     for name, material in PRESETS.items():
         ours = push(run, None, SIGMOID_DEPTH, material)

@@ -23,7 +23,7 @@ colonoscopes)."""
 
 
 def cantilever(run: Run) -> list[Row]:
-    """End deflection under a dead load across the shaft, in both planes."""
+    """Measure the end deflection under a dead load across the shaft, in both planes."""
     sizes = (0.05, 1.0, 2.0, 4.0)
     sim, loads = shaft_in_air(run, 2 * len(sizes))
     stiff = rigidity(sim)
@@ -53,7 +53,7 @@ def cantilever(run: Run) -> list[Row]:
 def worst_plane(
     name: str, value: list[float], reference: list[float], places: list[int], bound: float, unit: str
 ) -> Row:
-    """The row of the plane with the larger error; the other's error goes into the note."""
+    """Return the row of the plane with the larger error; the other's error goes into the note."""
     rows = [relative(name, value[k], reference[k], bound, unit) for k in places]
     errors = ", ".join(f"{row.error:+.2%} towards {plane}" for row, plane in zip(rows, PLANES, strict=True))
     worst = max(rows, key=lambda row: abs(row.error))
@@ -61,7 +61,7 @@ def worst_plane(
 
 
 def torsion(run: Run) -> list[Row]:
-    """Twist of the straight shaft between base and tip under a torque on its tip."""
+    """Measure the twist of the straight shaft between base and tip under a torque on its tip."""
     torque = 0.03
     sim, loads = shaft_in_air(run, 1)
     loads.torque[0, -1, 2] = torque

@@ -17,7 +17,7 @@ FAINT = 1.0e-4
 
 
 def energy(run: Run) -> list[Row]:
-    """Largest energy of a bent shaft let go, over what it started with; the shaft is free of damping."""
+    """Measure the largest energy of a bent shaft let go, without damping, over what it started with."""
     from dataclasses import replace
 
     from arcgym.assets.endoscope_spec import proximal_spec
@@ -51,7 +51,7 @@ def energy(run: Run) -> list[Row]:
 
 
 def total_energy(sim: Any) -> float:
-    """Kinetic and elastic energy of the first world's scope [J]."""
+    """Return the kinetic and elastic energy of the first world's scope [J]."""
     import torch
     import warp as wp
 
@@ -72,7 +72,7 @@ def total_energy(sim: Any) -> float:
 
 
 def parked(run: Run) -> list[Row]:
-    """Way of the farthest-moving link of a scope that rests in the bend for a minute."""
+    """Measure the way of the farthest-moving link of a scope that rests in the bend for a minute."""
     sim = push(run, BEND, DEPTH, rest=2.0).sim
     links, steps = sim.endoscope.data.body_pos_w, round(CONTROL_STEP / sim.physics_dt)
     start, drift = links.clone(), []

@@ -32,13 +32,13 @@ HELD_RINGS = (2, -2)
 
 
 def free_span(sim: Any) -> tuple[float, float]:
-    """Arc lengths between which the wall is free [m]."""
+    """Return the arc lengths between which the wall is free [m]."""
     arc = sim.colon.wall.ring_arc
     return float(arc[HELD_RINGS[0]]), float(arc[HELD_RINGS[1]])
 
 
 def reference_tube(sim: Any, **mesh: int) -> TubeModel:
-    """Bricks with the measures and the tissue of a simulation's straight tube."""
+    """Return bricks with the measures and the tissue of a simulation's straight tube."""
     start, end = free_span(sim)
     measures = wall_measures()
     return TubeModel(end - start, measures.radius, measures.thickness, *sim.colon.elasticity(), **mesh)
@@ -50,7 +50,7 @@ def along(z: np.ndarray, length: float) -> np.ndarray:
 
 
 def pinch(length: float) -> Traction:
-    """Two opposite patches pulled apart along X."""
+    """Return the load that pulls two opposite patches apart along X."""
 
     def traction(angle: np.ndarray, z: np.ndarray) -> np.ndarray:
         towards = [np.exp(-((wrapped(angle - side) / PATCH) ** 2)) for side in (0.0, np.pi)]
@@ -60,12 +60,12 @@ def pinch(length: float) -> Traction:
 
 
 def transverse(length: float) -> Traction:
-    """The rings half way pulled along X as a whole."""
+    """Return the load that pulls the rings half way along X as a whole."""
     return lambda angle, z: along(z, length)[:, None] * np.array([1.0, 0.0, 0.0])
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
-    """Angle between -pi and pi."""
+    """Return the angle between -pi and pi."""
     return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
@@ -83,24 +83,24 @@ def shipped_displacements(sim: Any, traction: Traction) -> tuple[np.ndarray, np.
 
 
 def seam(points: np.ndarray) -> np.ndarray:
-    """Points on the line that the load pulls along X, by ascending Z: angle zero, innermost."""
+    """Return the points on the line that the load pulls along X, by ascending Z: angle zero, innermost."""
     angle, radius = np.arctan2(points[:, 1], points[:, 0]), np.hypot(points[:, 0], points[:, 1])
     line = np.flatnonzero((np.abs(angle) < 1.0e-6) & (radius < radius.min() + 1.0e-5))
     return line[np.argsort(points[line, 2])]
 
 
 def beam_mode(run: Run) -> list[Row]:
-    """Tube held at its ends under a load across it."""
+    """Measure a tube held at its ends under a load across it."""
     return [stiffness_row(run, "wall_beam", Tube(0.45), transverse, BEAM_MESH, 0.10)]
 
 
 def ring_mode(run: Run) -> list[Row]:
-    """Tube pinched half way."""
+    """Measure a tube pinched half way."""
     return [stiffness_row(run, "wall_ring", Tube(0.20), pinch, RING_MESH, 0.20)]
 
 
 def stiffness_row(run: Run, name: str, tube: Tube, load: Any, mesh: dict[str, int], bound: float) -> Row:
-    """Stiffness of the shipped wall against the reference's."""
+    """Measure the stiffness of the shipped wall against the reference's."""
     from arcgym.assets import CAPSULE_CFG
 
     sim = build(run, CAPSULE_CFG, tube, colon={"anchor_stiffness": FREE})

@@ -19,7 +19,7 @@ class Loop:
     """Shape of a shaft."""
 
     turning: float
-    """Sum of the angles between neighbouring parts, the integral of |curvature| [deg]."""
+    """Sum of the angles between neighboring parts, the integral of |curvature| [deg]."""
     writhe: float
     """Gauss's double integral over the shaft: 0 for a plane curve, about -1 or 1 for a tight loop that crosses itself.
     """
@@ -35,18 +35,18 @@ class Loop:
 
 
 def measure_loop(points: np.ndarray) -> Loop:
-    """Loop of a shaft through ``points`` [m], shape (n, 3)."""
+    """Return the loop of a shaft through ``points`` [m], shape (n, 3)."""
     seen = [crossings(from_front(points, azimuth)) for azimuth in VIEWS]
     return Loop(turning(points), writhe(points), crossings(from_front(points)), float(np.mean(np.array(seen) > 0)))
 
 
 def from_front(points: np.ndarray, azimuth: float = 0.0) -> np.ndarray:
-    """Points as seen from the patient's front, as a magnetic endoscope imager shows them, or from beside it, (n, 2)."""
+    """Return the points as an endoscope imager in front of the patient shows them, or one beside it, (n, 2)."""
     return np.stack([points[:, 0] * np.cos(azimuth) + points[:, 1] * np.sin(azimuth), points[:, 2]], axis=1)
 
 
 def turning(points: np.ndarray) -> float:
-    """Sum of the angles between neighbouring segments [deg]."""
+    """Return the sum of the angles between neighboring segments [deg]."""
     along = np.diff(points, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     cosine = (along[1:] * along[:-1]).sum(axis=1).clip(-1.0, 1.0)
@@ -54,7 +54,7 @@ def turning(points: np.ndarray) -> float:
 
 
 def writhe(points: np.ndarray) -> float:
-    """Gauss integral with the midpoint rule, neighbours left out: they add nothing to a smooth curve."""
+    """Return the Gauss integral by the midpoint rule without neighbors, which add nothing to a smooth curve."""
     along = np.diff(points, axis=0)
     apart = (points[1:] + points[:-1])[:, None] / 2.0 - (points[1:] + points[:-1])[None] / 2.0
     distance = np.linalg.norm(apart, axis=2)
@@ -65,11 +65,11 @@ def writhe(points: np.ndarray) -> float:
 
 
 def crossings(plane: np.ndarray) -> int:
-    """Pairs of segments of a plane curve, shape (n, 2), that cross each other."""
+    """Return the pairs of segments of a plane curve, shape (n, 2), that cross each other."""
     start, end = plane[:-1], plane[1:]
 
     def left(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-        """Sign of the turn from a over b to c, for all pairs."""
+        """Return the sign of the turn from a over b to c, for all pairs."""
         u, v = b - a, c - a
         return np.sign(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
 
