@@ -11,8 +11,8 @@ import numpy as np
 from PIL import Image
 
 from arcgym.anatomy import Centerline, ColonStage, TissueMaterial, VisualMesh, segment_index, write_colon
-from arcgym.anatomy.generator.visual import grid_triangles, skin_to_rings, smooth_normals
-from arcgym.anatomy.generator.wall import build_wall
+from arcgym.anatomy.meshing.surface_grid import grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.meshing.wall import build_wall
 from arcgym.anatomy.stage.types import TEXTURE_LENGTH
 
 TINY_SEGMENTS = ("rectum", "sigmoid", "descending", "splenic", "transverse")

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the lumen reward is worth: its mean over camera poses along a colon, by viewing angle and distance to the wall.
 
-A capsule is put on the centreline at evenly spaced places and turned away from the lumen, or brought up to the wall;
+A capsule is put on the centerline at evenly spaced places and turned away from the lumen, or brought up to the wall;
 nothing moves. One row a view, for each preset of the reward's constants.
 """
 
@@ -58,7 +58,7 @@ def main() -> None:
 
 
 def course(scene: InteractiveScene, start: float, end: float) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-    """Places on the centreline [m], unit directions along the lumen and across it, each (N, 3)."""
+    """Return places on the centerline [m], unit directions along the lumen and across it, each (N, 3)."""
     data = scene["colon"].data
     arc = data.centerline_arc
     wanted = torch.linspace(start, end, scene.num_envs, device=scene.device)
@@ -70,7 +70,7 @@ def course(scene: InteractiveScene, start: float, end: float) -> tuple[torch.Ten
 
 
 def photograph(scene: InteractiveScene, eye: torch.Tensor, look: torch.Tensor, hint: torch.Tensor) -> torch.Tensor:
-    """Depth [m], shape (N, H, W), of cameras at ``eye`` that look along ``look``; ``hint`` settles the roll."""
+    """Return the depth [m], shape (N, H, W), of cameras that look along ``look``; ``hint`` settles the roll."""
     across = normalize(torch.linalg.cross(hint + 0.1 * torch.roll(look, 1, dims=1), look))
     frame = torch.stack((across, torch.linalg.cross(look, across), look), dim=2)
     endoscope = scene["endoscope"]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures what the paper's table of throughput measures: PPO from images with 1 and 5 worlds, for 44 000 transitions.
+"""Measure what the paper's table of throughput measures: PPO from images with 1 and 5 worlds, for 44 000 transitions.
 
 A control step is 1/120 s (in the paper two physics steps of 1/240 s, here four of 1/480 s), an observation five colour
 pictures of 84×84 pixels. Prints the control steps per second while collecting and in all, beside the paper's. A run
@@ -15,34 +15,24 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import sys
 import time
 from typing import Any
 
-from _common import best_device, counts, full_name, positive
-
-from arcgym.rl import cli
-
-PAPER_TRANSITIONS = 44_000
-PAPER_RATE = {1: 12.22, 5: 34.65}
-"""Control steps per second over all worlds, by number of worlds, in the table of throughput of "ARCGym: Benchmarking
-Deep Reinforcement Learning in Autonomous Robotic Colonoscopy" (RA-L 2026); measured there on an RTX PRO 6000."""
-CONTROL_DT = 1.0 / 120.0
-"""Control step of the paper [s]."""
-EPISODE_S = 40.0
-"""Episode of the paper [s]."""
+from arcgym.benchmarks.hardware import best_device, full_name
+from arcgym.benchmarks.paper import CONTROL_DT, EPISODE_S, PAPER_RATE, PAPER_TRANSITIONS
+from arcgym.cli.arguments import counts, positive
+from arcgym.cli.parser import CommandParser
+from arcgym.utils.errors import UsageError
 
 HEADINGS = ("worlds", "transitions", "wall s", "collect s", "learn s", "collect steps/s", "steps/s", "paper", "factor")
 
 Row = dict[str, Any]
 
 
-def make_parser() -> argparse.ArgumentParser:
+def make_parser() -> CommandParser:
     """Return the parser of the command line."""
-    parser = argparse.ArgumentParser(
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="Any other argument is an override: env.scene.camera.width=64 agent.algorithm.learning_rate=1e-3",
-    )
+    parser = CommandParser("paper_throughput.py", __doc__, takes_overrides=True)
     parser.add_argument("--task", default="ARC-Sigmoid-Proximal", help="task name (default: ARC-Sigmoid-Proximal)")
     parser.add_argument("--num_envs", type=counts, default=[1, 5], help="numbers of worlds (default: 1,5)")
     parser.add_argument("--transitions", type=positive, default=PAPER_TRANSITIONS, help="transitions (default: 44000)")
@@ -59,49 +49,61 @@ def make_parser() -> argparse.ArgumentParser:
 def main() -> None:
     """Train once for every number of worlds and print the rows."""
     parser = make_parser()
-    args, overrides = cli.parse(parser)
-    if args.rollout * min(args.num_envs) < args.batch:
-        parser.error(
-            f"--batch {args.batch} is more than a rollout of {args.rollout} steps in {min(args.num_envs)} worlds"
-        )
-    load_cfgs(parser, args, overrides, args.num_envs[0])
+    args = parser.parse(sys.argv[1:])
+    try:
+        check(args)
+    except UsageError as error:
+        parser.error(str(error))
     args.device = args.device or best_device()
     end = time.monotonic() + 60.0 * args.minutes
     rows = []
     for place, num_envs in enumerate(args.num_envs):
-        env_cfg, agent_cfg = load_cfgs(parser, args, overrides, num_envs)
+        env_cfg, agent_cfg = load_cfgs(args, num_envs)
         now = time.monotonic()
         deadline = now + (end - now) / (len(args.num_envs) - place)
-        rows.append(measure(args.task, env_cfg, agent_cfg, args.transitions, deadline))
+        rows.append(measure(args, env_cfg, agent_cfg, deadline))
     print("".join(f"{heading:>16s}" for heading in HEADINGS))
     for row in rows:
         print(describe(row))
     if args.json:
-        print(
-            json.dumps({"device": full_name(args.device), "task": args.task, "settings": settings(args), "rows": rows})
-        )
+        report = {"device": full_name(args.device), "task": args.task, "settings": settings(args), "rows": rows}
+        print(json.dumps(report))
+
+
+def check(args: argparse.Namespace) -> None:
+    """Find mistakes before anything is built.
+
+    Raises:
+        UsageError: If there is one.
+    """
+    least = min(args.num_envs)
+    if args.rollout * least < args.batch:
+        raise UsageError(f"--batch {args.batch} is more than a rollout of {args.rollout} steps in {least} worlds")
+    load_cfgs(args, least)
 
 
 def settings(args: argparse.Namespace) -> dict[str, float]:
-    """The figures of PPO and of the step, for the record."""
+    """Return the figures of PPO and of the step, for the record."""
     return {"rollout": args.rollout, "batch": args.batch, "epochs": args.epochs, "control_dt": CONTROL_DT}
 
 
-def load_cfgs(
-    parser: argparse.ArgumentParser, args: argparse.Namespace, overrides: list[str], num_envs: int
-) -> tuple[Any, Any]:
-    """Return the task's configurations with the paper's clock and figures of PPO; overrides come last."""
-    from arcgym.utils.hydra import apply_overrides
+def load_cfgs(args: argparse.Namespace, num_envs: int) -> tuple[Any, Any]:
+    """Return the task's configurations with the paper's clock and figures of PPO; overrides come last.
 
-    choice = argparse.Namespace(task=args.task, agent="rsl_rl_cfg_entry_point", num_envs=num_envs, seed=args.seed)
-    env_cfg, agent_cfg = cli.load_cfgs(parser, choice, [])
-    follow_paper(env_cfg, agent_cfg, args, num_envs)
+    Raises:
+        UsageError: If the task or an override is wrong.
+    """
+    from arcgym.utils.hydra import apply_overrides
+    from arcgym.utils.registry import load_cfg_from_registry
+
     try:
-        apply_overrides({"env": env_cfg, "agent": agent_cfg}, overrides)
+        env_cfg = load_cfg_from_registry(args.task, "env_cfg_entry_point")
+        agent_cfg = load_cfg_from_registry(args.task, "rsl_rl_cfg_entry_point")
+        env_cfg.scene.num_envs, agent_cfg.seed = num_envs, args.seed
+        follow_paper(env_cfg, agent_cfg, args, num_envs)
+        apply_overrides({"env": env_cfg, "agent": agent_cfg}, args.overrides)
     except (TypeError, ValueError) as error:
-        parser.error(str(error))
-    if args.device is not None:
-        cli.place(env_cfg, agent_cfg, args.device)
+        raise UsageError(str(error)) from error
     return env_cfg, agent_cfg
 
 
@@ -128,13 +130,16 @@ def follow_paper(env_cfg: Any, agent_cfg: Any, args: argparse.Namespace, num_env
     )
 
 
-def measure(task: str, env_cfg: Any, agent_cfg: Any, transitions: int, deadline: float) -> Row:
+def measure(args: argparse.Namespace, env_cfg: Any, agent_cfg: Any, deadline: float) -> Row:
     """Train for a number of transitions, in whole rollouts, or until the deadline; return the row."""
-    env, build_s = build(task, env_cfg, agent_cfg)
+    from arcgym.rl import place
+
+    place(env_cfg, agent_cfg, args.device)
+    env, build_s = build(args.task, env_cfg, agent_cfg)
     runner, learning = timed_runner(env, agent_cfg, env_cfg.sim.device)
     rollout = agent_cfg.num_steps_per_env * env.num_envs
     done, start = 0, time.perf_counter()
-    while done < transitions and (done == 0 or time.monotonic() < deadline):
+    while done < args.transitions and (done == 0 or time.monotonic() < deadline):
         runner.learn(1, init_at_random_ep_len=done == 0)
         done += rollout
         print(f"{env.num_envs} worlds: {done} transitions after {time.perf_counter() - start:.1f} s", flush=True)
@@ -145,13 +150,12 @@ def measure(task: str, env_cfg: Any, agent_cfg: Any, transitions: int, deadline:
 
 def build(task: str, env_cfg: Any, agent_cfg: Any) -> tuple[Any, float]:
     """Return the environment as rsl_rl sees it, and the time until its first steps are made [s]."""
-    import gymnasium as gym
     import torch
 
-    from arcgym.rl import RslRlVecEnvWrapper
+    from arcgym.rl import make_env
 
     start = time.perf_counter()
-    env = RslRlVecEnvWrapper(gym.make(task, cfg=env_cfg), clip_actions=agent_cfg.clip_actions)
+    env = make_env(task, env_cfg, agent_cfg)
     for _ in range(3):
         env.step(torch.zeros(env.num_envs, env.num_actions, device=env.device))
     return env, time.perf_counter() - start
@@ -159,8 +163,9 @@ def build(task: str, env_cfg: Any, agent_cfg: Any) -> tuple[Any, float]:
 
 def timed_runner(env: Any, agent_cfg: Any, device: str) -> tuple[Any, list[float]]:
     """Return a runner without logs, and the list to which it adds the duration of each update [s]."""
-    from _common import time_ms
     from rsl_rl.utils import resolve_callable
+
+    from arcgym.benchmarks.timing import time_ms
 
     runner: Any = resolve_callable(agent_cfg.class_name)(env, agent_cfg.to_dict(), log_dir=None, device=device)
     update, durations = runner.alg.update, []

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws throughput over the number of worlds from the JSON that ``throughput.py`` printed, beside the paper's figures.
+"""Draw throughput over the number of worlds from the JSON that ``throughput.py`` printed, beside the paper's figures.
 
 Several files become several curves. Needs matplotlib (``pip install arcgym[dev]``). Run for example::
 
@@ -16,7 +16,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from paper_throughput import CONTROL_DT, PAPER_RATE
+from arcgym.benchmarks.paper import CONTROL_DT, PAPER_RATE
 
 Curve = tuple[str, list[int], list[float]]
 """Name, numbers of worlds and simulated seconds per second over all of them."""

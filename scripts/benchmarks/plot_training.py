@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws a training run's curves beside the zero-action agent's figures, and writes both as JSON.
+"""Draw a training run's curves beside the zero-action agent's figures, and writes both as JSON.
 
 python scripts/benchmarks/plot_training.py logs/rsl_rl/arc_sigmoid_magnetic/<run> --out OUT.png --zero zero.json
 

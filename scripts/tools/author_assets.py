@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Remakes the USD assets: the patients' colons and the endoscopes. The same code always writes the same assets."""
+"""Remake the USD assets: the patients' colons and the endoscopes. The same code always writes the same assets."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DEFAULT_OUT = Path(__file__).resolve().parents[2] / "assets" / "usd"
 
 
 def author_colon(name: str, out: Path) -> None:
-    """Generates one patient's colon into ``out/<name>/colon.usda``."""
+    """Generate one patient's colon into ``out/<name>/colon.usda``."""
     from arcgym.anatomy import write_colon
     from arcgym.anatomy.generator.generate import make_colon
     from arcgym.anatomy.generator.patients import PATIENTS
@@ -31,7 +31,7 @@ def author_colon(name: str, out: Path) -> None:
 
 
 def asset_authors() -> dict[str, Callable[[Path], object]]:
-    """Returns the function that writes each asset below a folder, by asset name."""
+    """Return the function that writes each asset below a folder, by asset name."""
     from arcgym.anatomy.generator.patients import PATIENTS
     from arcgym.assets.endoscope_spec import endoscope_specs
     from arcgym.assets.endoscope_stage import write_endoscope
@@ -47,7 +47,7 @@ def _author_endoscope(write: Callable[..., Path], spec: EndoscopeSpec, out: Path
 
 
 def main() -> None:
-    """Parses the command line and writes the assets."""
+    """Parse the command line and writes the assets."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=DEFAULT_OUT, help="folder for the assets (default: assets/usd)")
     parser.add_argument("--only", nargs="+", metavar="ASSET", help="names of the assets to make (default: all)")

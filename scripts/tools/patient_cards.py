@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures the five patients and writes their cards, with pictures, into ``docs/patients.md`` between its two marks."""
+"""Measure the five patients and write their cards, with pictures, into ``docs/patients.md`` between its two marks."""
 
 from __future__ import annotations
 
@@ -17,14 +17,13 @@ BEGIN, END = "<!-- cards -->", "<!-- end of cards -->"
 
 
 def main() -> None:
-    """Parses the command line and writes the cards."""
+    """Parse the command line and writes the cards."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--no-pictures", action="store_true", help="write the tables only")
     args = parser.parse_args()
-    from preview_colon import draw_page
-
     from arcgym.anatomy import read_colon
     from arcgym.anatomy.generator.patients import PATIENTS
+    from arcgym.viewers.colon_page import draw_page
 
     cards = []
     for name in PATIENTS:
@@ -42,7 +41,7 @@ def main() -> None:
 
 
 def card(name: str, stage: ColonStage) -> str:
-    """Returns one patient's card as Markdown."""
+    """Return one patient's card as Markdown."""
     number = name.split("_")[1]
     patient = str(stage.metadata["patient"])
     rows = ["| Segment | Length [cm] | Diameter p5 / p50 / p95 [mm] |", "|---|---|---|"]
@@ -57,7 +56,7 @@ def card(name: str, stage: ColonStage) -> str:
 
 
 def diameters(stage: ColonStage, start: float, end: float) -> str:
-    """Returns three percentiles of the lumen diameter between folds [mm]."""
+    """Return three percentiles of the lumen diameter between folds [mm]."""
     import numpy as np
 
     line = stage.centerline
@@ -66,7 +65,7 @@ def diameters(stage: ColonStage, start: float, end: float) -> str:
 
 
 def features(name: str, stage: ColonStage) -> str:
-    """Returns a sentence with the number of bends, folds and lesions, and the least bend radius."""
+    """Return a sentence with the number of bends, folds and lesions, and the least bend radius."""
     from arcgym.anatomy.bends import acute_bends
     from arcgym.anatomy.generator.generate import draw_surface
     from arcgym.anatomy.generator.lesions import WIDE_NECK

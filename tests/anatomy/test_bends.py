@@ -16,7 +16,7 @@ from arcgym.anatomy.generator.spec import ColonSpec
 
 
 def hairpins(radius: float, turns: list[float], leg: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
-    """Returns a planar course of arcs with the given turns [rad] between straight legs, and its arc length."""
+    """Return a planar course of arcs with the given turns [rad] between straight legs, and its arc length."""
     step = 0.001
     curvature = np.zeros(round(leg / step))
     for turn in turns:

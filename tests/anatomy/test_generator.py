@@ -15,10 +15,10 @@ from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.generate import AnatomyError, make_colon
 from arcgym.anatomy.generator.refine import refine
 from arcgym.anatomy.generator.spec import ColonSpec, default_segments
-from arcgym.anatomy.generator.texture import make_textures
-from arcgym.anatomy.generator.visual import skin_to_rings
-from arcgym.anatomy.generator.wall import polygon_triangles
 from arcgym.anatomy.measures import tet_quality
+from arcgym.anatomy.meshing.surface_grid import skin_to_rings
+from arcgym.anatomy.meshing.wall import polygon_triangles
+from arcgym.anatomy.mucosa.texture import make_textures
 from arcgym.anatomy.validation.validate import Check, loop_gap, ring_radii
 
 

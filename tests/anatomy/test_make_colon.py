@@ -142,7 +142,7 @@ def test_same_seed_same_patient() -> None:
 
 
 def first_valid_surface(spec: ColonSpec) -> Surface:
-    """Returns the surface of the first seed that the generator would accept."""
+    """Return the surface of the first seed that the generator would accept."""
     for attempt in range(spec.max_attempts):
         try:
             surface, lesions = draw_surface(spec, spec.seed + 1000 * attempt)
@@ -160,7 +160,7 @@ def run(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 def test_bad_spec_leaves_nothing_behind(tmp_path: Path) -> None:
     result = run(write(tmp_path, "sigmoid_shape: knot"), tmp_path / "out")
-    assert result.returncode == 1 and "'knot' is unknown; expected one of plain" in result.stderr
+    assert result.returncode == 2 and "'knot' is unknown; expected one of plain" in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["spec.yaml"]
 
 

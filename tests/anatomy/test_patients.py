@@ -30,7 +30,7 @@ def stages() -> dict[str, ColonStage]:
 
 
 def patches(stage: ColonStage, mark: np.ndarray) -> dict[str, int]:
-    """Counts the connected patches of marked fine vertices by segment."""
+    """Count the connected patches of marked fine vertices by segment."""
     faces = stage.visual.faces
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]]])
     edges = edges[mark[edges].all(1)]

@@ -17,7 +17,7 @@ from arcgym.anatomy import StageError, read_colon, write_colon
 
 
 def _broken(folder: Path, change: Callable[[Usd.Stage], None]) -> Path:
-    """Writes the tiny colon, changes its composed stage and writes that out flat."""
+    """Write the tiny colon, changes its composed stage and write that out flat."""
     usd = Usd.Stage.Open(str(write_tiny_colon(folder)))
     change(usd)
     usd.Flatten().Export(str(folder / "broken.usda"))

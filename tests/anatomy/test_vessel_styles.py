@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from arcgym.anatomy.generator.vessel_styles import STYLES, texture_rows
-from arcgym.anatomy.generator.vessels import draw_vessels
+from arcgym.anatomy.mucosa.vessel_styles import STYLES, texture_rows
+from arcgym.anatomy.mucosa.vessels import draw_vessels
 from arcgym.anatomy.segments import SEGMENTS
 
 

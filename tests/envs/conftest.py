@@ -48,7 +48,7 @@ class CounterSim:
 
 
 class CounterScene:
-    """Stands in for InteractiveScene; its camera draws a 2x2 image filled with the position."""
+    """Stands in for InteractiveScene; its camera draws a small image filled with the position."""
 
     def __init__(self, cfg: CounterSceneCfg, sim_cfg: Any) -> None:
         self.cfg = cfg
@@ -56,7 +56,7 @@ class CounterScene:
         self.device = "cpu"
         self.counter = Counter(cfg.num_envs)
         self.sim = CounterSim(self.counter, cfg.num_envs)
-        self.image = torch.zeros(cfg.num_envs, 3, 2, 2, dtype=torch.uint8)
+        self.image = torch.zeros(cfg.num_envs, 3, cfg.image_size, cfg.image_size, dtype=torch.uint8)
         self.seed_at_build = torch.initial_seed()
         self.drawn: list[list[int]] = []
 
@@ -80,6 +80,7 @@ class CounterScene:
 class CounterSceneCfg:
     class_type: type = CounterScene
     num_envs: int = 2
+    image_size: int = 2
 
 
 class VelocityAction(ActionTerm):

@@ -9,31 +9,28 @@ import math
 import numpy as np
 import pytest
 
+from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
+from arcgym.benchmarks.fidelity.indenter import Curve
+from arcgym.benchmarks.fidelity.tube_model import TubeModel
+from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
+
 
 def test_elastica_of_a_small_load_is_a_beam() -> None:
-    from fidelity_checks.references import elastica_deflection, small_deflection
-
     assert elastica_deflection(1e-3, 0.5, 0.025) == pytest.approx(small_deflection(1e-3, 0.5, 0.025), rel=1e-4)
 
 
 @pytest.mark.parametrize(("load", "deflection"), [(1.0, 0.3017), (2.0, 0.4935), (4.0, 0.6700), (5.0, 0.7138)])
 def test_elastica_is_that_of_the_tables(load: float, deflection: float) -> None:
     """Mattiasson 1981, Int. J. Numer. Methods Eng. 17: w/L of a cantilever by F L^2 / EI."""
-    from fidelity_checks.references import elastica_deflection
-
     assert elastica_deflection(load, 1.0, 1.0) == pytest.approx(deflection, abs=1e-4)
 
 
 def test_clamped_and_guided_column() -> None:
-    from fidelity_checks.references import clamped_pinned_load
-
     # 20.19 EI / L^2 (Timoshenko and Gere, Theory of Elastic Stability, section 2.1)
     assert clamped_pinned_load(0.5, 0.025) == pytest.approx(20.19 * 0.025 / 0.25, rel=1e-3)
 
 
 def test_a_stretched_brick_tube_follows_hooke() -> None:
-    from fidelity_checks.references import TubeModel
-
     tube = TubeModel(0.1, 0.02, 0.002, 5.0e6, 0.0, around=8, along=4)
     z = tube.points()[:, 2]
     stretch = np.zeros((len(z), 3))
@@ -46,8 +43,6 @@ def test_a_stretched_brick_tube_follows_hooke() -> None:
 
 
 def test_a_long_brick_tube_bends_like_a_beam() -> None:
-    from fidelity_checks.references import TubeModel
-
     length, radius = 1.0, 0.01
     tube = TubeModel(length, radius, 0.002, 5.0e6, 0.3, around=8, along=40)
     inertia = math.pi / 4.0 * (0.012**4 - 0.010**4)
@@ -62,8 +57,6 @@ def test_a_long_brick_tube_bends_like_a_beam() -> None:
 @pytest.mark.parametrize(("poissons_ratio", "ratio"), [(0.0, 1.01), (0.5, 1.0)])
 def test_volume_of_a_stretched_shell(poissons_ratio: float, ratio: float) -> None:
     """Pulled by 1 % and free sideways, it keeps its volume if incompressible, and grows by 1 % without contraction."""
-    from fidelity_checks.insertion import shell_volume_ratio
-
     rest = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0]])
     now = rest * np.array([1.01, 1.0 - 0.01 * poissons_ratio, 1.0])
     volume = shell_volume_ratio(rest, now, np.array([[0, 1, 2]]), poissons_ratio)
@@ -71,8 +64,6 @@ def test_volume_of_a_stretched_shell(poissons_ratio: float, ratio: float) -> Non
 
 
 def test_depth_under_a_load_is_interpolated() -> None:
-    from fidelity_checks.indentation import Curve
-
     curve = Curve(np.array([[0.0, 1.0, 2.0]]), np.array([[0.0, 10.0, 30.0]]))
     assert curve.depth_at(20.0)[0] == pytest.approx(1.5)
     assert math.isnan(curve.depth_at(40.0)[0])

@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
+
+from arcgym.benchmarks.fidelity.rows import Run
+from arcgym.benchmarks.fidelity.table import choose
+from arcgym.cli.bench_fidelity import describe
 
 QUICK = [
     "cantilever_small,cantilever_large",
@@ -40,27 +42,27 @@ LONG = ["sigmoid_deep_force,sigmoid_deep_tip", "newton_force,newton_tip", "rando
 """Rows that take minutes each and are left to the script."""
 
 
-def check_rows(fidelity: Any, run: Any, names: str) -> None:
+def check_rows(run: Run, names: str) -> None:
     """Measure the one check that gives the rows, and look at each."""
-    (check,) = fidelity.choose(names, quick=False)
+    (check,) = choose(names, quick=False)
     rows = check.measure(run)
     assert [row.name for row in rows] == names.split(",")
-    assert all(row.ok for row in rows), "\n".join(fidelity.describe(row) for row in rows)
+    assert all(row.ok for row in rows), "\n".join(describe(row) for row in rows)
 
 
 @pytest.mark.parametrize("names", QUICK)
-def test_quick_rows_are_within_their_bounds(fidelity: Any, run: Any, names: str) -> None:
-    check_rows(fidelity, run, names)
+def test_quick_rows_are_within_their_bounds(run: Run, names: str) -> None:
+    check_rows(run, names)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("names", SLOW)
-def test_rows_are_within_their_bounds(fidelity: Any, run: Any, names: str) -> None:
-    check_rows(fidelity, run, names)
+def test_rows_are_within_their_bounds(run: Run, names: str) -> None:
+    check_rows(run, names)
 
 
-def test_no_row_is_left_out(fidelity: Any) -> None:
-    quick = [name for check in fidelity.choose(None, quick=True) for name in check.rows]
-    every = [name for check in fidelity.choose(None, quick=False) for name in check.rows]
+def test_no_row_is_left_out() -> None:
+    quick = [name for check in choose(None, quick=True) for name in check.rows]
+    every = [name for check in choose(None, quick=False) for name in check.rows]
     assert sorted(quick) == sorted(",".join(QUICK).split(","))
     assert sorted(every) == sorted(",".join(QUICK + SLOW + LONG).split(","))

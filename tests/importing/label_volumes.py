@@ -38,7 +38,7 @@ DIRECTIONS = {
 
 
 def course() -> tuple[np.ndarray, float]:
-    """Returns points every 2 mm [m], shape (n, 3), and the length [m]."""
+    """Return points every 2 mm [m], shape (n, 3), and the length [m]."""
     spline = CubicSpline(np.linspace(0, 1, len(SITES)), SITES)
     points = spline(np.linspace(0, 1, 2000))
     arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
@@ -55,7 +55,7 @@ def write_volume(
     extra_radius: float = 0.010,
     value: int = 1,
 ) -> Path:
-    """Writes the tube as labels 0 and 1, voxels of some millimetres.
+    """Write the tube as labels 0 and 1, voxels of some millimetres.
 
     Args:
         path: File to write.

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small bowel and a rectal tube that hang on the lumen are cut off and told; gaps are bridged end to end."""
+"""Small bowel and a rectal tube that hang on the lumen are cut off and reported; gaps are bridged end to end."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from label_volumes import RADIUS, course, write_volume
 
-from arcgym.anatomy.importing.centerline import FoundPath, find_path
+from arcgym.anatomy.importing.anal_end import into_the_canal
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.clearance import coarse_clearance
-from arcgym.anatomy.importing.ends import into_the_canal
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.path_search import FoundPath, find_path
 from arcgym.anatomy.importing.tree import lumen_tree
 from arcgym.anatomy.importing.volumes import read_volume
 
@@ -29,7 +29,7 @@ def length(path: np.ndarray) -> float:
 
 
 def tube(start: np.ndarray, *moves: tuple[float, float, float]) -> np.ndarray:
-    """Returns points every 2 mm along straight pieces."""
+    """Return points every 2 mm along straight pieces."""
     corners = np.cumsum([start, *np.array(moves)], axis=0)
     pieces = zip(corners[:-1], corners[1:], strict=True)
     return np.concatenate(

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from surface_distance import hausdorff95, surface_samples
 from test_surfaces import write
 
 from arcgym.anatomy import ColonStage, read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
-from arcgym.anatomy.importing.measures import hausdorff95, surface_samples
 
 COLONS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 BENT = 0.08
@@ -35,17 +35,17 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module", params=KINDS)
 def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[ColonStage, ColonStage]:
-    """A committed colon, and what its inner surface, open at the anus, was imported to."""
+    """Return a committed colon, and what its inner surface, open at the anus, was imported to."""
     truth = read_colon(COLONS / request.param / "colon.usda")
     suffix, unit, inside_out = KINDS[request.param]
     points, faces = truth.visual.points.astype(float), truth.visual.faces
     points = 1e3 * points * [-1, -1, 1] if unit == "mm" else points
     folder = tmp_path_factory.mktemp(request.param)
     surface = write(folder / f"colon{suffix}", points, faces[:, ::-1] if inside_out else faces)
-    told = import_to_folder(surface, folder / "out", ImportSettings())
-    assert told["input"]["units"] == unit
-    assert told["orientation"]["frame"] == ("lps" if unit == "mm" else "ras")
-    assert [check for check in told["checks"] if not check["ok"]] == []
+    report = import_to_folder(surface, folder / "out", ImportSettings())
+    assert report["input"]["units"] == unit
+    assert report["orientation"]["frame"] == ("lps" if unit == "mm" else "ras")
+    assert [check for check in report["checks"] if not check["ok"]] == []
     return truth, read_colon(folder / "out" / "colon.usda")
 
 
@@ -74,6 +74,6 @@ def test_landmarks(pair: tuple[ColonStage, ColonStage]) -> None:
 
 
 def place(stage: ColonStage, landmark: str) -> np.ndarray:
-    """Returns the position of a landmark [m]."""
+    """Return the position of a landmark [m]."""
     line = stage.centerline
     return np.array([np.interp(stage.landmarks[landmark], line.arc, line.points[:, k]) for k in range(3)])

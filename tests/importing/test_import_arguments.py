@@ -19,7 +19,7 @@ SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "tools" / "import_col
 
 @pytest.fixture
 def mask(tmp_path: Path) -> Path:
-    """A file with the name of a label volume, which nothing can read."""
+    """Return a file with the name of a label volume, which nothing can read."""
     path = tmp_path / "mask.nii.gz"
     path.write_bytes(b"no volume")
     return path
@@ -106,5 +106,5 @@ def test_command_exits_with_2_and_one_line(mask: Path, monkeypatch: pytest.Monke
         runpy.run_path(str(SCRIPT), run_name="__main__")
     assert stopped.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("error: Unknown landmark 'foo'")
+    assert line.startswith("import_colon.py: error: Unknown landmark 'foo'")
     assert not out.exists()

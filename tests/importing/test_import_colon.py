@@ -13,10 +13,10 @@ from label_volumes import DIRECTIONS, RADIUS, course, write_volume
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy import read_colon
-from arcgym.anatomy.generator.vessel_styles import STYLES
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.volumes import read_volume
+from arcgym.anatomy.mucosa.vessel_styles import STYLES
 from arcgym.anatomy.validation.stage_checks import inspect_file
 from arcgym.anatomy.validation.validate import failed
 from arcgym.sim.wall.wall_topology import lumen_topology
@@ -35,13 +35,13 @@ def test_directions_put_the_lumen_where_it_is(kind: str, tmp_path: Path) -> None
 
 @pytest.fixture(scope="module")
 def imported(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The tube with a gap of 15 mm and, beside it, a loop that is no colon."""
+    """Import the tube with a gap of 15 mm and, beside it, a loop that is no colon."""
     folder = tmp_path_factory.mktemp("colon")
     loop = np.array([0.0, 0.02, 0.42]) + np.linspace(0, 0.1, 60)[:, None] * [1.0, 0.0, 0.0]
     volume = write_volume(folder / "tube.nii.gz", DIRECTIONS["flipped_xy"], gap=0.015 + 2 * RADIUS, extra=loop)
-    told = import_to_folder(volume, folder / "tube", COARSE)
-    assert len(told["cleaning"]["bridges"]) == 1
-    assert len(told["cleaning"]["dropped"]) == 1
+    report = import_to_folder(volume, folder / "tube", COARSE)
+    assert len(report["cleaning"]["bridges"]) == 1
+    assert len(report["cleaning"]["dropped"]) == 1
     assert {path.name for path in folder.iterdir()} == {"tube.nii.gz", "tube"}
     return folder / "tube"
 
@@ -64,9 +64,9 @@ def test_landmark_by_position_and_a_finer_wall(tmp_path: Path) -> None:
     line, _ = course()
     place = tuple(float(value) for value in 1e3 * line[100])
     settings = replace(COARSE, landmarks={"rectosigmoid": place}, posture="prone", sectors=16, ring_spacing=0.010)
-    told = import_to_folder(write_volume(tmp_path / "tube.mha"), tmp_path / "tube", settings)
+    report = import_to_folder(write_volume(tmp_path / "tube.mha"), tmp_path / "tube", settings)
     stage = read_colon(tmp_path / "tube" / "colon.usda")
-    assert [check for check in told["checks"] if not check["ok"]] == []
+    assert [check for check in report["checks"] if not check["ok"]] == []
     assert stage.wall.num_sectors == 16
     assert np.diff(stage.wall.ring_arc) == pytest.approx(0.010, rel=0.05)
     assert stage.landmarks["rectosigmoid"] == pytest.approx(0.200 + RADIUS, abs=0.008)

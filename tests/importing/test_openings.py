@@ -13,9 +13,9 @@ from skimage.measure import marching_cubes
 from test_surfaces import LENGTH, cylinder
 from test_surfaces import RADIUS as WIDE
 
-from arcgym.anatomy.importing.centerline import find_path
-from arcgym.anatomy.importing.openings import Opening, find_openings, to_opening
-from arcgym.anatomy.importing.smooth_centerline import centerd
+from arcgym.anatomy.importing.openings import Opening, find_openings, lead_to_opening
+from arcgym.anatomy.importing.path_search import find_path
+from arcgym.anatomy.importing.smooth_centerline import center_path
 from arcgym.anatomy.importing.surfaces import fill_surface
 from arcgym.anatomy.importing.volumes import read_volume
 
@@ -40,14 +40,14 @@ def test_triangles_that_share_no_vertices_have_the_same_rim() -> None:
 def test_path_into_a_corner_is_led_to_the_middle() -> None:
     """It runs up to 3 cm before the end, then aside; it goes straight on from where the rim is a radius away."""
     path = np.array([(0.0, 0.0, z) for z in np.arange(0.0, 0.071, 0.002)] + [(0.01, 0.0, 0.08), (0.015, 0.0, 0.095)])
-    led = to_opening(path, [Opening(np.array([0.0, 0.0, 0.1]), 0.020)])
+    led = lead_to_opening(path, [Opening(np.array([0.0, 0.0, 0.1]), 0.020)])
     assert led is not None
     assert led[-1] == pytest.approx([0.0, 0.0, 0.1])
-    assert to_opening(path, [Opening(np.array([0.0, 0.0, 0.01]), 0.020)]) is None
+    assert lead_to_opening(path, [Opening(np.array([0.0, 0.0, 0.01]), 0.020)]) is None
 
 
 def opened(tmp_path: Path, s: float, normal: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the tube without what lies within 10 cm of its start and behind a plane at an arc length."""
+    """Return the tube without what lies within 10 cm of its start and behind a plane at an arc length."""
     grid = read_volume(write_volume(tmp_path / "tube.mha"), None, None, 0.003)
     points, faces, *_ = marching_cubes(grid.values, 0.5)
     points = grid.points(points)
@@ -71,7 +71,7 @@ def test_open_tube_begins_at_its_opening(
     found = find_path(grid, [None, None], "ras")
     assert found.cut == []
     assert np.linalg.norm(found.points[0] - openings[0].center) < np.linalg.norm(found.points[-1] - openings[0].center)
-    path = centerd(grid, found.points, openings=openings)
+    path = center_path(grid, found.points, openings=openings)
     assert path[0] == pytest.approx(openings[0].center, abs=1e-3)
     length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
     assert length == pytest.approx(course()[1] - s - least + RADIUS, rel=0.01)

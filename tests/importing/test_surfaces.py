@@ -50,8 +50,8 @@ def test_lumen_has_its_volume(
 ) -> None:
     points, faces = cylinder(open_end)
     path = write(tmp_path / f"tube{suffix}", scale * points, faces[:, ::winding])
-    grid, told = read_surface(path, "auto", None, 0.002)
-    assert told == unit
+    grid, used = read_surface(path, "auto", None, 0.002)
+    assert used == unit
     assert grid.mask.sum() * grid.spacing**3 == pytest.approx(VOLUME, rel=0.03)
 
 

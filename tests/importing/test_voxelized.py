@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from label_volumes import DIRECTIONS
+from surface_distance import hausdorff95, surface_samples
 from voxelized import gap, noise, place, rectal_tube, small_bowel, write_voxelized
 
 from arcgym.anatomy import read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
-from arcgym.anatomy.importing.measures import hausdorff95, surface_samples
 
 COLONS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 BENT = 0.08
@@ -39,7 +39,7 @@ def test_import_is_near_the_truth(case: str, tmp_path: Path) -> None:
     name, direction, edits, cut = CASES[case]
     truth = read_colon(COLONS / name / "colon.usda")
     volume = write_voxelized(truth, tmp_path / "colon.nii.gz", DIRECTIONS[direction], edits)
-    told = import_to_folder(volume, tmp_path / "out", ImportSettings())
+    report = import_to_folder(volume, tmp_path / "out", ImportSettings())
     imported = read_colon(tmp_path / "out" / "colon.usda")
     shift = np.array(imported.metadata["translationAfterRotation"])
     a = surface_samples(imported.visual.points, imported.visual.faces, 0.0005)
@@ -55,5 +55,5 @@ def test_import_is_near_the_truth(case: str, tmp_path: Path) -> None:
     assert ratio == pytest.approx(1.0, abs=0.02)
     assert surface < 0.0015
     assert away[worst] < 0.015, worst
-    assert set(cut) <= {piece["kind"] for piece in told["cleaning"]["cut"]}
-    assert [check for check in told["checks"] if not check["ok"]] == []
+    assert set(cut) <= {piece["kind"] for piece in report["cleaning"]["cut"]}
+    assert [check for check in report["checks"] if not check["ok"]] == []

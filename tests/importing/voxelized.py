@@ -14,8 +14,8 @@ from scipy.spatial import cKDTree
 
 from arcgym.anatomy import ColonStage
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.smooth_centerline import resample, smooth
 from arcgym.anatomy.importing.surfaces import read_surface
+from arcgym.anatomy.polyline import resample, smooth
 
 SPACING = np.array([0.75, 0.75, 1.0])
 """Voxels of the label volumes [mm]."""
@@ -27,7 +27,7 @@ Edit = Callable[[Grid, ColonStage], None]
 
 
 def write_voxelized(stage: ColonStage, path: Path, direction: np.ndarray, edits: Sequence[Edit]) -> Path:
-    """Writes a colon's lumen, changed by edits in turn, as labels 0 and 1 with a direction matrix."""
+    """Write a colon's lumen, changed by edits in turn, as labels 0 and 1 with a direction matrix."""
     import SimpleITK as sitk
 
     surface = path.with_suffix(".ply")
@@ -51,13 +51,13 @@ def write_voxelized(stage: ColonStage, path: Path, direction: np.ndarray, edits:
 
 
 def place(stage: ColonStage, s: float | np.ndarray) -> np.ndarray:
-    """Returns positions on the centreline [m], shape (..., 3)."""
+    """Return positions on the centreline [m], shape (..., 3)."""
     line = stage.centerline
     return np.stack([np.interp(s, line.arc, line.points[:, k]) for k in range(3)], -1)
 
 
 def gap(s: float, length: float, thread: float = 0.0, fluid: bool = False) -> Edit:
-    """Leaves a stretch out, or all but a thread of some radius, or only its posterior half, as unlabelled fluid [m]."""
+    """Leave a stretch out, or all but a thread of some radius, or only its posterior half, as unlabelled fluid [m]."""
 
     def edit(grid: Grid, stage: ColonStage) -> None:
         arc = np.arange(0.0, stage.length, 0.001)
@@ -74,7 +74,7 @@ def gap(s: float, length: float, thread: float = 0.0, fluid: bool = False) -> Ed
 
 
 def noise(grid: Grid, stage: ColonStage) -> None:
-    """Drops every seventh voxel at the wall and sets 300 specks."""
+    """Drop every seventh voxel at the wall and set 300 specks."""
     rng = np.random.default_rng(0)
     mask = grid.mask
     edge = np.argwhere(mask & ~ndimage.binary_erosion(mask))
@@ -84,13 +84,13 @@ def noise(grid: Grid, stage: ColonStage) -> None:
 
 
 def rectal_tube(grid: Grid, stage: ColonStage) -> None:
-    """Adds a tube that is 9 mm wide and ends below the anus, and its hole within the rectum."""
+    """Add a tube that is 9 mm wide and ends below the anus, and its hole within the rectum."""
     _draw(grid, np.linspace([0.0, 0.0, -0.028], [0.0, 0.0, 0.01], 60), 0.0045)
     _draw(grid, place(stage, np.arange(0.01, 0.05, 0.001)), 0.005, 0.0)
 
 
 def small_bowel(share: float, radius: float = 0.009) -> Edit:
-    """Adds a loop from the ileocaecal valve towards the sigmoid; with a share of 1 it joins that, too."""
+    """Add a loop from the ileocaecal valve towards the sigmoid; with a share of 1 it joins that, too."""
 
     def edit(grid: Grid, stage: ColonStage) -> None:
         line = _free_way(grid, place(stage, stage.landmarks["ileocecal_valve"]), place(stage, 0.45))
@@ -104,7 +104,7 @@ def small_bowel(share: float, radius: float = 0.009) -> Edit:
 
 
 def _free_way(grid: Grid, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-    """Returns a way [m] between two places that keeps off the colon, shape (n, 3)."""
+    """Return a way [m] between two places that keeps off the colon, shape (n, 3)."""
     from skimage.graph import route_through_array
 
     room = ndimage.distance_transform_edt(~grid.mask, sampling=grid.spacing)[::4, ::4, ::4]
@@ -114,7 +114,7 @@ def _free_way(grid: Grid, first: np.ndarray, last: np.ndarray) -> np.ndarray:
 
 
 def _draw(grid: Grid, line: np.ndarray, radius: float, value: float = 1.0) -> None:
-    """Sets the voxels within a radius of points [m], shape (n, 3)."""
+    """Set the voxels within a radius of points [m], shape (n, 3)."""
     low = np.maximum(np.floor(grid.index(line.min(0) - radius)).astype(int), 0)
     high = np.ceil(grid.index(line.max(0) + radius)).astype(int) + 1
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))

@@ -30,7 +30,7 @@ def test_scope_out_at_the_anal_verge(env) -> None:
 
 
 def test_wall_penetrated_is_what_the_simulation_says(env) -> None:
-    env.sim = SimpleNamespace(pierced=torch.tensor([False, True]))
+    env.sim = SimpleNamespace(wall_penetrated=torch.tensor([False, True]))
     assert mdp.wall_penetrated(env).tolist() == [False, True]
 
 

@@ -43,7 +43,7 @@ def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.nd
     twist = wp.array([[*link_velocity, 0.0, 0.0, 0.0]], dtype=wp.spatial_vector, device="cpu")
     contact, loads, now = sim.contact, sim.coupling.solver.loads, 1.0e-9
     args = [sim.state.body_q, twist, sim.model.body_com, sim.nodal_pos, sim.nodal_vel, contact.links]
-    args += [contact.records, contact.law, contact.friction, now, loads, sim.coupling.pierced]
+    args += [contact.records, contact.law, contact.friction, now, loads, sim.scope_readout.penetrated]
     wp.launch(load_contacts, loads.wrench.shape, args, device="cpu")
     return loads.wrench.numpy()[0, 0, :3]
 
@@ -249,9 +249,11 @@ def test_a_pull_above_the_friction_accelerates_it_by_the_rest(tiny_sim: TinySim)
     assert sim.endoscope.data.body_lin_vel_w[0, 0, 2].item() == pytest.approx(0.2 * 9.81 * 0.25, rel=0.1)
 
 
-@pytest.mark.parametrize(("depth", "pierced"), [(0.7, False), (0.8, True), (1.1, True)])
-def test_a_link_pierces_the_wall_where_its_axis_comes_close_to_it(sim: Simulation, depth: float, pierced: bool) -> None:
+@pytest.mark.parametrize(("depth", "penetrated"), [(0.7, False), (0.8, True), (1.1, True)])
+def test_a_link_penetrates_the_wall_where_its_axis_comes_close_to_it(
+    sim: Simulation, depth: float, penetrated: bool
+) -> None:
     place(sim, depth * REACH)
-    sim.coupling.pierced.zero_()
+    sim.scope_readout.penetrated.zero_()
     wall_force(sim)
-    assert sim.pierced.tolist() == [pierced]
+    assert sim.wall_penetrated.tolist() == [penetrated]

@@ -61,6 +61,12 @@ def test_plain_newton_refuses_what_differs_between_worlds(narrow: TinySim) -> No
         sim.endoscope.write_friction_to_sim(torch.ones(1))
 
 
+def test_plain_newton_refuses_to_tell_about_penetration(narrow: TinySim) -> None:
+    sim = narrow(links=6, colon=SOLID, solver="newton")
+    with pytest.raises(ValueError, match="does not measure wall penetration.*env.terminations.wall_penetrated=null"):
+        _ = sim.wall_penetrated
+
+
 def force_on_wall(sim: Simulation, with_contact: bool) -> np.ndarray:
     """Force on each vertex that moves [N], shape (V, 3)."""
     if not with_contact:

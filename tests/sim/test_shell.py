@@ -12,7 +12,7 @@ import warp as wp
 from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
-from arcgym.anatomy.generator.wall import tube_triangles
+from arcgym.anatomy.meshing.wall import tube_triangles
 from arcgym.anatomy.shell import mid_surface, wall_thickness
 from arcgym.assets.materials import shell_moduli
 from arcgym.assets.shell_geometry import fold_angles, fold_gradients, polygon_factor, shell_geometry

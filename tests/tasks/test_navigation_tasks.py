@@ -8,12 +8,15 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import gymnasium
 import pytest
 
 from arcgym.envs import mdp
 from arcgym.utils.configclass import configclass, validate
+from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import list_tasks, load_cfg_from_registry
-from arcgym_tasks.navigation.config.proximal.env_cfg import SplenicProximalEnvCfg
+from arcgym_tasks.navigation import register_robot
+from arcgym_tasks.navigation.config.proximal import ProximalEnvCfg
 
 TASKS = [
     f"ARC-{segment}-{robot}{variant}"
@@ -57,7 +60,63 @@ def test_horizon_is_counted_in_control_steps_of_a_tenth_second(segment: str, ste
     cfg = load_cfg_from_registry(f"ARC-{segment}-Magnetic", "env_cfg_entry_point")
     step = cfg.decimation * cfg.sim.dt
     assert step == pytest.approx(0.1)
-    assert round(cfg.episode_length_s / step) == steps
+    assert round(cfg.max_episode_length_s / step) == steps
+
+
+def test_another_segment_brings_its_time_limit() -> None:
+    cfg = load_cfg_from_registry("ARC-Rectum-Proximal", "env_cfg_entry_point")
+    apply_overrides({"env": cfg}, ["env.segment=splenic"])
+    assert cfg.max_episode_length_s == 27.0
+    apply_overrides({"env": cfg}, ["env.episode_length_s=5"])
+    assert cfg.max_episode_length_s == 5.0
+
+
+def test_an_episode_from_rest_has_time_for_the_whole_way() -> None:
+    cfg = load_cfg_from_registry("ARC-Descending-Proximal", "env_cfg_entry_point")
+    apply_overrides({"env": cfg}, ["env.start=rest"])
+    validate(cfg)
+    assert cfg.max_episode_length_s == 10.0 + 45.0 + 16.0
+
+
+def test_a_segment_without_a_time_limit_needs_one() -> None:
+    cfg = ProximalEnvCfg(segment="transverse")
+    with pytest.raises(ValueError, match="'transverse' has no time limit.*env.episode_length_s.*splenic"):
+        validate(cfg)
+    cfg.episode_length_s = 20.0
+    validate(cfg)
+
+
+def test_one_call_registers_a_robot_of_ones_own() -> None:
+    @configclass
+    class SlowEnvCfg(ProximalEnvCfg):
+        decimation: int = 96
+
+    tasks = register_robot("Slow", SlowEnvCfg, segments=("sigmoid", "transverse"))
+    try:
+        assert tasks[:2] == ["ARC-Sigmoid-Slow", "ARC-Sigmoid-Slow-Play"] and len(tasks) == 4
+        cfg = load_cfg_from_registry("ARC-Sigmoid-Slow-Play", "env_cfg_entry_point")
+        assert (cfg.segment, cfg.decimation, cfg.scene.num_envs) == ("sigmoid", 96, 4)
+        agent = load_cfg_from_registry("ARC-Sigmoid-Slow", "rsl_rl_cfg_entry_point")
+        assert agent.experiment_name == "arc_sigmoid_slow"
+    finally:
+        for task in tasks:
+            gymnasium.registry.pop(task)
+
+
+def test_registering_a_module_that_is_not_there_costs_nothing_until_it_is_used() -> None:
+    tasks = register_robot("Ghost", "nowhere.ghost:GhostEnvCfg", segments=("rectum",))
+    try:
+        assert "ARC-Rectum-Ghost" in list_tasks()
+        with pytest.raises(ValueError, match="nowhere"):
+            load_cfg_from_registry("ARC-Rectum-Ghost", "env_cfg_entry_point")
+    finally:
+        for task in tasks:
+            gymnasium.registry.pop(task)
+
+
+def test_an_entry_point_shows_class_and_fields() -> None:
+    entry = gymnasium.spec("ARC-Sigmoid-Capsule-Play").kwargs["env_cfg_entry_point"]
+    assert str(entry) == "arcgym_tasks.navigation.config.capsule:CapsuleEnvCfg(segment='sigmoid').play()"
 
 
 def test_play_has_few_worlds_and_no_randomization() -> None:
@@ -76,30 +135,30 @@ def test_policy_sees_images_only() -> None:
 
 def test_a_user_can_subclass_and_switch_terms_off() -> None:
     @configclass
-    class MyEnvCfg(SplenicProximalEnvCfg):
+    class MyEnvCfg(ProximalEnvCfg):
         def __post_init__(self) -> None:
             super().__post_init__()
             self.rewards.progress = None
             self.lumen = "metric"
 
-    cfg = MyEnvCfg()
+    cfg = MyEnvCfg(segment="splenic")
     validate(cfg)
     assert cfg.rewards.progress is None and cfg.rewards.lumen is not None
-    assert SplenicProximalEnvCfg().rewards.progress is not None
+    assert ProximalEnvCfg().rewards.progress is not None
 
 
 def test_own_reward_constants_are_accepted() -> None:
-    cfg = SplenicProximalEnvCfg()
+    cfg = ProximalEnvCfg(segment="splenic")
     cfg.lumen = mdp.LumenCfg(mix=0.5)
     validate(cfg)
 
 
 def test_unknown_names_are_refused() -> None:
-    cfg = SplenicProximalEnvCfg()
+    cfg = ProximalEnvCfg(segment="splenic")
     cfg.segment = "spleen"
     with pytest.raises(ValueError, match="'spleen'.*rectum.*splenic"):
         validate(cfg)
-    cfg = SplenicProximalEnvCfg()
+    cfg = ProximalEnvCfg(segment="splenic")
     cfg.lumen = "papper"
     with pytest.raises(ValueError, match="papper.*metric.*paper"):
         validate(cfg)

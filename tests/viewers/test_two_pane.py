@@ -12,12 +12,11 @@ import torch
 import warp as wp
 from tiny import tiny_colon_stage
 
-from arcgym.envs import ViewerCfg
-from arcgym.viewers import OutsideViewCfg, TwoPaneCfg, TwoPaneView
+from arcgym.viewers import OutsideViewCfg, TwoPaneView, ViewerCfg
 from arcgym.viewers.frame_info import read_info
 
 LINKS = 6
-SMALL = TwoPaneCfg(outside=OutsideViewCfg(width=141, height=128))
+SMALL = ViewerCfg(outside=OutsideViewCfg(width=141, height=128))
 
 
 class FakeCamera:
@@ -100,6 +99,12 @@ def test_extra_numbers_are_shown_and_reward_is_replaced():
     assert info.terms == {"s_c": 0.75}
 
 
+def test_metrics_that_the_task_has_are_shown():
+    env = make_env()
+    env.metrics_manager = SimpleNamespace(step_values={"s_c": torch.tensor([0.25, 0.5])})
+    assert read_info(env, 1, metrics=("s_c", "s_o")).terms == {"s_c": 0.5}
+
+
 def test_charts_start_again_with_every_episode():
     env = make_env()
     view = TwoPaneView(env, SMALL)
@@ -117,7 +122,7 @@ def test_viewer_configuration_chooses_the_colors():
     env.scene["colon"].points[:, 0, 2] *= 1.2
     frames = {}
     for color in ("displacement", "strain", "force"):
-        env.cfg.viewer = ViewerCfg(wall_color=color, scope_color="plain")
-        frames[color] = TwoPaneView(env, None).frame()
+        outside = OutsideViewCfg(width=141, height=128, wall_color=color, scope_color="plain")
+        frames[color] = TwoPaneView(env, ViewerCfg(outside=outside)).frame()
     assert (frames["strain"] != frames["displacement"]).mean() > 0.01
     assert (frames["strain"] != frames["force"]).mean() > 0.01

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Acute bends of a centreline: what they are, and how many there are."""
+"""Find the acute bends of a centerline; :mod:`arcgym.anatomy.generator.acute_bends` makes them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ ACUTE = np.radians(90.0)
 """Turn of the tangent within :data:`WINDOW` above which a bend is acute [rad]; a mean radius below 38 mm."""
 
 _SPACING = 0.002
+"""Distance of the points at which a turn is taken [m]."""
+
 _SMOOTHING = 0.005
+"""Standard deviation of the smoothing of the course [m]."""
 
 
 def turning(points: np.ndarray, arc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns arc lengths 2 mm apart [m] and the turn of the tangent over the window around each [rad].
+    """Return arc lengths 2 mm apart [m] and the turn of the tangent over the window around each [rad].
 
     The tangent is smoothed over 5 mm, so that the noise of a segmented centreline does not count; half a window from
     either end the turn is 0.
@@ -39,7 +42,7 @@ def turning(points: np.ndarray, arc: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def acute_bends(points: np.ndarray, arc: np.ndarray) -> np.ndarray:
-    """Returns the arc length of each acute bend [m], in order.
+    """Return the arc length of each acute bend [m], in order.
 
     A bend is a stretch in which every window of 60 mm turns by more than 90 degrees; a hairpin is one bend. This is a
     geometric count that anyone can repeat. The acute-angle flexures of radiology (Khashab et al., Endoscopy 2009) are

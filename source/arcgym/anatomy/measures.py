@@ -10,13 +10,13 @@ from arcgym.anatomy.stage.types import VisualMesh
 
 
 def tet_volumes(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """Returns the signed volume of each tetrahedron [m^3], shape (T,)."""
+    """Return the signed volume of each tetrahedron [m^3], shape (T,)."""
     a, b, c, d = (points[tets[:, k]].astype(np.float64) for k in range(4))
     return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6.0
 
 
 def tet_quality(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
-    """Returns the mean-ratio quality of each tetrahedron, shape (T,): 1 regular, 0 flat, negative inverted.
+    """Return the mean-ratio quality of each tetrahedron, shape (T,): 1 regular, 0 flat, negative inverted.
 
     ``12 (3 V)^(2/3) / sum of squared edges`` (Liu and Joe, BIT 34, 1994).
     """
@@ -27,13 +27,13 @@ def tet_quality(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
 
 
 def face_normals(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Returns unnormalised face normals (length twice the area) [m^2], shape (F, 3)."""
+    """Return unnormalised face normals (length twice the area) [m^2], shape (F, 3)."""
     a, b, c = (points[faces[:, k]].astype(np.float64) for k in range(3))
     return np.cross(b - a, c - a)
 
 
 def inner_faces(tets: np.ndarray, layer: np.ndarray) -> np.ndarray:
-    """Returns the lumen side of the wall.
+    """Return the lumen side of the wall.
 
     Args:
         tets: Vertex indices, shape (T, 4).
@@ -51,13 +51,13 @@ def inner_faces(tets: np.ndarray, layer: np.ndarray) -> np.ndarray:
 
 
 def winds_outwards(points: np.ndarray, faces: np.ndarray) -> bool:
-    """Tells whether the faces of a tube enclose positive volume, that is, whether their normals leave the lumen."""
+    """Return whether the faces of a tube enclose positive volume, that is, whether their normals leave the lumen."""
     center = points[faces].astype(np.float64).mean(1) - points.mean(0)
     return bool(np.einsum("ij,ij->", center, face_normals(points, faces)) > 0)
 
 
 def flipped_normal_fraction(visual: VisualMesh) -> float:
-    """Returns the share of faces whose vertex normals point to the other side than their winding."""
+    """Return the share of faces whose vertex normals point to the other side than their winding."""
     winding = face_normals(visual.points, visual.faces)
     normals = visual.normals[visual.faces].mean(1)
     return float((np.einsum("ij,ij->i", winding, normals) < 0).mean())

@@ -24,7 +24,7 @@ ANCHOR_FIXED = 2
 
 
 def segment_index(name: str) -> int:
-    """Returns the integer code of a segment.
+    """Return the integer code of a segment.
 
     Args:
         name: One of :data:`SEGMENTS`.

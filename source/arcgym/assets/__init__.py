@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Colons and endoscopes: their USD stages, their parameters and their state."""
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.assets.actuators import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, TipPullCfg
 from arcgym.assets.colon_cfg import ColonCfg
@@ -15,6 +14,7 @@ from arcgym.assets.endoscope_cfg import (
     IntroducerCfg,
 )
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.assets.colon import Colon, ColonData
@@ -47,9 +47,4 @@ __all__ = [
     "TipPullCfg",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Newton only when a runtime class is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)

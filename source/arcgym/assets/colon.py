@@ -154,7 +154,7 @@ class Colon:
         env_ids: Sequence[int] | torch.Tensor | None = None,
     ) -> None:
         """Set Young's modulus [Pa] and Poisson's ratio, shape (n,), of the worlds ``env_ids`` (all by default)."""
-        self._sim.require_two_level("tissue")
+        self._sim.require_two_level("has one tissue for all worlds")
         moduli = torch.stack(self.moduli(youngs_modulus, poissons_ratio), dim=-1)
         self._sim.moduli[self._worlds(env_ids)] = moduli.to(self._sim.moduli)
 
@@ -165,7 +165,7 @@ class Colon:
 
         It takes the place of the factor that ``ColonCfg.anchors`` names; slack stays as it is.
         """
-        self._sim.require_two_level("stiffness of the attachments")
+        self._sim.require_two_level("has one stiffness of the attachments for all worlds")
         self._sim.anchor_scale[self._worlds(env_ids)] = scale.to(self._sim.anchor_scale)
 
     def write_rigid_to_sim(self, rigid: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
@@ -173,7 +173,7 @@ class Colon:
 
         Held walls cost as much as others; ``ColonCfg.rigid`` holds all of them at no cost.
         """
-        self._sim.require_two_level("mobility of the wall")
+        self._sim.require_two_level("has one mobility of the wall for all worlds")
         self._sim.rigid[self._worlds(env_ids)] = rigid.to(self._sim.rigid)
 
     @staticmethod

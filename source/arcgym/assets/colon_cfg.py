@@ -23,7 +23,7 @@ class ColonCfg:
     wall_model: Literal["shell", "solid"] = "shell"
     """What the wall is made of: ``shell``, triangles and hinges half way through the wall, or ``solid``, the stage's
     one layer of tetrahedra. Linear tetrahedra lock in bending: pinched, the solid is an order of magnitude too stiff
-    (see the row ``wall_ring`` of ``scripts/benchmarks/fidelity.py``); choose it to compare with other tetrahedral
+    (see the row ``wall_ring`` of ``arcgym bench fidelity``); choose it to compare with other tetrahedral
     models."""
     wall_thickness: float | None = None
     """Thickness of a shell [m], over the preset's; ``None`` without a preset's takes the stage's."""

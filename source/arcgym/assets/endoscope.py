@@ -122,7 +122,7 @@ class Endoscope:
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
-        self.camera_pose_wp: wp.array = sim.camera_pose
+        self.camera_pose_wp: wp.array = sim.scope_readout.camera_pose
         self.data = EndoscopeData(self, sim)
         self._sim = sim
 
@@ -163,7 +163,7 @@ class Endoscope:
 
     def write_friction_to_sim(self, mu: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Set the friction coefficient between scope and wall, shape (n,), in the worlds ``env_ids``."""
-        self._sim.require_two_level("friction coefficient")
+        self._sim.require_two_level("has one friction coefficient for all worlds")
         self._sim.friction[slice(None) if env_ids is None else env_ids] = mu
 
 

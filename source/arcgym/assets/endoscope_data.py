@@ -28,8 +28,8 @@ class EndoscopeData:
         state, readings = sim.state, _readings(endoscope)
         pose = wp.to_torch(state.body_q).view(n, links, 7)
         twist = wp.to_torch(state.body_qd).view(n, links, 6)
-        tip = wp.to_torch(sim.tip_pose)
-        tip_twist = wp.to_torch(sim.tip_velocity)
+        tip = wp.to_torch(sim.scope_readout.tip_pose)
+        tip_twist = wp.to_torch(sim.scope_readout.tip_velocity)
         self.joint_pos: torch.Tensor = wp.to_torch(state.joint_q).view(n, -1)
         """Joint coordinates [m or rad], shape (N, J), in the order of ``Endoscope.joint_names``."""
         self.joint_vel: torch.Tensor = wp.to_torch(state.joint_qd).view(n, -1)
@@ -56,17 +56,17 @@ class EndoscopeData:
         """Velocity of the front of the tip [m/s], shape (N, 3)."""
         self.tip_ang_vel_w = tip_twist[:, 3:]
         """Angular velocity of the tip [rad/s], shape (N, 3)."""
-        self.tip_arc_length: torch.Tensor = wp.to_torch(sim.tip_arc)
+        self.tip_arc_length: torch.Tensor = wp.to_torch(sim.scope_readout.tip_arc)
         """Arc length of the tip along the deformed centreline, in rest arc length from the anal verge [m], (N,)."""
-        self.tip_centerline_distance: torch.Tensor = wp.to_torch(sim.tip_distance)
+        self.tip_centerline_distance: torch.Tensor = wp.to_torch(sim.scope_readout.tip_distance)
         """Distance of the tip from the deformed centreline [m], shape (N,)."""
-        self.tip_lumen_direction_w: torch.Tensor = wp.to_torch(sim.tip_direction)
+        self.tip_lumen_direction_w: torch.Tensor = wp.to_torch(sim.scope_readout.tip_direction)
         """Direction of the deformed centreline beside the tip, away from the anus, shape (N, 3)."""
-        self.wall_force_w: torch.Tensor = wp.to_torch(sim.wall_force).view(n, links, 3)
+        self.wall_force_w: torch.Tensor = wp.to_torch(sim.scope_readout.wall_force).view(n, links, 3)
         """Force of the wall on each link, mean over the control step [N], shape (N, L, 3)."""
-        self.wall_force_norm: torch.Tensor = wp.to_torch(sim.wall_force_norm).view(n, links)
+        self.wall_force_norm: torch.Tensor = wp.to_torch(sim.scope_readout.wall_force_norm).view(n, links)
         """Magnitude of that force [N], shape (N, L)."""
-        self.wall_force_peak: torch.Tensor = wp.to_torch(sim.wall_force_peak).view(n, links)
+        self.wall_force_peak: torch.Tensor = wp.to_torch(sim.scope_readout.wall_force_peak).view(n, links)
         """Largest force of the wall on each link within the control step (mean over one physics step) [N], (N, L)."""
         self.base_force: torch.Tensor = readings.get("base_force", torch.zeros(n, device=sim.device))
         """Push on the base, mean over the control step [N], shape (N,); zero without a driven base."""

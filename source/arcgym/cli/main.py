@@ -20,6 +20,14 @@ COMMANDS = {
     "list": ("arcgym.cli.list_tasks", "list the registered tasks"),
     "zero": ("arcgym.cli.zero", "run a task with raw actions that are zero"),
     "random": ("arcgym.cli.random_actions", "run a task with uniform random actions"),
+    "make-colon": ("arcgym.cli.make_colon", "generate a colon from a spec file or a seed"),
+    "import-colon": ("arcgym.cli.import_colon", "turn a CT segmentation or a surface into a colon"),
+    "validate": ("arcgym.cli.validate", "check colons"),
+    "preview": ("arcgym.cli.preview", "draw a colon on one page"),
+    "bench throughput": ("arcgym.cli.bench_throughput", "measure how fast a task runs"),
+    "bench fidelity": ("arcgym.cli.bench_fidelity", "compare the physics with theory and references"),
+    "bench soak": ("arcgym.cli.bench_soak", "drive the robots for a long time and look for faults"),
+    "bench camera": ("arcgym.cli.bench_camera", "measure how many pictures the camera draws"),
 }
 """Module and one line of help by subcommand. A name may have two words, such as ``bench soak``."""
 

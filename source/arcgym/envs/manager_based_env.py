@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 import numpy as np
 import torch
+from gymnasium.vector import AutoresetMode, VectorEnv
 
+from arcgym.envs.env_arguments import check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
@@ -28,26 +30,48 @@ if TYPE_CHECKING:
 logger = logging.getLogger(__name__)
 
 
-class ManagerBasedEnv(gym.Env):
+class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     """Steps a scene under actions and returns observations, for all worlds at once.
 
-    Observations, rewards and flags are torch tensors on :attr:`device`, in memory of their own: they may be kept.
+    It is a :class:`gymnasium.vector.VectorEnv`, and a :class:`gymnasium.Env` because ``gymnasium.make`` asks for one.
+    Actions are NumPy arrays or torch tensors. Observations, rewards and flags are torch tensors on :attr:`device` that
+    no later step writes to: they may be kept, but not written to, because the next frame stack is made of the last.
     Steps and resets leave torch's inference mode, so that the state of terms made inside can be changed outside.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array"]}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.DISABLED}
 
     @paused_collection()
-    def __init__(self, cfg: ManagerBasedEnvCfg, render_mode: str | None = None) -> None:
-        """Builds scene and managers.
+    def __init__(
+        self,
+        cfg: ManagerBasedEnvCfg | None = None,
+        render_mode: str | None = None,
+        *,
+        num_envs: int | None = None,
+        device: str | None = None,
+        seed: int | None = None,
+        env_cfg_entry_point: str | None = None,
+        **cfg_entry_points: Any,
+    ) -> None:
+        """Build scene and managers.
 
         Args:
-            cfg: Configuration; checked before anything is allocated.
+            cfg: Configuration, checked before anything is allocated; None takes the one that the task was registered
+                with.
             render_mode: ``"rgb_array"`` for :meth:`render`, or None.
+            num_envs: Number of worlds, in place of ``cfg.scene.num_envs``.
+            device: Device, in place of ``cfg.sim.device``.
+            seed: Seed, in place of ``cfg.seed``.
+            env_cfg_entry_point: The registered configuration, given by ``gymnasium.make``.
+            cfg_entry_points: Configurations of learners that the task was registered with; not used here.
 
         Raises:
-            ValueError: If fields of the configuration are missing or wrong.
+            TypeError: If there is no configuration, or an argument is unknown, with the nearest one.
+            ValueError: If fields of the configuration are missing or wrong, or there is no such render mode.
         """
+        refuse_unknown(cfg_entry_points)
+        check_render_mode(render_mode, self.metadata["render_modes"])
+        cfg = choose_cfg(cfg, env_cfg_entry_point, num_envs=num_envs, device=device, seed=seed)
         validate(cfg)
         self.cfg = cfg
         self.render_mode = render_mode
@@ -58,7 +82,7 @@ class ManagerBasedEnv(gym.Env):
             logger.warning("No seed is set: runs will differ. Set env.seed for runs that can be repeated.")
         else:
             cfg.seed = self.seed(cfg.seed)
-        self.scene = _build_scene(cfg)
+        self.scene: InteractiveScene = _class_of(cfg.scene)(cfg.scene, cfg.sim)
         self.sim = self.scene.sim
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
         self._refresh_all()
@@ -69,8 +93,9 @@ class ManagerBasedEnv(gym.Env):
         self.obs_buf: dict[str, Observation] = {}
 
     def __repr__(self) -> str:
-        """Return class, number of worlds and device in a few words; :meth:`summary` says more."""
-        return f"{type(self).__name__}(num_envs={self.num_envs}, device={self.device})"
+        """Return class, task, number of worlds and device in a few words; :meth:`summary` says more."""
+        task = f"{self.spec.id}, " if self.spec else ""
+        return f"{type(self).__name__}({task}num_envs={self.num_envs}, device={self.device})"
 
     __str__ = __repr__
 
@@ -83,7 +108,7 @@ class ManagerBasedEnv(gym.Env):
         return "\n\n".join([clocks, *(str(manager) for manager in self._managers() if manager.active_terms)])
 
     @property
-    def num_envs(self) -> int:
+    def num_envs(self) -> int:  # type: ignore[override]
         """Number of worlds N."""
         return self.scene.num_envs
 
@@ -103,12 +128,12 @@ class ManagerBasedEnv(gym.Env):
         return self.cfg.sim.dt * self.cfg.decimation
 
     @cached_property
-    def single_observation_space(self) -> gym.spaces.Dict:
+    def single_observation_space(self) -> gym.spaces.Dict:  # type: ignore[override]
         """Observation of one world: a space for each group."""
         return observation_space(self.observation_manager)
 
     @cached_property
-    def single_action_space(self) -> gym.spaces.Box:
+    def single_action_space(self) -> gym.spaces.Box:  # type: ignore[override]
         """Action of one world, shape (A,), unbounded: actions are clipped by their terms."""
         return gym.spaces.Box(-np.inf, np.inf, (self.action_manager.total_action_dim,), np.float32)
 
@@ -135,39 +160,52 @@ class ManagerBasedEnv(gym.Env):
         self.recorder_manager = RecorderManager(self.cfg.recorders, self)
 
     def seed(self, seed: int = -1) -> int:
-        """Seeds every random number generator and returns the seed; a negative one draws one."""
-        return set_seed(seed)
+        """Seed every random number generator and return the seed; a negative one draws one."""
+        seed = set_seed(seed)
+        self._np_random, self._np_random_seed = gym.utils.seeding.np_random(seed)
+        return seed
 
     @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
     def reset(
-        self, seed: int | None = None, options: dict[str, Any] | None = None
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Observation], dict[str, Any]]:
-        """Starts a new episode in every world.
+        """Start a new episode in every world, or in some.
 
         Args:
-            seed: Seed to set first; None for none.
-            options: Unused; part of Gymnasium's interface.
+            seed: Seed to set first, of the generators that all worlds share; None for none.
+            options: ``{"env_ids": indices}`` or ``{"reset_mask": one bool a world}`` resets these worlds alone: the
+                others keep state and observation.
 
         Returns:
             Observation of each group, and extras with the logs of the episodes cut off.
+
+        Raises:
+            ValueError: If an option is unknown or malformed.
+            IndexError: If a world does not exist.
+            gymnasium.error.ResetNeeded: If some worlds are to be reset before all of them were.
         """
+        env_ids = worlds_to_reset(options, self.num_envs, self.device)
+        if env_ids is not None and not self.obs_buf:
+            raise gym.error.ResetNeeded("Some worlds are to be reset, but not all have started: call reset() first.")
         if seed is not None:
             self.seed(seed)
         self.extras = {"log": {}}
-        env_ids = torch.arange(self.num_envs, device=self.device)
-        self._reset_idx(env_ids)
-        self._refresh_all()
-        self.recorder_manager.record_post_reset(env_ids)
-        self.obs_buf = self.observation_manager.compute()
+        if env_ids is None:
+            self._start(torch.arange(self.num_envs, device=self.device))
+            self.obs_buf = self.observation_manager.compute()
+        elif len(env_ids):
+            self._start(env_ids, torch.isin(torch.arange(self.num_envs, device=self.device), env_ids))
+            started = self.observation_manager.compute(update_history=env_ids)
+            self.obs_buf = _replaced(self.obs_buf, started, env_ids)
         return self.obs_buf, self.extras
 
     @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
-    def step(self, action: torch.Tensor) -> tuple[Any, ...]:
-        """Advances every world by one control step.
+    def step(self, action: torch.Tensor | np.ndarray) -> tuple[Any, ...]:
+        """Advance every world by one control step.
 
         Args:
             action: Action of every world, shape (N, A).
@@ -182,18 +220,21 @@ class ManagerBasedEnv(gym.Env):
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
 
-    def render(self) -> np.ndarray | None:
-        """Returns the picture of world ``cfg.viewer.env_id``: scope's view and outside view, uint8, shape (H, W, 3)."""
-        if self.render_mode is None:
-            return None
+    def render(self) -> np.ndarray | None:  # type: ignore[override]
+        """Return the picture of world ``cfg.viewer.env_id``, uint8, shape (H, W, 3); None without a render mode."""
+        return None if self.render_mode is None else self.render_world(self.cfg.viewer.env_id)
+
+    def render_world(self, env_id: int) -> np.ndarray:
+        """Return the picture of one world from the view that ``cfg.viewer`` configures, uint8, shape (H, W, 3)."""
         if self._view is None:
-            from arcgym.viewers import TwoPaneView
+            self._view = _class_of(self.cfg.viewer)(self, self.cfg.viewer)
+        return self._view.frame(env_id)
 
-            self._view = TwoPaneView(self)
-        return self._view.frame(env_id=self.cfg.viewer.env_id)
+    def close_extras(self, **kwargs: Any) -> None:
+        """Write the episodes being recorded and let go of the view; called once, by :meth:`close`.
 
-    def close(self) -> None:
-        """Writes the episodes being recorded and lets go of the view. The simulation is freed with the environment."""
+        The simulation is freed with the environment.
+        """
         self.recorder_manager.close()
         self._view = None
 
@@ -203,12 +244,14 @@ class ManagerBasedEnv(gym.Env):
     def _managers(self) -> list[Any]:
         return [self.event_manager, self.action_manager, self.observation_manager, self.recorder_manager]
 
-    def _advance(self, action: torch.Tensor) -> None:
-        """Applies an action for a control step of physics and updates the sensors.
+    def _advance(self, action: torch.Tensor | np.ndarray) -> None:
+        """Apply an action for a control step of physics and update the sensors.
 
         One call makes all physics steps: the simulation replays captured graphs and averages the forces over them.
         """
-        self.action_manager.process_action(action.to(self.device))
+        if self.closed:
+            raise gym.error.ClosedEnvironmentError(f"{self} is closed.")
+        self.action_manager.process_action(torch.as_tensor(action, dtype=torch.float32, device=self.device))
         self.action_manager.apply_action()
         self.recorder_manager.record_pre_step()
         self.sim.step(self.cfg.decimation)
@@ -227,13 +270,29 @@ class ManagerBasedEnv(gym.Env):
         for manager in self._managers():
             self.extras["log"].update(manager.reset(env_ids))
 
+    def _start(self, env_ids: torch.Tensor, env_mask: torch.Tensor | None = None) -> None:
+        """Put worlds to the start of an episode and draw them; the mask, bool, shape (N,), names the same worlds."""
+        self._reset_idx(env_ids)
+        self.sim.forward()
+        self.scene.update(0.0, env_mask=env_mask)
+        self.recorder_manager.record_post_reset(env_ids)
+
     def _refresh_all(self) -> None:
         """Recomputes what follows from positions, and draws every world again."""
         self.sim.forward()
         self.scene.update(0.0)
 
 
-def _build_scene(cfg: ManagerBasedEnvCfg) -> InteractiveScene:
-    class_type = cfg.scene.class_type
-    scene_class = resolve_callable(class_type) if isinstance(class_type, str) else class_type
-    return scene_class(cfg.scene, cfg.sim)
+def _replaced(old: dict[str, Any], new: dict[str, Any], env_ids: torch.Tensor) -> dict[str, Any]:
+    """Return a copy of observations in which some worlds have others."""
+    return {
+        name: _replaced(value, new[name], env_ids)
+        if isinstance(value, dict)
+        else value.index_copy(0, env_ids, new[name][env_ids])
+        for name, value in old.items()
+    }
+
+
+def _class_of(cfg: Any) -> Any:
+    """Return the class that a configuration names."""
+    return resolve_callable(cfg.class_type) if isinstance(cfg.class_type, str) else cfg.class_type

@@ -4,30 +4,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 from arcgym.managers import RecorderManagerBaseCfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.sim import SimulationCfg
 from arcgym.utils import MISSING, configclass
-
-
-@configclass
-class ViewerCfg:
-    """What videos show."""
-
-    env_id: int = 0
-    """World to look at."""
-
-    wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
-    """What the wall's colour shows in the outside view: how far it has moved, its strain, the pull of its anchors, or
-    the force of the links beside it."""
-
-    wall_full_scale: float | None = None
-    """Value of the wall that gets the last colour [m, strain or N]; None for one that suits a pushed colonoscope."""
-
-    scope_color: Literal["force", "plain"] = "force"
-    """Whether the scope is coloured by the force of the wall on each link."""
+from arcgym.viewers.viewer_cfg import ViewerCfg
 
 
 @configclass
@@ -54,7 +37,7 @@ class ManagerBasedEnvCfg:
     costs nothing."""
 
     viewer: ViewerCfg = ViewerCfg()
-    """What videos show."""
+    """Picture of ``env.render()`` and of videos: which world, from where, in which colors."""
 
     decimation: int = 48
     """Physics steps in a control step. With ``sim.dt`` = 1/480 s, 48 gives control at 10 Hz."""
@@ -70,9 +53,12 @@ class ManagerBasedEnvCfg:
         """Checks numbers.
 
         Raises:
-            ValueError: If the decimation is below one.
+            ValueError: If the decimation is below one, or the viewer's world is not among those of the scene.
         """
         if self.decimation < 1:
             raise ValueError(
                 f"decimation is the number of physics steps in a control step: >= 1, got {self.decimation}."
             )
+        if self.viewer.env_id >= self.scene.num_envs:
+            last = self.scene.num_envs - 1
+            raise ValueError(f"viewer.env_id is {self.viewer.env_id}; the scene's worlds go from 0 to {last}.")

@@ -7,13 +7,14 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
 import torch
+from gymnasium.vector import AutoresetMode
 
 from arcgym.envs.manager_based_env import ManagerBasedEnv
 from arcgym.envs.manager_based_rl_env_cfg import ManagerBasedRLEnvCfg
 from arcgym.managers import CostManager, CurriculumManager, MetricsManager, RewardManager, TerminationManager
 from arcgym.managers.observation_manager import Observation
-from arcgym.utils.registry import load_cfg
 from arcgym.utils.threads import one_thread
 from arcgym.utils.worlds import fill_worlds, finite
 
@@ -32,34 +33,18 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
 
     cfg: ManagerBasedRLEnvCfg
 
-    def __init__(
-        self,
-        cfg: ManagerBasedRLEnvCfg | None = None,
-        render_mode: str | None = None,
-        *,
-        env_cfg_entry_point: str | None = None,
-        **other_entry_points: str,
-    ) -> None:
-        """Builds scene and managers; see :class:`ManagerBasedEnv`.
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.SAME_STEP}
 
-        Args:
-            cfg: Configuration; None takes the one that the task was registered with.
-            render_mode: ``"rgb_array"`` for :meth:`render`, or None.
-            env_cfg_entry_point: The registered configuration, given by ``gymnasium.make``.
-            other_entry_points: Configurations of learners; not used here.
-
-        Raises:
-            TypeError: If there is no configuration.
-        """
-        if cfg is None and env_cfg_entry_point is None:
-            raise TypeError("ManagerBasedRLEnv needs a cfg, or gymnasium.make with the name of a registered task.")
-        cfg = load_cfg(env_cfg_entry_point) if cfg is None else cfg
-        super().__init__(cfg, render_mode)
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        """Build scene and managers; arguments as of :class:`ManagerBasedEnv`."""
+        super().__init__(*args, **kwargs)
+        if not self.cfg.autoreset:
+            self.metadata["autoreset_mode"] = AutoresetMode.DISABLED
 
     @property
     def max_episode_length_s(self) -> float:
         """Longest episode [s]."""
-        return self.cfg.episode_length_s
+        return self.cfg.max_episode_length_s
 
     @property
     def max_episode_length(self) -> int:
@@ -83,7 +68,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
     @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
-    def step(self, action: torch.Tensor) -> StepReturn:  # type: ignore[override]
+    def step(self, action: torch.Tensor | np.ndarray) -> StepReturn:  # type: ignore[override]
         """Advances every world by one control step and resets those that are done.
 
         Rewards belong to the state before the reset, observations to the state after it.
@@ -94,7 +79,8 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         Returns:
             Observation of each group; reward, shape (N,); terminated and truncated, bool, shape (N,); and extras with
             ``log`` (of the episodes that ended), ``time_outs`` (N,), ``cost`` (N,), ``costs`` (each term's part of it)
-            and, on request and if a world is done, ``final_obs``.
+            and, with ``cfg.compute_final_obs`` and if a world is done, ``final_obs`` and ``final_info`` (see
+            :meth:`_final`), valid in the worlds that ``_final_obs`` and ``_final_info`` mark, bool, shape (N,).
         """
         self.extras = {"log": {}}
         self._advance(action)
@@ -102,14 +88,8 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self._judge()
         self.recorder_manager.record_post_step()
         self.event_manager.apply("interval", dt=self.step_dt)
-        env_ids = self.reset_buf.nonzero().flatten()
-        if len(env_ids) > 0:
-            if self.cfg.compute_final_obs:
-                self.extras["final_obs"] = _finite(self.observation_manager.compute(update_history=False))
-            self._reset_idx(env_ids)
-            self.sim.forward()
-            self.scene.update(0.0, env_mask=self.reset_buf)
-            self.recorder_manager.record_post_reset(env_ids)
+        if self.cfg.autoreset:
+            self._restart_done()
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.reward_buf, self.reset_terminated, self.reset_time_outs, self.extras
 
@@ -147,6 +127,28 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.extras["costs"] = self.cost_manager.step_parts
         self.extras["time_outs"] = self.reset_time_outs
         self.metrics_manager.compute()
+
+    def _restart_done(self) -> None:
+        """Start a new episode in every world that is done, after a last look at the old one where it is asked for."""
+        env_ids = self.reset_buf.nonzero().flatten()
+        if len(env_ids) > 0:
+            if self.cfg.compute_final_obs:
+                self.extras |= self._final()
+            self._start(env_ids, self.reset_buf)
+
+    def _final(self) -> dict[str, Any]:
+        """Return Gymnasium's ``final_obs`` and ``final_info`` of the worlds that are done, with their masks.
+
+        ``final_obs`` has the observation of each group before the reset. ``final_info`` has ``success``, bool,
+        ``episode_length`` [control steps] and ``metrics``, each term's value of the episode; all shape (N,).
+        """
+        info = {
+            "success": self.termination_manager.success & ~self._failed,
+            "episode_length": self.episode_length_buf.clone(),
+            "metrics": {name: self.metrics_manager.get_value(name) for name in self.metrics_manager.active_terms},
+        }
+        obs = _finite(self.observation_manager.compute(update_history=False))
+        return {"final_obs": obs, "_final_obs": self.reset_buf, "final_info": info, "_final_info": self.reset_buf}
 
     def _reset_idx(self, env_ids: torch.Tensor) -> None:
         self.curriculum_manager.compute(env_ids)

@@ -40,8 +40,19 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
     the control frequency. Set it to False to reproduce work that adds up one value a step."""
 
     compute_final_obs: bool = False
-    """Whether ``extras["final_obs"]`` holds the observations before the reset in steps where a world is done.
-    Off-policy algorithms need it; it evaluates all observations a second time in those steps."""
+    """Whether extras hold Gymnasium's ``final_obs`` and ``final_info``, observations and metrics before the reset, in
+    steps where a world is done. Off-policy algorithms need it; it evaluates all observations a second time in those
+    steps."""
+
+    autoreset: bool = True
+    """Whether a world that is done starts again within the step (Gymnasium's ``AutoresetMode.SAME_STEP``). False
+    (``AutoresetMode.DISABLED``) leaves that to ``env.reset(options={"reset_mask": terminated | truncated})``, as
+    Gymnasium's vector wrappers of observations want it."""
+
+    @property
+    def max_episode_length_s(self) -> float:
+        """Longest episode [s]; a subclass may derive it from other fields."""
+        return self.episode_length_s
 
     def validate_config(self) -> None:
         """Checks numbers.
@@ -50,5 +61,5 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
             ValueError: If the decimation is below one or the episode has no length.
         """
         super().validate_config()
-        if self.episode_length_s <= 0.0:
-            raise ValueError(f"episode_length_s must be positive, got {self.episode_length_s}.")
+        if self.max_episode_length_s <= 0.0:
+            raise ValueError(f"episode_length_s must be positive, got {self.max_episode_length_s}.")

@@ -5,8 +5,9 @@
 ``EndoscopeCfg.expert`` names the expert of a robot; one of your own is a subclass of :class:`ExpertBase`.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.experts.expert_base import ExpertBase, make_expert
@@ -22,9 +23,4 @@ _LAZY = {
 
 __all__ = ["ExpertBase", "PullExpert", "PushExpert", "make_expert"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Newton only when an expert is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)

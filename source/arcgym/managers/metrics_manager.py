@@ -36,7 +36,13 @@ class MetricsManager(ManagerBase):
         self._order: list[str] = list(self._terms)
         self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
         self._num_steps = torch.zeros(self.num_envs, device=self.device)
+        self._step_values: dict[str, torch.Tensor] = {}
         self._sort_rows()
+
+    @property
+    def step_values(self) -> dict[str, torch.Tensor]:
+        """Value of each term in the last step, shape (N,); empty before the first."""
+        return self._step_values
 
     def compute(self) -> None:
         """Takes the values of this control step in; one that is not finite counts as zero."""
@@ -47,6 +53,7 @@ class MetricsManager(ManagerBase):
         self._num_steps += 1
         by_name = {name: self._evaluate(name) for name in self._terms}
         values = finite_rows([by_name[name] for name in self._order])
+        self._step_values = dict(zip(self._order, values, strict=True))
         last, largest, added = self._rows_of("last"), self._rows_of("max"), self._rows_of("sum", "mean")
         self._values[last] = values[last]
         past = self._values[largest]

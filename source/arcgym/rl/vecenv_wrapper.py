@@ -9,6 +9,7 @@ from typing import Any
 
 import gymnasium as gym
 import torch
+from gymnasium.vector import AutoresetMode
 from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 
@@ -26,7 +27,12 @@ class RslRlVecEnvWrapper(VecEnv):
         Args:
             env: Manager-based RL environment, possibly inside Gymnasium wrappers.
             clip_actions: Bound on the magnitude of raw actions, or None.
+
+        Raises:
+            ValueError: If the environment leaves resets to the caller.
         """
+        if env.unwrapped.metadata.get("autoreset_mode") is AutoresetMode.DISABLED:
+            raise ValueError("rsl_rl needs an environment that resets worlds by itself: leave env.autoreset at True.")
         self.env: Any = env
         self.clip_actions = clip_actions
         self.num_envs = self.unwrapped.num_envs

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sensors of the scene: what the policy, and the people watching it, get to see."""
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.sensors.endoscope_camera_cfg import EndoscopeCameraCfg
 from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
 from arcgym.sensors.sensor_base_cfg import SensorBaseCfg
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.sensors.endoscope_camera import EndoscopeCamera, EndoscopeCameraData
@@ -32,9 +32,4 @@ __all__ = [
     "SkinnedSurface",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Warp only when a runtime class is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)

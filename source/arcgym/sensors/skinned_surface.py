@@ -117,7 +117,7 @@ class SkinnedSurface:
 
         A CPU builds by the surface-area heuristic. That takes 12 ms a world, on the CPU for a GPU as well; a GPU builds
         by Morton codes at once (lbvh). With two faces a leaf it then draws as fast, and refits 1.7 ms slower at 1024
-        worlds (scripts/benchmarks/camera.py on an H100).
+        worlds (``arcgym bench camera`` on an H100).
         """
         first = np.arange(self.num_envs, dtype=np.int32) * self.num_vertices
         indices = (faces.reshape(1, -1).astype(np.int32) + first[:, None]).ravel()

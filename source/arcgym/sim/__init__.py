@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Physics: model, solvers, contact, actuation, snapshots."""
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.sim.simulation_cfg import ContactCfg, SimulationCfg, WallSolverCfg
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -19,9 +19,4 @@ _LAZY = {
 
 __all__ = ["ContactCfg", "Simulation", "SimulationCfg", "Snapshot", "SnapshotSet", "WallSolverCfg"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Newton only when a runtime class is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)

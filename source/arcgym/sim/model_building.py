@@ -26,11 +26,12 @@ def empty_builder() -> newton.ModelBuilder:
     return newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
 
 
-def scope_builder(endoscope: Endoscope, mass_scaling: float) -> newton.ModelBuilder:
-    """Builder of one world with the scope alone."""
-    builder = empty_builder()
-    endoscope.add_to(builder, mass_scaling)
-    return builder
+def scope_model(endoscope: Endoscope, mass_scaling: float, num_envs: int, device: str) -> newton.Model:
+    """Model of the scopes of all worlds."""
+    world, builder = empty_builder(), empty_builder()
+    endoscope.add_to(world, mass_scaling)
+    builder.replicate(world, num_envs)
+    return builder.finalize(device=device)
 
 
 def wall_parameters(colon: Colon) -> WallParameters:

@@ -17,6 +17,8 @@ from __future__ import annotations
 import copy as copy_module
 import dataclasses
 import functools
+import reprlib
+import textwrap
 import types
 from collections.abc import Iterator
 from typing import Any, TypeVar, dataclass_transform
@@ -30,6 +32,9 @@ T = TypeVar("T")
 
 MISSING: Any = dataclasses.MISSING
 """Value of a field that must be set, the same object as ``dataclasses.MISSING``."""
+
+_REPR_WIDTH = 120
+"""Longest list of fields in a configuration's ``repr``."""
 
 _NEVER_FIELDS = (types.FunctionType, classmethod, staticmethod, property, functools.cached_property, type)
 _ATOMIC = (type(None), bool, int, float, complex, str, bytes, type, types.FunctionType, types.BuiltinFunctionType)
@@ -50,12 +55,14 @@ def configclass(cls: type[T]) -> type[T]:
         "validate": validate,
         "__deepcopy__": _deepcopy,
     }
+    if "__repr__" not in cls.__dict__:
+        cls.__repr__ = _short_repr  # type: ignore[method-assign, assignment]
     for name, method in methods.items():
         if not hasattr(cls, name):
             setattr(cls, name, method)
     if not hasattr(cls, "__post_init__"):
         setattr(cls, "__post_init__", _no_post_init)  # noqa: B010 - unknown to type checkers
-    return dataclasses.dataclass(cls)
+    return dataclasses.dataclass(cls, repr=False)
 
 
 def copy(cfg: T) -> T:
@@ -145,6 +152,14 @@ def _deepcopy(self: Any, memo: dict[int, Any]) -> Any:
     for name, value in vars(self).items():
         object.__setattr__(new, name, copy_module.deepcopy(value, memo))
     return new
+
+
+def _short_repr(self: Any) -> str:
+    """Return name and fields in one short line, nested configurations by their names; ``to_dict`` shows everything."""
+    shown = []
+    for name, value in vars(self).items():
+        shown.append(f"{name}={f'{type(value).__name__}(...)' if is_config(value) else reprlib.repr(value)}")
+    return f"{type(self).__name__}({textwrap.shorten(', '.join(shown), _REPR_WIDTH, placeholder=' ...')})"
 
 
 def _no_post_init(self: Any) -> None:

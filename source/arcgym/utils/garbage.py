@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def paused_collection() -> Iterator[None]:
-    """The garbage collector does not run meanwhile; also for use as a decorator.
+    """Keep the garbage collector from running meanwhile; also for use as a decorator.
 
     For what makes many objects that stay, such as an environment, whose first imports Newton: that takes 1.7 instead of
     2.9 s (2 cores, Python 3.11).

@@ -13,20 +13,6 @@ def normalize(vectors: torch.Tensor, eps: float = 1.0e-9) -> torch.Tensor:
     return vectors / vectors.norm(dim=-1, keepdim=True).clamp(min=eps)
 
 
-def quat_mul(first: torch.Tensor, second: torch.Tensor) -> torch.Tensor:
-    """Hamilton product: the rotation by `second` followed by that by `first`. Both (..., 4), result (..., 4)."""
-    xyz1, w1 = first[..., :3], first[..., 3:]
-    xyz2, w2 = second[..., :3], second[..., 3:]
-    xyz = w1 * xyz2 + w2 * xyz1 + torch.linalg.cross(xyz1, xyz2)
-    w = w1 * w2 - (xyz1 * xyz2).sum(-1, keepdim=True)
-    return torch.cat((xyz, w), dim=-1)
-
-
-def quat_conjugate(quat: torch.Tensor) -> torch.Tensor:
-    """Inverse of unit quaternions. Shape (..., 4) to (..., 4)."""
-    return torch.cat((-quat[..., :3], quat[..., 3:]), dim=-1)
-
-
 def quat_apply(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:
     """Rotate `vectors`, shape (..., 3), by unit quaternions, shape (..., 4)."""
     xyz, vectors = torch.broadcast_tensors(quat[..., :3], vectors)
@@ -42,19 +28,13 @@ def quat_apply_inverse(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tenso
 
 
 def quat_from_axis_angle(axis: torch.Tensor, angle: torch.Tensor) -> torch.Tensor:
-    """Quaternions that rotate by `angle` [rad], shape (...), about the unit vectors `axis`, shape (..., 3)."""
+    """Return quaternions that rotate by `angle` [rad], shape (...), about the unit vectors `axis`, shape (..., 3)."""
     half = 0.5 * angle.unsqueeze(-1)
     return torch.cat((axis * torch.sin(half), torch.cos(half).expand(*axis.shape[:-1], 1)), dim=-1)
 
 
-def matrix_from_quat(quat: torch.Tensor) -> torch.Tensor:
-    """Rotation matrices, shape (..., 3, 3), of unit quaternions, shape (..., 4)."""
-    axes = torch.eye(3, dtype=quat.dtype, device=quat.device).expand(*quat.shape[:-1], 3, 3)
-    return quat_apply(quat.unsqueeze(-2), axes).transpose(-1, -2)
-
-
 def quat_from_matrix(matrix: torch.Tensor) -> torch.Tensor:
-    """Unit quaternions with w >= 0, shape (..., 4), of rotation matrices, shape (..., 3, 3).
+    """Return unit quaternions with w >= 0, shape (..., 4), of rotation matrices, shape (..., 3, 3).
 
     Of the four equivalent formulas (one for each component to divide by) each rotation takes the one that divides by
     its largest component (Shepperd 1978, "Quaternion from rotation matrix").

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Where the package finds its assets and leaves its logs."""
+"""Folder of the assets."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _CHECKOUT = Path(__file__).resolve().parents[3]
 
 
 def assets_dir() -> Path:
-    """Folder of the USD assets, the one that holds ``endoscopes/`` and ``colon_1/``.
+    """Return the folder of the USD assets, the one that holds ``endoscopes/`` and ``colon_1/``.
 
     Looked for in this order: the folder named by the environment variable ``ARCGYM_ASSETS``, ``data/usd`` of the
     installed package, ``assets/usd`` of the checkout.
@@ -34,11 +34,6 @@ def assets_dir() -> Path:
 
 
 def resolve_asset(path: str | Path) -> Path:
-    """Absolute path of an asset: `path` itself where it exists or is absolute, else inside :func:`assets_dir`."""
+    """Return `path` itself where it exists or is absolute, else the path inside :func:`assets_dir`."""
     given = Path(path).expanduser()
     return given if given.is_absolute() or given.exists() else assets_dir() / given
-
-
-def logs_dir() -> Path:
-    """Folder ``logs`` of the working directory, where training runs go (not created here)."""
-    return Path.cwd() / "logs"

@@ -12,6 +12,7 @@ entry-point group ``arcgym.tasks`` in their ``pyproject.toml``; the module it na
 from __future__ import annotations
 
 import copy
+import functools
 import importlib
 import importlib.metadata
 from typing import Any
@@ -25,6 +26,12 @@ ENTRY_POINT_GROUP = "arcgym.tasks"
 
 BUILTIN_PACKAGES = ("arcgym_tasks",)
 """Packages that are searched whether or not they declare an entry point."""
+
+CFG_SUFFIX = "_cfg_entry_point"
+"""How the names of all configurations of a task end."""
+
+VECTOR_ENTRY_POINT = "arcgym.envs.numpy_vector_env:make_vec"
+"""Function that builds the environments of ``gymnasium.make_vec`` from the entry point of their class."""
 
 _loaded: set[str] = set()
 
@@ -41,13 +48,23 @@ def register_task(
         cfg_entry_points: Further configurations, e.g. ``rsl_rl_cfg_entry_point="module:Class"``.
 
     Raises:
-        ValueError: If the name is taken.
+        ValueError: If the name is taken, or that of a configuration does not end in :data:`CFG_SUFFIX`.
     """
+    for key in cfg_entry_points:
+        if not key.endswith(CFG_SUFFIX):
+            raise ValueError(f"Task '{task}' names a configuration '{key}', expected a name that ends in {CFG_SUFFIX}.")
     if task in gymnasium.registry:
         owner = gymnasium.registry[task].kwargs.get("env_cfg_entry_point")
         raise ValueError(f"Task '{task}' is registered already, with the configuration {owner}.")
     kwargs = {"env_cfg_entry_point": env_cfg_entry_point, **cfg_entry_points}
-    gymnasium.register(id=task, entry_point=entry_point, disable_env_checker=True, order_enforce=False, kwargs=kwargs)
+    gymnasium.register(
+        id=task,
+        entry_point=entry_point,
+        vector_entry_point=functools.partial(_make_vec, entry_point),
+        disable_env_checker=True,
+        order_enforce=False,
+        kwargs=kwargs,
+    )
 
 
 def load_task_packages() -> None:
@@ -103,3 +120,8 @@ def load_cfg(entry_point: Any) -> Any:
     """
     value = resolve_callable(entry_point) if isinstance(entry_point, str) else entry_point
     return value() if callable(value) else copy.deepcopy(value)
+
+
+def _make_vec(entry_point: str, **arguments: Any) -> Any:
+    """Build a task's environment for ``gymnasium.make_vec``; the module that does it is loaded when it is called."""
+    return resolve_callable(VECTOR_ENTRY_POINT)(entry_point, **arguments)

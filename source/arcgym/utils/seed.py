@@ -11,7 +11,7 @@ import torch
 
 
 def set_seed(seed: int) -> int:
-    """Seeds Python, NumPy and torch on all devices.
+    """Seed Python, NumPy and torch on all devices.
 
     Args:
         seed: Seed; a negative one draws one.

@@ -12,7 +12,7 @@ from typing import Any
 
 
 def did_you_mean(name: str, choices: Iterable[str]) -> str:
-    """Returns a sentence that offers the closest of ``choices``, then lists them all."""
+    """Return a sentence that offers the closest of ``choices``, then list them all."""
     choices = sorted(choices)
     if not choices:
         return "Nothing is available here."
@@ -22,12 +22,12 @@ def did_you_mean(name: str, choices: Iterable[str]) -> str:
 
 
 def callable_name(value: Any) -> str:
-    """Returns ``"module:qualified.name"`` of a function or class."""
+    """Return ``"module:qualified.name"`` of a function or class."""
     return f"{value.__module__}:{value.__qualname__}"
 
 
 def resolve_callable(name: str) -> Any:
-    """Imports what ``"module:attribute"`` names.
+    """Import what ``"module:attribute"`` names.
 
     Args:
         name: Module path, a colon, and an attribute path inside the module, e.g. ``"arcgym.envs.mdp:time_out"``.
@@ -57,7 +57,7 @@ def resolve_callable(name: str) -> Any:
 def resolve_matching_names(
     patterns: str | Sequence[str], names: Sequence[str], preserve_order: bool = False
 ) -> tuple[list[int], list[str]]:
-    """Finds the names that regular expressions match in full.
+    """Find the names that regular expressions match in full.
 
     Args:
         patterns: One expression or several.

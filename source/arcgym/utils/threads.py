@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""How many threads PyTorch works with."""
+"""Number of threads that PyTorch works with."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import torch
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """PyTorch's operations on the CPU run on the calling thread alone; also for use as a decorator.
+    """Run PyTorch's operations on the CPU on the calling thread alone; also for use as a decorator.
 
     Those of an environment are too small to share out: where the cores have other work, too, waiting for the other
     threads took five times as long as the operations (13 instead of 2 ms a control step of one world).

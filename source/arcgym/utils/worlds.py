@@ -12,7 +12,7 @@ import torch
 def fill_worlds(
     tensor: torch.Tensor, env_ids: torch.Tensor | Sequence[int] | slice | None, value: float, dim: int = 0
 ) -> None:
-    """Sets the entries of some worlds in place, in one operation where ``tensor[env_ids] = value`` makes two.
+    """Set the entries of some worlds in place, in one operation where ``tensor[env_ids] = value`` makes two.
 
     Args:
         tensor: Values, worlds along ``dim``.
@@ -29,7 +29,7 @@ def fill_worlds(
 
 
 def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:
-    """Puts the values of T terms, shape (N,) each, into rows of new memory, float32, shape (T, N).
+    """Put the values of T terms, shape (N,) each, into rows of new memory, float32, shape (T, N).
 
     What is not finite becomes zero.
     """
@@ -37,5 +37,5 @@ def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:
 
 
 def finite(values: torch.Tensor) -> torch.Tensor:
-    """Returns a copy in which what is not finite is zero."""
+    """Return a copy in which what is not finite is zero."""
     return torch.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)

@@ -2,8 +2,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures and videos of the environments for people to look at; nothing here is seen by a policy."""
 
-from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
-from arcgym.viewers.two_pane import TwoPaneCfg, TwoPaneView
-from arcgym.viewers.video import VideoRecorder
+from typing import TYPE_CHECKING
 
-__all__ = ["OutsideView", "OutsideViewCfg", "TwoPaneCfg", "TwoPaneView", "VideoRecorder"]
+from arcgym.utils.lazy import lazy_names
+from arcgym.viewers.viewer_cfg import OutsideViewCfg, ViewerCfg
+
+if TYPE_CHECKING:
+    from arcgym.viewers.outside_view import OutsideView
+    from arcgym.viewers.two_pane import TwoPaneView
+    from arcgym.viewers.video import VideoRecorder
+
+_LAZY = {
+    "OutsideView": "arcgym.viewers.outside_view",
+    "TwoPaneView": "arcgym.viewers.two_pane",
+    "VideoRecorder": "arcgym.viewers.video",
+}
+
+__all__ = ["OutsideView", "OutsideViewCfg", "TwoPaneView", "VideoRecorder", "ViewerCfg"]
+
+__getattr__ = lazy_names(__name__, _LAZY)

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -38,17 +38,20 @@ class FrameInfo:
     """Further numbers to show, by label."""
 
 
-def read_info(env: ManagerBasedEnv, env_id: int, extra: Mapping[str, Any] | None = None) -> FrameInfo:
-    """Reads the state of one world; what the environment lacks stays at its default.
+def read_info(
+    env: ManagerBasedEnv, env_id: int, extra: Mapping[str, Any] | None = None, metrics: Sequence[str] = ()
+) -> FrameInfo:
+    """Return the state of one world; what the environment lacks stays at its default.
 
     Args:
         env: The environment; its scene holds ``colon`` and ``endoscope``.
         env_id: World to read.
         extra: Numbers to show beside it. ``reward`` replaces the environment's.
+        metrics: Metrics terms to show.
     """
     data = env.scene["endoscope"].data
     forces = data.wall_force_w[env_id].norm(dim=-1)
-    terms = {**_lumen_scores(env, env_id), **{name: float(value) for name, value in (extra or {}).items()}}
+    terms = {**_metrics(env, env_id, metrics), **{name: float(value) for name, value in (extra or {}).items()}}
     reward = terms.pop("reward", None)
     if reward is None and hasattr(env, "reward_buf"):
         reward = float(env.reward_buf[env_id])
@@ -66,14 +69,11 @@ def read_info(env: ManagerBasedEnv, env_id: int, extra: Mapping[str, Any] | None
     )
 
 
-def _lumen_scores(env: ManagerBasedEnv, env_id: int) -> dict[str, float]:
-    """Returns centring and visibility of the lumen where the task defines them and the camera measures depth."""
-    if getattr(env.cfg, "lumen", None) is None or "depth" not in env.scene["camera"].data.output:
-        return {}
-    from arcgym.envs.mdp.lumen import lumen_scores
-
-    scores = lumen_scores(env)
-    return {"s_c": float(scores.s_c[env_id]), "s_o": float(scores.s_o[env_id])}
+def _metrics(env: ManagerBasedEnv, env_id: int, names: Sequence[str]) -> dict[str, float]:
+    """Return the values of some metrics terms in the last step, as far as the task has them."""
+    manager = getattr(env, "metrics_manager", None)
+    values = {} if manager is None else manager.step_values
+    return {name: float(values[name][env_id]) for name in names if name in values}
 
 
 def _task_range(env: ManagerBasedEnv) -> tuple[float, float] | None:

@@ -4,66 +4,23 @@
 
 from __future__ import annotations
 
-import math
-from typing import Literal, Protocol
+from typing import Protocol
 
 import numpy as np
 import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.configclass import configclass
 from arcgym.viewers import outside_view_kernels as kernels
 from arcgym.viewers.compositing import compose
 from arcgym.viewers.palette import FORCE_TIERS, Tiers
 from arcgym.viewers.scope_colors import scope_color_table
 from arcgym.viewers.scope_tube import ScopeTube
 from arcgym.viewers.view_camera import ViewCamera, frame_points
+from arcgym.viewers.viewer_cfg import OutsideViewCfg
 from arcgym.viewers.wall_paint import wall_scale
 
 _KEY_LIGHT = np.array([-0.5, 0.75, 0.75])
 _FILL_LIGHT = np.array([0.9, 0.1, 0.6])
-
-
-@configclass
-class OutsideViewCfg:
-    """Camera and look of the outside view."""
-
-    width: int = 560
-    """Width of the picture [px]."""
-    height: int = 512
-    """Height of the picture [px]."""
-    azimuth: float = 0.0
-    """Turn of the camera around the body axis [rad]: 0 looks from anterior, +pi/2 from the patient's left. Change it
-    to see the sigmoid loop, which rises towards the front, from the side."""
-    elevation: float = math.radians(8.0)
-    """Height of the camera above the transverse plane [rad], within ±85°."""
-    distance: float = 1.6
-    """From the camera to the middle of the colon [m]. Smaller values exaggerate the perspective."""
-    outside_length: float = 0.07
-    """Part of the scope below the anus that is kept in the picture [m]."""
-    wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
-    """What the wall's colour shows: how far it has moved, its strain, the pull of its anchors, or the force of the
-    links beside it."""
-    scope_color: Literal["force", "plain"] = "force"
-    """Whether the scope is coloured by the force of the wall on each link."""
-    wall_full_scale: float | None = None
-    """Value of the wall that gets the last colour; None for 50 mm, a strain of 10 %, a pull of 1 N, or a force just
-    above the perforation tier. Lower it for gentle robots."""
-    near_alpha: float = 0.16
-    """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
-    rim_alpha: float = 0.70
-    """Opacity added towards silhouettes, 0..1."""
-    far_alpha: float = 0.97
-    """Opacity of the wall that is seen through the lumen, 0..1."""
-    ghost_alpha: float = 0.42
-    """The same where the scope lies behind it, 0..1."""
-    scope_share: float = 0.4
-    """Smallest share of the scope in the picture, 0..1, however many loops of the colon lie before it."""
-    edge_threshold: float = 0.06
-    """Difference of neighbouring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
-    """
-    depth_contrast: float = 0.7
-    """Strength of the shade behind loops that lie in front of others, 0..1."""
 
 
 class WallSurface(Protocol):

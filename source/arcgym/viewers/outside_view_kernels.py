@@ -73,12 +73,6 @@ class Sample:
     """Distance to the first hit [m]; FAR where there is none."""
 
 
-@wp.kernel
-def find_root(mesh: wp.uint64, group: int, root: wp.array[int]):
-    """Reads the BVH root of a mesh group."""
-    root[0] = wp.mesh_get_group_root(mesh, group)
-
-
 @wp.func
 def half_lambert(normal: wp.vec3, light: wp.vec3):
     """Soft diffuse term in 0..1 that does not fall to black at the terminator (Valve, "half-Lambert", 2004)."""

@@ -13,13 +13,13 @@ from PIL import Image, ImageDraw
 
 from arcgym.assets.force_tiers import tiers_of
 from arcgym.sensors import SkinnedSurface
-from arcgym.utils.configclass import configclass
 from arcgym.viewers.drawing import DARK, DIM_INK, font
 from arcgym.viewers.frame_info import FrameInfo, read_info
 from arcgym.viewers.legend import draw_legends
-from arcgym.viewers.outside_view import OutsideView, OutsideViewCfg
+from arcgym.viewers.outside_view import OutsideView
 from arcgym.viewers.overlay import draw_panel, octagon
 from arcgym.viewers.palette import shown_tiers
+from arcgym.viewers.viewer_cfg import ViewerCfg
 from arcgym.viewers.wall_paint import WallPaint
 
 if TYPE_CHECKING:
@@ -28,16 +28,6 @@ if TYPE_CHECKING:
 _MARGIN = 8
 _PANEL_HEIGHT = 96
 _HISTORY = 100
-
-
-@configclass
-class TwoPaneCfg:
-    """Size and quality of the picture."""
-
-    outside: OutsideViewCfg = OutsideViewCfg()
-    """Camera and look of the outside view; its height is the endoscope view's size too."""
-    samples: int = 2
-    """Rays a pixel of the endoscope's view. 1 is twice as fast, 4 gives the smoothest edges."""
 
 
 class TwoPaneView:
@@ -50,14 +40,14 @@ class TwoPaneView:
         forces: Largest wall force on a link in each frame [N], newest last.
     """
 
-    def __init__(self, env: ManagerBasedEnv, cfg: TwoPaneCfg | None = None) -> None:
+    def __init__(self, env: ManagerBasedEnv, cfg: ViewerCfg | None = None) -> None:
         """Builds the surface of one world.
 
         Args:
             env: Environment whose scene holds ``colon``, ``endoscope`` and, if it has one, ``camera``.
-            cfg: Size and quality; None for the defaults with the colours of ``env.cfg.viewer``.
+            cfg: Size, quality and colors; None for the defaults.
         """
-        self.cfg = cfg or _viewer_cfg(env)
+        self.cfg = cfg or ViewerCfg()
         self._env = env
         self._tiers = shown_tiers(tiers_of(env.cfg))
         self._colon, self._scope = env.scene["colon"], env.scene["endoscope"]
@@ -90,7 +80,7 @@ class TwoPaneView:
         Returns:
             Picture, uint8, shape (H, W, 3) with even H and W.
         """
-        shown = read_info(self._env, env_id, info)
+        shown = read_info(self._env, env_id, info, self.cfg.metrics)
         self._remember(env_id, shown)
         height, width = self.cfg.outside.height, self.cfg.outside.width
         size = (height + width + 3 * _MARGIN, height + 2 * _MARGIN + _PANEL_HEIGHT)
@@ -141,12 +131,3 @@ class TwoPaneView:
         self._env_id, self._time = env_id, info.time
         self.rewards.append(float("nan") if info.reward is None else info.reward)
         self.forces.append(info.max_force)
-
-
-def _viewer_cfg(env: ManagerBasedEnv) -> TwoPaneCfg:
-    """Returns the defaults with the colours that the environment asks for."""
-    cfg, viewer = TwoPaneCfg(), getattr(env.cfg, "viewer", None)
-    if viewer is not None:
-        for name in ("wall_color", "wall_full_scale", "scope_color"):
-            setattr(cfg.outside, name, getattr(viewer, name))
-    return cfg

@@ -6,3 +6,6 @@
 from __future__ import annotations
 
 from arcgym_tasks.navigation import config  # noqa: F401
+from arcgym_tasks.navigation.registration import register_robot
+
+__all__ = ["register_robot"]

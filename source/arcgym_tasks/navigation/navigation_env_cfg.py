@@ -3,10 +3,12 @@
 
 """Navigation through one segment of the colon: scene, observations, rewards and the rest that all robots share.
 
-A robot's configuration adds its endoscope and its actions (``config/<robot>/env_cfg.py``).
+A robot's configuration adds its endoscope and its actions (``config/<robot>.py``).
 """
 
 from __future__ import annotations
+
+from typing import get_args
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets import ColonCfg, EndoscopeCfg
@@ -21,10 +23,8 @@ from arcgym.managers import TerminationTermCfg as DoneTerm
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.sensors import EndoscopeCameraCfg
 from arcgym.utils.configclass import MISSING, configclass
-
-HORIZON_S = {"rectum": 10.0, "sigmoid": 45.0, "descending": 16.0, "splenic": 27.0}
-"""Time limit of each segment's task [s]: three times what a scripted expert needs that advances at 40 mm/s and steers
-by the deformed centreline (2.1 to 3.4, 11 to 15, 4.5 to 5.5 and 3.6 to 9 s)."""
+from arcgym.utils.validation import require
+from arcgym_tasks.navigation.segments import Start, time_limit_s
 
 
 @configclass
@@ -172,14 +172,24 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     Subclass a task's configuration to change it::
 
         @configclass
-        class MyEnvCfg(SplenicProximalEnvCfg):
+        class MyEnvCfg(ProximalEnvCfg):
             def __post_init__(self):
                 super().__post_init__()
                 self.rewards.progress = None
+
+    and register it for all segments, ``register_robot("Mine", "my_package.my_env_cfg:MyEnvCfg")``.
     """
 
     segment: str = MISSING
-    """Segment to pass, one of :data:`arcgym.anatomy.segments.SEGMENTS`; :data:`HORIZON_S` has time limits that fit."""
+    """Segment to pass, one of :data:`arcgym.anatomy.segments.SEGMENTS`."""
+
+    start: Start = "segment"
+    """Beginning of an episode: ``segment``, a stored state at the segment's start, or ``rest``, straight in the anus,
+    with the whole way to the segment's end to go. States that are missing are made when they are first needed."""
+
+    episode_length_s: float | None = None  # type: ignore[assignment]
+    """Longest episode [s]; None takes the time limit of segment and start, see
+    :data:`arcgym_tasks.navigation.segments.TIME_LIMIT_S`."""
 
     lumen: str | mdp.LumenCfg = "paper"
     """Constants of the lumen reward: ``paper``, ``metric`` or your own :class:`arcgym.envs.mdp.LumenCfg`. ``metric``
@@ -221,10 +231,15 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         Raises:
             ValueError: If a number is out of range, or the segment or the lumen preset is unknown.
         """
+        require(self, "segment", SEGMENTS)
+        require(self, "start", get_args(Start))
         super().validate_config()
-        if self.segment not in SEGMENTS:
-            raise ValueError(f"env.segment is '{self.segment}', expected one of {', '.join(SEGMENTS)}.")
         mdp.resolve_lumen(self.lumen)
+
+    @property
+    def max_episode_length_s(self) -> float:
+        """Longest episode [s], as set or as segment and start have it."""
+        return time_limit_s(self.segment, self.start) if self.episode_length_s is None else self.episode_length_s
 
     def play(self) -> None:
         """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""

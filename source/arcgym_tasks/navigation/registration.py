@@ -1,28 +1,79 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Names of the navigation tasks and where their configurations are; imports neither torch nor Newton."""
+"""Registers the tasks of a robot: each segment, with a ``-Play`` variant. Imports neither torch nor Newton."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
 from arcgym.utils.registry import register_task
+from arcgym.utils.string import resolve_callable
+from arcgym_tasks.navigation.agents import AGENTS
+from arcgym_tasks.navigation.segments import TIME_LIMIT_S
 
-SEGMENTS = ("Rectum", "Sigmoid", "Descending", "Splenic")
-"""Segments that have a task, as they are written in task and class names."""
+
+@dataclass(frozen=True)
+class CfgEntry:
+    """Entry point of a configuration: a class, and the fields that a task sets in its instance."""
+
+    target: str | Callable[[], Any]
+    """Class, or its name ``"module:Class"``, which is imported when the configuration is asked for."""
+    fields: tuple[tuple[str, Any], ...] = ()
+    """Names and values of the fields that the task sets."""
+    play: bool = False
+    """Whether to call the configuration's ``play()`` last."""
+
+    def __call__(self) -> Any:
+        """Return a fresh configuration."""
+        cfg = (resolve_callable(self.target) if isinstance(self.target, str) else self.target)()
+        for name, value in self.fields:
+            setattr(cfg, name, value)
+        if self.play:
+            cfg.play()
+        return cfg
+
+    def __str__(self) -> str:
+        """Return the class and the fields, as ``arcgym list --cfgs`` shows them."""
+        fields = ", ".join(f"{name}={value!r}" for name, value in self.fields)
+        target = self.target if isinstance(self.target, str) else getattr(self.target, "__name__", repr(self.target))
+        return f"{target}({fields}){'.play()' if self.play else ''}"
 
 
-def register_robot(robot: str, package: str) -> None:
-    """Register the tasks of a robot and their ``-Play`` variants.
+def register_robot(
+    robot: str,
+    env_cfg: str | Callable[[], Any],
+    *,
+    segments: Sequence[str] = tuple(TIME_LIMIT_S),
+    agents: Mapping[str, str | Callable[[], Any]] | None = None,
+) -> list[str]:
+    """Register ``ARC-<Segment>-<Robot>`` and ``ARC-<Segment>-<Robot>-Play`` for every segment.
+
+    Segment, time limit and experiment name follow from the names.
 
     Args:
-        robot: Name as written in task and class names, such as ``Proximal``.
-        package: Package with ``env_cfg`` (classes ``<Segment><Robot>EnvCfg`` and ``..._PLAY``) and
-            ``agents.rsl_rl_cfg`` (classes ``<Segment><Robot>PPORunnerCfg``).
+        robot: Name as written in task names, such as ``Proximal``.
+        env_cfg: Subclass of :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg` with the robot and its
+            actions, or its name ``"module:Class"``.
+        segments: Segments to pass, lower case.
+        agents: Agent configurations by registry key, added to
+            :data:`arcgym_tasks.navigation.agents.AGENTS` or in their place.
+
+    Returns:
+        Names of the tasks.
+
+    Raises:
+        ValueError: If a task is registered already.
     """
-    for segment in SEGMENTS:
-        for variant, suffix in (("", ""), ("-Play", "_PLAY")):
-            register_task(
-                f"ARC-{segment}-{robot}{variant}",
-                env_cfg_entry_point=f"{package}.env_cfg:{segment}{robot}EnvCfg{suffix}",
-                rsl_rl_cfg_entry_point=f"{package}.agents.rsl_rl_cfg:{segment}{robot}PPORunnerCfg",
-            )
+    tasks = []
+    for segment in segments:
+        task = f"ARC-{segment.capitalize()}-{robot}"
+        experiment = (("experiment_name", task.lower().replace("-", "_")),)
+        entries: dict[str, Any] = {k: CfgEntry(cfg, experiment) for k, cfg in {**AGENTS, **(agents or {})}.items()}
+        for variant, play in (("", False), ("-Play", True)):
+            entry: Any = CfgEntry(env_cfg, (("segment", segment),), play)
+            register_task(task + variant, env_cfg_entry_point=entry, **entries)
+            tasks.append(task + variant)
+    return tasks

@@ -1,6 +1,9 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Acute bends made while a course relaxes: where it turns most, it is drawn towards an arc with straight legs."""
+"""Make acute bends while a course relaxes: where it turns most, draw it towards an arc with straight legs.
+
+:mod:`arcgym.anatomy.bends` counts the bends of a finished centerline.
+"""
 
 from __future__ import annotations
 
@@ -19,16 +22,29 @@ WIDEST = 0.036
 """Largest radius of an arc that turns 90 degrees within the window of :func:`arcgym.anatomy.bends.acute_bends` [m]."""
 
 _ANGLE = np.radians(118.0)
+"""Angle by which an arc turns [rad]."""
+
 _MARGIN = 1.08
+"""Radius of an arc over the least that the spec allows."""
+
 _REACH = 0.050
+"""Length of the course before and behind an arc's middle that it shapes [m]."""
+
 _APART = 0.085
+"""Least distance of two bends along the course [m]."""
+
 _STIFFNESS = 0.4
+"""Share of the way to the wanted shape in each iteration."""
+
 _FROM_END = 0.08
+"""Least distance of a bend from either end [m]."""
+
 _LEAST_TURN = np.radians(17.0)
+"""Least turn of the course where a bend is made [rad]."""
 
 
 @dataclass(frozen=True)
-class Knees:
+class BendTargets:
     """Bends to make."""
 
     index: np.ndarray
@@ -37,7 +53,7 @@ class Knees:
     """Their wanted positions relative to their mean, up to a rotation [m], shape (K, n, 3)."""
 
     def pull(self, points: np.ndarray) -> np.ndarray:
-        """Returns a shift of every point towards the shape of its bend (shape matching, Mueller et al., TOG 2005)."""
+        """Return a shift of every point towards the shape of its bend (shape matching, Mueller et al., TOG 2005)."""
         here = points[self.index]
         middle = here.mean(1, keepdims=True)
         left, _, right = np.linalg.svd(np.einsum("kni,knj->kij", self.shape, here - middle))
@@ -49,8 +65,8 @@ class Knees:
         return shift / np.maximum(uses, 1.0)[:, None]
 
 
-def choose_knees(points: np.ndarray, spacing: float, radius: np.ndarray, spec: ColonSpec) -> list[int]:
-    """Returns the points that turn most, far enough from each other, where the lumen is narrow enough for a bend.
+def choose_bends(points: np.ndarray, spacing: float, radius: np.ndarray, spec: ColonSpec) -> list[int]:
+    """Return the points that turn most, far enough from each other, where the lumen is narrow enough for a bend.
 
     Args:
         points: Course [m], shape (n, 3).
@@ -69,12 +85,12 @@ def choose_knees(points: np.ndarray, spacing: float, radius: np.ndarray, spec: C
     return chosen
 
 
-def make_knees(places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec) -> Knees:
-    """Returns the bends at the given points; arguments as for :func:`choose_knees`."""
+def make_bends(places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec) -> BendTargets:
+    """Return the bends at the given points; arguments as for :func:`choose_bends`."""
     reach = round(_REACH / spacing)
     index = np.array(places, int)[:, None] + np.arange(-reach, reach + 1)
     shapes = [_arc_with_legs(float(_arc_radius(radius[k], spec)), reach, spacing) for k in places]
-    return Knees(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
+    return BendTargets(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
 
 
 def _arc_radius(radius: np.ndarray, spec: ColonSpec) -> np.ndarray:
@@ -90,7 +106,7 @@ def _turn(points: np.ndarray, half: int) -> np.ndarray:
 
 
 def _arc_with_legs(radius: float, reach: int, spacing: float) -> np.ndarray:
-    """Returns an arc with a straight leg at either end, about its mean [m], shape (2 reach + 1, 3)."""
+    """Return an arc with a straight leg at either end, about its mean [m], shape (2 reach + 1, 3)."""
     step, fine = spacing / 20, np.arange(-20 * reach, 20 * reach + 1) * spacing / 20
     curvature = np.where(np.abs(fine) < 0.5 * _ANGLE * radius, 1.0 / radius, 0.0)
     angle = np.cumsum(gaussian_filter1d(curvature, 0.004 / step)) * step

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The centreline of a spec: an anatomical course, relaxed until lengths, bends and gaps are right."""
+"""The centerline of a spec: an anatomical route, relaxed until lengths, bends and gaps are right."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.relaxation import relax
 from arcgym.anatomy.generator.routes import control_points, sample_route
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.segments import RETROPERITONEAL, SEGMENTS
 
 SAMPLE_SPACING = 0.005
@@ -19,13 +20,15 @@ SAMPLE_SPACING = 0.005
 
 _SIGMOID = SEGMENTS.index("sigmoid")
 _HOLD_TIED, _HOLD_MOBILE, _HOLD_REPOSED = 0.0072, 0.003, 0.025
+"""Share of the way back to the route in each iteration: of tied and mobile segments, and of tied ones that another
+posture leaves in place."""
 
 
 def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve | None = None) -> Curve:
-    """Generates the centreline of a spec; the result still has to pass :mod:`arcgym.anatomy.validation.validate`.
+    """Generate the centreline of a spec; the result still has to pass :mod:`arcgym.anatomy.validation.validate`.
 
     Args:
-        spec: What the colon shall be like.
+        spec: Specification of the colon.
         rng: Source of randomness.
         reference: The same colon in another posture: it keeps the acute bends, and the tied segments their places.
     """
@@ -44,7 +47,7 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
         places = [int(np.abs(share - s).argmin()) for s in acute_bends(reference.points, reference.s)]
     points = relax(route, edge, base_radius(spec, arc), hold, spec, places)
     points = _smoothed(points)
-    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    arc = arc_lengths(points)
     ends = arc[np.cumsum(counts)]
     if spec.iliac_fossa is not None:
         ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])
@@ -52,7 +55,7 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
 
 
 def _height_crossing(height: np.ndarray, arc: np.ndarray, level: float, bounds: np.ndarray) -> float:
-    """Returns where the descending colon, followed down from its upper border, first is below a level [m]."""
+    """Return where the descending colon, followed down from its upper border, first is below a level [m]."""
     below = np.flatnonzero((height < level) & (arc < bounds[1]))
     if not len(below) or below[-1] + 1 == len(arc):
         return float(bounds[0])
@@ -61,7 +64,7 @@ def _height_crossing(height: np.ndarray, arc: np.ndarray, level: float, bounds: 
 
 
 def _smoothed(points: np.ndarray) -> np.ndarray:
-    """Smooths the course over 6 mm, and over 15 mm where it leaves the straight anal canal."""
+    """Smooth the course over 6 mm, and over 15 mm where it leaves the straight anal canal."""
     padded = np.pad(points, ((12, 12), (0, 0)), "reflect", reflect_type="odd")
     fine, coarse = (gaussian_filter1d(padded, width, axis=0)[12:-12] for width in (1.2, 3.0))
     blend = np.clip(2.0 - np.arange(len(points)) / 8.0, 0.0, 1.0)[:, None]
@@ -69,7 +72,7 @@ def _smoothed(points: np.ndarray) -> np.ndarray:
 
 
 def base_radius(spec: ColonSpec, s: np.ndarray) -> np.ndarray:
-    """Returns the lumen radius between folds [m] at the spec's nominal arc lengths, same shape as ``s``."""
+    """Return the lumen radius between folds [m] at the spec's nominal arc lengths, same shape as ``s``."""
     knots, values, start = [], [], 0.0
     for name in SEGMENTS:
         segment = spec.segments[name]

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Anatomical control points of the centreline: the frame that the colon makes round the abdomen, supine.
+"""Tables of control points: where the colon runs round the abdomen, supine. :mod:`routes` makes a course of them.
 
 Positions in metres from the anal verge, +X patient's right, +Y anterior, +Z cranial. Typical positions against the
 skeleton: the sacral promontory at z = 0.13, the iliac crests at 0.20, the left flexure at 0.42, higher than the right.

@@ -16,6 +16,7 @@ TAENIAE = 3
 """Longitudinal muscle bands of the colon; the rectum has a complete coat instead."""
 
 _CREST = 1.35
+"""Height of a crest's profile before it is scaled to 1."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Valve:
 
 
 def make_fold_rows(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> list[FoldRow]:
-    """Places the folds of the three rows from the sigmoid to the caecum."""
+    """Place the folds of the three rows from the sigmoid to the caecum."""
     return [_make_row(spec, curve, rng, row) for row in range(TAENIAE)]
 
 
@@ -69,7 +70,7 @@ def _make_row(spec: ColonSpec, curve: Curve, rng: np.random.Generator, row: int)
 
 
 def make_valves(curve: Curve, rng: np.random.Generator) -> list[Valve]:
-    """Places the three Houston valves: left, right, left; the middle one (Kohlrausch's) is the largest."""
+    """Place the three Houston valves: left, right, left; the middle one (Kohlrausch's) is the largest."""
     start, end = curve.bounds("rectum")
     side = np.pi + rng.normal(0, 0.3)
     shape = ((0.42, 0.0105, 0.0030), (0.62, 0.0145, 0.0032), (0.84, 0.0100, 0.0028))
@@ -80,7 +81,7 @@ def make_valves(curve: Curve, rng: np.random.Generator) -> list[Valve]:
 
 
 def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float = 0.0) -> np.ndarray:
-    """Returns the fold depth (share of the way to the chord) at arc length ``s``, ``phi`` from mid-row, shape (n,).
+    """Return the fold depth (share of the way to the chord) at arc length ``s``, ``phi`` from mid-row, shape (n,).
 
     The crest is flat on top: a Gaussian would alias into teeth on rings half a crest apart.
     """
@@ -95,7 +96,7 @@ def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float =
 
 
 def nearness(row: FoldRow, s: np.ndarray, phi: np.ndarray, width: float) -> np.ndarray:
-    """Returns how near each point is to a crest: 1 on it, falling off over ``width`` [m], 0 at the taeniae."""
+    """Return how near each point is to a crest: 1 on it, falling off over ``width`` [m], 0 at the taeniae."""
     after = np.searchsorted(row.s, s)
     near = np.zeros_like(s)
     for k in (np.clip(after - 1, 0, len(row.s) - 1), np.clip(after, 0, len(row.s) - 1)):
@@ -105,20 +106,20 @@ def nearness(row: FoldRow, s: np.ndarray, phi: np.ndarray, width: float) -> np.n
 
 
 def _crest(row: FoldRow, k: np.ndarray, phi: np.ndarray) -> np.ndarray:
-    """Returns the arc length of crest ``k`` at ``phi`` [m]: tilted and bowed, as real folds are."""
+    """Return the arc length of crest ``k`` at ``phi`` [m]: tilted and bowed, as real folds are."""
     bow = 0.0024 * (np.cos(1.5 * (phi - row.shift[k])) - 0.6)
     return row.s[k] + row.tilt[k] * phi + bow
 
 
 def haustral_bulge(row: FoldRow, s: np.ndarray, phi: np.ndarray) -> np.ndarray:
-    """Returns the outward bulge between two folds as a share of the radius, up to 0.1, shape (n,)."""
+    """Return the outward bulge between two folds as a share of the radius, up to 0.1, shape (n,)."""
     k = np.clip(np.searchsorted(row.s, s), 1, len(row.s) - 1)
     share = np.clip((s - row.s[k - 1]) / np.maximum(row.s[k] - row.s[k - 1], 1e-6), 0.0, 1.0)
     return 0.10 * np.sin(np.pi * share) ** 0.8 * np.clip(np.cos(1.5 * phi), 0.0, 1.0)
 
 
 def valve_height(valve: Valve, s: np.ndarray, theta: np.ndarray, min_width: float = 0.0) -> np.ndarray:
-    """Returns how far a rectal valve reaches into the lumen [m]: a half ring, bowed upwards at its ends."""
+    """Return how far a rectal valve reaches into the lumen [m]: a half ring, bowed upwards at its ends."""
     angle = np.mod(theta - valve.theta + np.pi, 2 * np.pi) - np.pi
     around = np.cos(np.clip(angle / 2.1, -1, 1) * np.pi / 2) ** 0.7
     x = np.abs(s - valve.s - 0.0025 * (1 - np.cos(angle))) / max(valve.width, min_width)

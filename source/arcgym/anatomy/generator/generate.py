@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""From a spec to a colon stage."""
+"""Make a colon stage of a spec."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import numpy as np
 from arcgym.anatomy.generator.centerline import make_centerline
 from arcgym.anatomy.generator.lesions import Lesion, place_lesions
 from arcgym.anatomy.generator.posture import make_posed, repose
-from arcgym.anatomy.generator.quantize import compact
+from arcgym.anatomy.generator.quantize import quantize
 from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.generator.surface import Surface
-from arcgym.anatomy.generator.texture import write_textures
 from arcgym.anatomy.generator.visual import sample_visual
 from arcgym.anatomy.generator.wall import sample_wall
 from arcgym.anatomy.landmarks import find_landmarks
+from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import Centerline, ColonStage
 from arcgym.anatomy.validation.validate import failed, validate_curve, validate_wall
 
@@ -28,7 +28,10 @@ POSTURE_TOLERANCE = 0.03
 """Largest relative difference of arc lengths between postures."""
 
 _CENTERLINE_SPACING = 0.005
+"""Distance of the points of the stage's centerline [m]."""
+
 _OPENINGS = {"valve": "ileocecal_valve", "appendix": "appendix_orifice"}
+"""Landmark of each opening of the cecum."""
 
 
 class AnatomyError(ValueError):
@@ -36,10 +39,10 @@ class AnatomyError(ValueError):
 
 
 def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
-    """Generates a colon; folded or self-touching anatomies are rejected and another seed is tried.
+    """Generate a colon; folded or self-touching anatomies are rejected and another seed is tried.
 
     Args:
-        spec: What the colon shall be like.
+        spec: Specification of the colon.
         folder: Where its two textures are written.
 
     Raises:
@@ -73,8 +76,8 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     return ColonStage(
         name=spec.name,
         wall=wall,
-        visual=compact(sample_visual(surface, wall, lesions, *fine)),
-        visual_proxy=compact(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1)),
+        visual=quantize(sample_visual(surface, wall, lesions, *fine)),
+        visual_proxy=quantize(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1)),
         centerline=_sample_centerline(surface),
         landmarks=find_landmarks(surface.curve, openings),
         material=spec.material,
@@ -85,7 +88,7 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
 
 
 def draw_surface(spec: ColonSpec, seed: int) -> tuple[Surface, list[Lesion]]:
-    """Draws a colon's surface and lesions; of another posture, the course differs and nothing else.
+    """Draw a colon's surface and lesions; of another posture, the course differs and nothing else.
 
     Raises:
         AnatomyError: The course does not fit into the other posture.

@@ -7,11 +7,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from arcgym.anatomy.generator.spec import ColonSpec, MucosaSpec, PolypSpec, SegmentSpec, default_segments
+from arcgym.anatomy.generator.spec import ColonSpec, PolypSpec, SegmentSpec, default_segments
+from arcgym.anatomy.mucosa.spec import MucosaSpec
 
 
 def colon_1() -> ColonSpec:
-    """Man of 65: slightly redundant, sharply angulated sigmoid; diverticula in the descending colon."""
+    """Return the man of 65: slightly redundant, sharply angulated sigmoid; diverticula in the descending colon."""
     segments = default_segments()
     segments["sigmoid"] = replace(segments["sigmoid"], length=0.55)
     segments["descending"] = replace(segments["descending"], diverticula=12)
@@ -30,7 +31,7 @@ def colon_1() -> ColonSpec:
 
 
 def colon_2() -> ColonSpec:
-    """The man of colon 3, prone: the same wall, its mobile segments pressed back by the table."""
+    """Return the man of colon 3, prone: the same wall, its mobile segments pressed back by the table."""
     return replace(
         colon_3(),
         name="colon_2",
@@ -40,7 +41,7 @@ def colon_2() -> ColonSpec:
 
 
 def colon_3() -> ColonSpec:
-    """Man of 51, supine: redundant transverse colon that hangs into the pelvis, no polyps."""
+    """Return the man of 51, supine: redundant transverse colon that hangs into the pelvis, no polyps."""
     segments = _with_lengths(sigmoid=0.45, descending=0.205, transverse=0.56, ascending=0.145)
     return _committed(
         ColonSpec(
@@ -57,7 +58,7 @@ def colon_3() -> ColonSpec:
 
 
 def colon_4() -> ColonSpec:
-    """Woman of 51: narrow colon, highly redundant in sigmoid and transverse with many sharp bends, no lesions."""
+    """Return the woman of 51: narrow colon, sigmoid and transverse redundant with many sharp bends, no lesions."""
     lengths = _with_lengths(rectum=0.14, sigmoid=0.70, descending=0.21, transverse=0.57, ascending=0.135)
     diameters = {
         "rectum": (0.025, 0.048),
@@ -120,13 +121,13 @@ COLON_5_POLYPS = (
 
 
 def _with_lengths(**lengths: float) -> dict[str, SegmentSpec]:
-    """Returns the default segments with some lengths changed [m]."""
+    """Return the default segments with some lengths changed [m]."""
     segments = default_segments()
     return segments | {name: replace(segments[name], length=length) for name, length in lengths.items()}
 
 
 def _committed(spec: ColonSpec) -> ColonSpec:
-    """Lets the caecum bend as it may, and makes files of less than 3 MB, as the repository holds them all, not of 7."""
+    """Let the caecum bend as it may, and make files of less than 3 MB, as the repository holds them all, not of 7."""
     return replace(
         spec,
         straight_cecum=False,

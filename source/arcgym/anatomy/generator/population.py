@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from arcgym.anatomy.generator.spec import ColonSpec, MucosaSpec
+from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.mucosa.spec import MucosaSpec
 from arcgym.anatomy.segments import SEGMENTS
 
 LENGTH_MEAN = {"woman": 1.933, "man": 1.854}
@@ -56,8 +57,10 @@ ILIAC_FOSSA = 0.180
 little below the iliac crest (Standring, Gray's Anatomy), as in the five patients (0.175 to 0.187)."""
 
 _MOST_DIVERTICULA = 24
-_LONG_TRANSVERSE = 0.56
+"""Largest number of diverticula that are drawn."""
 
+_LONG_TRANSVERSE = 0.56
+"""Length from which a transverse colon takes the redundant course [m]."""
 
 MIN_BEND_RADIUS = 0.026
 """Least bend radius of random patients [m]: with the 0.030 of the default, half of the drawn sets of bends found no
@@ -65,7 +68,7 @@ course in eight attempts."""
 
 
 def draw_spec(seed: int) -> ColonSpec:
-    """Draws one patient; the same seed always gives the same spec."""
+    """Draw one patient; the same seed always gives the same spec."""
     rng = np.random.default_rng([seed, 2009])
     sex = str(rng.choice(["woman", "man"], p=[WOMEN, 1.0 - WOMEN]))
     total = draw_length(rng, sex)
@@ -104,7 +107,7 @@ def draw_spec(seed: int) -> ColonSpec:
 
 
 def draw_length(rng: np.random.Generator, sex: str) -> float:
-    """Draws the length of a colon [m] from the sex's normal distribution, cut to :data:`LENGTH_RANGE`."""
+    """Draw the length of a colon [m] from the sex's normal distribution, cut to :data:`LENGTH_RANGE`."""
     while True:
         length = float(rng.normal(LENGTH_MEAN[sex], LENGTH_DEVIATION))
         if LENGTH_RANGE[0] <= length <= LENGTH_RANGE[1]:
@@ -112,7 +115,7 @@ def draw_length(rng: np.random.Generator, sex: str) -> float:
 
 
 def draw_bends(rng: np.random.Generator, length: float) -> int:
-    """Draws the number of acute bends: more in longer colons, as between Hanson's groups; over all as Khashab found."""
+    """Draw the number of acute bends: more in longer colons, as between Hanson's groups; over all as Khashab found."""
     per_meter = (LONG_BENDS - REGULAR_BENDS) / (LONG_LENGTH - REGULAR_LENGTH)
     explained = per_meter * LENGTH_DEVIATION
     mean = BENDS_MEAN + per_meter * (length - np.mean(list(LENGTH_MEAN.values())))
@@ -121,7 +124,7 @@ def draw_bends(rng: np.random.Generator, length: float) -> int:
 
 
 def segment_lengths(total: float) -> dict[str, float]:
-    """Returns the length of each segment [m]: sigmoid and transverse on the line through Hanson's two groups.
+    """Return the length of each segment [m]: sigmoid and transverse on the line through Hanson's two groups.
 
     Rectum, caecum and flexures, which are bends, are the default spec's; descending and ascending colon share the rest
     in its proportions.

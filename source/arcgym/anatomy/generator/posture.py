@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same wall in another posture: a new course, the same features at the same places of the wall."""
+"""Lay a generated wall in another posture: a new course, the same features at the same places of the wall."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ ASCENDING_ROTATION = np.radians(20.0)
 """Turn of ascending colon and caecum about their axis from supine to prone; median 21 deg (Eur Radiol 2011)."""
 
 _BLEND = 15.0
+"""Standard deviation of the smoothing of the turn, in samples of 2 mm."""
+
 _LENGTH_TRIALS = 4
+"""Number of courses that are made to match the lengths."""
 
 
 def make_posed(spec: ColonSpec, reference: Curve, seed: int) -> Curve:
-    """Generates the course in the spec's posture, asking for other lengths until segments are as long as before.
+    """Generate the course in the spec's posture, asking for other lengths until segments are as long as before.
 
     Tied segments stay where they are; the wall keeps its acute bends, which turn another way.
     """
@@ -38,7 +41,7 @@ def make_posed(spec: ColonSpec, reference: Curve, seed: int) -> Curve:
 
 
 def repose(reference: Curve, posed: Curve) -> Curve:
-    """Gives a course the reference's length and segments, and frames that carry the wall over without needless twist.
+    """Give a course the reference's length and segments, and frames that carry the wall over without needless twist.
 
     Retroperitoneal segments keep the side that faces the back; the turn between them is spread over the mobile ones.
 
@@ -51,7 +54,7 @@ def repose(reference: Curve, posed: Curve) -> Curve:
 
 
 def _roll(reference: Curve, curve: Curve) -> np.ndarray:
-    """Returns the turn of the frames at the curve's samples [rad], shape (n,)."""
+    """Return the turn of the frames at the curve's samples [rad], shape (n,)."""
     s = curve.s
     _, wanted, _ = reference.frame(s)
     _, normal, binormal = curve.frame(s)

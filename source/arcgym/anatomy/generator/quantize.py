@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rounds what nobody sees, so that stage files compress: USD packs arrays of few different numbers."""
+"""Round a surface by less than can be seen: USD packs arrays of few different numbers into smaller files."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import numpy as np
 from arcgym.anatomy.stage.types import VisualMesh
 
 _POINT, _NORMAL, _UV, _WEIGHT = 2.0**-17, 2.0**-8, 2.0**-14, 2.0**-9
+"""Steps to which is rounded: powers of two, as float32 holds them exactly."""
 
 
-def compact(visual: VisualMesh) -> VisualMesh:
-    """Returns the surface with points to 8 um, normals to 0.2 deg, a twelfth of a pixel, and skin weights to 0.2 %."""
+def quantize(visual: VisualMesh) -> VisualMesh:
+    """Return the surface with rounded points (8 um), normals (0.2 deg), texture (1/12 px) and skin weights (0.2 %)."""
     weights = np.rint(visual.skin_weights / _WEIGHT)
     weights[np.arange(len(weights)), weights.argmax(1)] += round(1.0 / _WEIGHT) - weights.sum(1)
     return replace(

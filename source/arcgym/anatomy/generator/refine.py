@@ -8,7 +8,7 @@ import numpy as np
 
 
 def refine(points: np.ndarray, faces: np.ndarray, selected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Splits the selected triangles into four and their neighbours as far as needed to leave no hanging vertex.
+    """Split the selected triangles into four and their neighbours as far as needed to leave no hanging vertex.
 
     Args:
         points: Coordinates, shape (n, k).
@@ -33,7 +33,7 @@ def refine(points: np.ndarray, faces: np.ndarray, selected: np.ndarray) -> tuple
 
 
 def _close(edge_of: np.ndarray, selected: np.ndarray, count: int) -> np.ndarray:
-    """Marks the edges to split until no triangle has exactly two of them, shape (count,), bool."""
+    """Mark the edges to split until no triangle has exactly two of them, shape (count,), bool."""
     split = np.zeros(count, bool)
     split[edge_of[selected].ravel()] = True
     while (two := split[edge_of].sum(1) == 2).any():

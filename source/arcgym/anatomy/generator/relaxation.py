@@ -1,13 +1,17 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Position-based relaxation of a course: lengths, bends and gaps between loops."""
+"""Relax a generated course by moving its points: lengths, bends and gaps between loops.
+
+The importer's :mod:`arcgym.anatomy.importing.bend_opening` changes a measured centerline instead, as little as it can.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from arcgym.anatomy.generator.acute_bends import choose_knees, make_knees
+from arcgym.anatomy.generator.acute_bends import choose_bends, make_bends
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.polyline import restore_lengths
 
 MAX_CURVATURE_RADIUS = 0.80
 """Curvature times lumen radius that relaxation aims to stay below; at 1 the inside of a bend folds over."""
@@ -16,10 +20,22 @@ HAUSTRAL_MARGIN = 1.14
 """Largest wall radius between folds over the mean radius: haustra bulge, taeniae are drawn in."""
 
 _ITERATIONS = 900
+"""Number of iterations; our choice."""
+
 _CHOOSING = (200, 400, 600)
+"""Iterations at which acute bends are chosen anew."""
+
 _CANAL_POINTS = 5
+"""Points of the anal canal, which stays straight."""
+
 _STIFFER = 0.006
-_NEIGHBOR_AGE, _NEIGHBOR_REACH = 5, 0.02
+"""Share of every bend that is opened in each iteration."""
+
+_NEIGHBOR_AGE = 5
+"""Iterations for which near points of other loops are kept in a list."""
+
+_NEIGHBOR_REACH = 0.02
+"""How much nearer points may come in between [m]."""
 
 
 def relax(
@@ -30,7 +46,7 @@ def relax(
     spec: ColonSpec,
     bends: list[int] | None = None,
 ) -> np.ndarray:
-    """Moves the points until edges have their lengths, bends are as wanted and loops are apart.
+    """Move the points until edges have their lengths, bends are as wanted and loops are apart.
 
     Every constraint moves points directly (Mueller et al., JVCIR 2007); the pull back to the course is strong on
     retroperitoneal segments and weak on those that hang on a mesentery. Acute bends not given are chosen as they form.
@@ -40,41 +56,41 @@ def relax(
         edge: Wanted distances of its points [m], shape (n - 1,).
         radius: Lumen radius [m], shape (n,).
         hold: Share of the way back to the course in each iteration, shape (n,).
-        spec: What the colon shall be like.
-        bends: Points that shall become acute bends; None chooses those that turn most.
+        spec: Specification of the colon.
+        bends: Points that become acute bends; None chooses those that turn most.
     """
     points, arc = route.copy(), np.r_[0.0, np.cumsum(edge)]
     need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + 1.5 * spec.clearance
     other_loop = np.abs(arc[:, None] - arc[None]) > 1.9 * need
     sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
     canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
-    knees = None
+    made = None
     for k in range(_ITERATIONS):
         if spec.acute_bends and k in _CHOOSING:
             spacing = float(edge.mean())
-            places = choose_knees(points, spacing, radius, spec) if bends is None else bends
-            knees = make_knees(places, spacing, radius, spec)
+            places = choose_bends(points, spacing, radius, spec) if bends is None else bends
+            made = make_bends(places, spacing, radius, spec)
         if k % _NEIGHBOR_AGE == 0:
             a, b = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
         points += _push_apart(points, a, b, need[a, b])
         points += hold[:, None] * (route - points)
-        if knees:
-            points += knees.pull(points)
+        if made:
+            points += made.pull(points)
         points += _unbend(points, edge, sharpest)
         for _ in range(6):
             points[:_CANAL_POINTS] = canal
-            _restore_lengths(points, edge)
+            restore_lengths(points, edge)
     points[:_CANAL_POINTS] = canal
     return points
 
 
 def _square_distances(points: np.ndarray) -> np.ndarray:
-    """Returns squared distances [m^2], shape (n, n); a matrix product is slow on busy cores."""
+    """Return squared distances [m^2], shape (n, n); a matrix product is slow on busy cores."""
     return sum((x[:, None] - x[None]) ** 2 for x in points.T)  # type: ignore[return-value]
 
 
 def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:
-    """Returns the shift of each point away from those of other loops that are nearer than ``need``, for pairs a, b."""
+    """Return the shift of each point away from those of other loops that are nearer than ``need``, for pairs a, b."""
     offset = points[a] - points[b]
     close = (offset**2).sum(1) < need**2
     a, offset, need = a[close], offset[close], need[close]
@@ -86,9 +102,9 @@ def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarr
 
 
 def _unbend(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray) -> np.ndarray:
-    """Returns a shift that opens bends: a little everywhere, strongly where the curvature is above ``sharpest``.
+    """Return a shift that opens bends: a little everywhere, strongly where the curvature is above ``sharpest``.
 
-    Over 10, 20 and 40 mm; over the longer ones neighbours move the other way, so that the course does not shrink.
+    Over 10, 20 and 40 mm; over the longer ones neighbours move the other way, and the course does not shrink.
     """
     shift = np.zeros_like(points)
     shift[1:-1] = _sag(points, 1) * (_STIFFER + np.maximum(_excess(points, edge, sharpest, 1), 0.0))[:, None]
@@ -101,7 +117,7 @@ def _unbend(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray) -> np.nd
 
 
 def _sag(points: np.ndarray, reach: int) -> np.ndarray:
-    """Returns the way from each point to the middle of those ``reach`` before and after it [m]."""
+    """Return the way from each point to the middle of those ``reach`` before and after it [m]."""
     return 0.5 * (points[: -2 * reach] + points[2 * reach :]) - points[reach:-reach]
 
 
@@ -116,14 +132,3 @@ def _excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: i
 
 def _relative_excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: int) -> np.ndarray:
     return np.clip(1.0 - sharpest[reach:-reach] / np.maximum(_curvature(points, edge, reach), 1e-9), 0.0, 0.9)
-
-
-def _restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
-    """Moves both ends of every edge so that it gets its length; even edges first, then odd ones."""
-    for first in (0, 1):
-        a, b = points[first:-1:2], points[first + 1 :: 2]
-        offset = b - a
-        length = np.linalg.norm(offset, axis=1, keepdims=True)
-        half = 0.5 * offset * (1.0 - edge[first::2, None] / length)
-        a += half
-        b -= half

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The course of a spec: control points of its shapes, jittered, posed, and sampled at the wanted lengths."""
+"""The route of a spec before relaxation: control points, jittered, posed, and sampled at the wanted lengths."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from arcgym.anatomy.generator.courses import FIXED_ROUTES, SIGMOID_SHAPES, STRAIGHT_CECUM, TRANSVERSE_SHAPES
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.segments import RETROPERITONEAL, SEGMENTS
 
 _ROUTE_SLACK = 1.15
@@ -22,7 +23,7 @@ _BACK = -0.02
 
 
 def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Returns jittered control points of each segment [m], shape (n, 3)."""
+    """Return jittered control points of each segment [m], shape (n, 3)."""
     routes = {
         **FIXED_ROUTES,
         "sigmoid": SIGMOID_SHAPES[spec.sigmoid_shape],
@@ -41,7 +42,7 @@ def control_points(spec: ColonSpec, rng: np.random.Generator) -> dict[str, np.nd
 
 
 def _raised(name: str, route: np.ndarray, spec: ColonSpec) -> np.ndarray:
-    """Lifts the flexures, stretching the descending and ascending colon and carrying the transverse colon along."""
+    """Lift the flexures, stretching the descending and ascending colon and carrying the transverse colon along."""
     along = np.linspace(0.0, 1.0, len(route))
     rise: dict[str, float | np.ndarray] = {
         "descending": spec.left_rise * _share(route[:, 2], *_DESCENDING),
@@ -60,7 +61,7 @@ def _share(height: np.ndarray, low: float, high: float) -> np.ndarray:
 
 
 def _flatten(points: np.ndarray) -> np.ndarray:
-    """Presses mobile segments back as the table does to a belly lying on it; they give way sideways and upwards."""
+    """Press mobile segments back as the table does to a belly lying on it; they give way sideways and upwards."""
     depth = np.clip((points[:, 1] - _BACK) / 0.1, 0.0, None)
     moved = points.copy()
     moved[:, 0] *= 1.0 + 0.08 * depth
@@ -74,7 +75,7 @@ def _transverse_route(shape: str, sag: float) -> list[tuple[float, float, float]
 
 
 def sample_route(points: dict[str, np.ndarray], lengths: dict[str, float], spacing: float) -> np.ndarray:
-    """Samples the course, loops widened or narrowed until each segment has about its length.
+    """Sample the course, loops widened or narrowed until each segment has about its length.
 
     Args:
         points: Control points of each segment [m].
@@ -94,14 +95,14 @@ def sample_route(points: dict[str, np.ndarray], lengths: dict[str, float], spaci
     parts = [curve(np.zeros(1))]
     for name in SEGMENTS:
         fine = np.linspace(*bounds[name], 400)
-        arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(curve(fine), axis=0), axis=1))]
+        arc = arc_lengths(curve(fine))
         count = round(lengths[name] / spacing)
         parts.append(curve(np.interp(np.linspace(0, arc[-1], count + 1)[1:], arc, fine)))
     return np.concatenate(parts)
 
 
 def _spline(points: dict[str, np.ndarray]) -> tuple[CubicSpline, dict[str, tuple[float, float]]]:
-    """Returns a centripetal spline through all control points and the parameter range of each segment."""
+    """Return a centripetal spline through all control points and the parameter range of each segment."""
     knots = np.concatenate([points[name] for name in SEGMENTS])
     parameter = np.r_[0.0, np.cumsum(np.sqrt(np.linalg.norm(np.diff(knots, axis=0), axis=1)))]
     firsts = np.minimum(np.cumsum([0, *(len(points[name]) for name in SEGMENTS)]), len(knots) - 1)
@@ -114,7 +115,7 @@ def _arc_length(curve: CubicSpline, start: float, end: float) -> float:
 
 
 def _widen(points: np.ndarray, factor: float) -> np.ndarray:
-    """Scales the distance of the inner control points from the chord between the outer two."""
+    """Scale the distance of the inner control points from the chord between the outer two."""
     along = np.linspace(0, 1, len(points))[:, None]
     chord = points[0] + along * (points[-1] - points[0])
     return chord + factor * (points - chord)

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the cross sections of the visual surface lie: along the crests of the folds and closer together there."""
+"""Spacing of the visual surface's cross-sections: along the crests of the folds, and closer together there."""
 
 from __future__ import annotations
 
@@ -11,14 +11,19 @@ from arcgym.anatomy.generator.folds import nearness, valve_height
 from arcgym.anatomy.generator.surface import Surface
 
 _BETWEEN_FOLDS = 0.30
+"""Density of rows between folds; on a crest it is 1 more."""
+
 _NEAR = 0.0012
+"""How far beside a crest rows are denser [m]."""
+
 _EVEN_OUT = 0.030
+"""Length over which columns keep level with each other [m]."""
 
 
 def row_positions(surface: Surface, theta: np.ndarray, start: float, end: float, rows: int) -> np.ndarray:
-    """Returns the arc length of each cross section in each column [m], shape (rows, columns).
+    """Return the arc length of each cross section in each column [m], shape (rows, columns).
 
-    Every column spreads its points by the folds that it crosses, so that rows run along the crests and no crest is
+    Every column spreads its points by the folds that it crosses: rows run along the crests, and no crest is
     cut into teeth; columns keep level with each other over 3 cm.
 
     Args:
@@ -41,7 +46,7 @@ def row_positions(surface: Surface, theta: np.ndarray, start: float, end: float,
 
 
 def _density(surface: Surface, s: np.ndarray, angle: float) -> np.ndarray:
-    """Returns how closely rows shall lie along one column, shape like ``s``."""
+    """Return how closely rows lie along one column, shape like ``s``."""
     theta = np.full_like(s, angle)
     sector, phi = surface.sector(theta)
     density = _BETWEEN_FOLDS + nearness(surface.rows[int(sector[0])], s, phi, _NEAR)
@@ -51,7 +56,7 @@ def _density(surface: Surface, s: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _demand(surface: Surface, s: np.ndarray) -> np.ndarray:
-    """Returns how many rows a stretch needs: half as many where there are no folds."""
+    """Return how many rows a stretch needs: half as many where there are no folds."""
     start = surface.curve.bounds("sigmoid")[0]
     valves = sum((np.abs(s - valve.s) < 0.012) * 0.5 for valve in surface.valves)
     return np.where(s < start, 0.5 + valves, 1.0)

@@ -1,12 +1,13 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a generated colon shall be like: the generator's only input."""
+"""Specification of a generated colon: the generator's only input."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
 from arcgym.anatomy.generator.spec_checks import check_spec
+from arcgym.anatomy.mucosa.spec import MucosaSpec
 from arcgym.anatomy.stage.types import TissueMaterial
 
 
@@ -56,24 +57,8 @@ class PolypSpec:
     """Shape by the Paris classification: Ip (stalked), Is (sessile) or IIa (flat elevated)."""
 
 
-@dataclass(frozen=True)
-class MucosaSpec:
-    """Look of the mucosa."""
-
-    width: int = 1024
-    """Pixels of the textures around the lumen; they are twice as long. Halve it for files a quarter the size."""
-    paleness: float = 0.45
-    """Share of paler mucosa, 0 to 1."""
-    redness: float = 0.20
-    """Share of redder mucosa, 0 to 1."""
-    vessels: float = 1.0
-    """How clearly vessels shine through; 0 hides them."""
-    stool: float = 0.0
-    """Share of the mucosa under residual stool, 0 to 0.5."""
-
-
 def default_segments() -> dict[str, SegmentSpec]:
-    """Returns an average insufflated adult colon of 1.64 m.
+    """Return an average insufflated adult colon of 1.64 m.
 
     Lengths from CT colonography (Khashab et al., Endoscopy 2009; Hanson et al., AJR 2007; the sum is 1.5-1.9 m),
     distended diameters below the upper bounds of radiology (transverse 6 cm, caecum 9 cm), flexures counted apart:
@@ -110,7 +95,7 @@ class ColonSpec:
     transverse_shape: str = "plain"
     """Course of the transverse colon, a key of :data:`arcgym.anatomy.generator.courses.TRANSVERSE_SHAPES`."""
     acute_bends: int | None = 10
-    """How many places shall turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
+    """How many places turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
     None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
     min_bend_radius: float = 0.030
     """Least radius of the centreline [m]. A colonoscope's bending section turns on about 25-30 mm."""
@@ -173,7 +158,7 @@ class ColonSpec:
     """How many seeds are tried before the spec is given up."""
 
     def __post_init__(self) -> None:
-        """Checks every value.
+        """Check every value.
 
         Raises:
             ValueError: Names the field, its value and what is allowed.

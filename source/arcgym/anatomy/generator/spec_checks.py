@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What each field of a spec may be; a value outside says which it is, and why."""
+"""Bounds of every field of a spec."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ _FOLD_RANGES = {"spacing": (0.010, 0.10), "depth": (0.0, 1.1), "width": (0.001, 
 
 
 def check_spec(spec: ColonSpec) -> None:
-    """Checks every field.
+    """Check every field.
 
     Raises:
         ValueError: Names the field, its value and what is allowed.

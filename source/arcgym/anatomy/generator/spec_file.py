@@ -20,7 +20,7 @@ class SpecError(ValueError):
 
 
 def read_spec(path: str | Path) -> ColonSpec:
-    """Reads a spec file.
+    """Read a spec file.
 
     Raises:
         SpecError: The file is not YAML, or a value is unknown, of the wrong type or out of range.
@@ -36,7 +36,7 @@ def read_spec(path: str | Path) -> ColonSpec:
 
 
 def _build(default: Any, values: Any, where: str) -> Any:
-    """Returns a copy of a config with the given values replaced."""
+    """Return a copy of a config with the given values replaced."""
     if not isinstance(values, dict):
         raise ValueError(f"{where or 'spec'} is {values!r}; expected a mapping of fields.")
     types = typing.get_type_hints(type(default))
@@ -60,7 +60,7 @@ def _segments(default: dict, values: Any) -> dict:
 
 
 def _convert(kind: Any, default: Any, value: Any, where: str) -> Any:
-    """Returns the value as the type of its field."""
+    """Return the value as the type of its field."""
     parts = typing.get_args(kind)
     if typing.get_origin(kind) is tuple:
         if not isinstance(value, list) or (parts[-1] is not ... and len(value) != len(parts)):
@@ -80,7 +80,7 @@ def _convert(kind: Any, default: Any, value: Any, where: str) -> Any:
 
 
 def _make(kind: Any, values: Any, where: str) -> Any:
-    """Builds an item of a list, such as a polyp."""
+    """Build an item of a list, such as a polyp."""
     if not isinstance(values, dict):
         raise ValueError(f"{where} is {values!r}; expected a mapping of fields.")
     types = typing.get_type_hints(kind)

@@ -9,6 +9,7 @@ from copy import copy
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from arcgym.anatomy.blending import smooth_step, soft_limit
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.centerline import base_radius
 from arcgym.anatomy.generator.folds import (
@@ -20,12 +21,10 @@ from arcgym.anatomy.generator.folds import (
     valve_height,
 )
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.meshing.wall import ring_arcs
 
 DOME_LENGTH = 0.030
 """Length over which the caecum closes [m]."""
-
-LAST_RING_GAP = 0.003
-"""Distance of the last ring from the caecal pole [m]."""
 
 SEAM_MARGIN = 0.7
 """Least angle from a lesion's middle to the texture's seam [rad]."""
@@ -44,7 +43,7 @@ class Surface:
     """Radial surface swept along a centreline; every sampling of it (wall, fine, proxy) shows the same colon."""
 
     def __init__(self, spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> None:
-        """Draws everything random: radius, taeniae, folds and valves."""
+        """Draw everything random: radius, taeniae, folds and valves."""
         self.spec, self.curve = spec, curve
         self.mean_radius = _vary_radius(spec, curve, rng)
         self.taenia = rng.uniform(0, 2 * np.pi)
@@ -56,42 +55,37 @@ class Surface:
             self._put_fold_at(*self.ileum)
 
     def medial_angle(self, s: float) -> float:
-        """Returns the angle of the medial wall [rad], kept off the seam of the texture."""
+        """Return the angle of the medial wall [rad], kept off the seam of the texture."""
         _, normal, binormal = self.curve.frame(np.array(s))
         theta = float(np.arctan2(binormal @ _MEDIAL, normal @ _MEDIAL)) % (2 * np.pi)
         return float(np.clip(theta, SEAM_MARGIN, 2 * np.pi - SEAM_MARGIN))
 
     def _put_fold_at(self, s: float, theta: float) -> None:
-        """Moves the nearest fold to a place: the ileocaecal valve sits on one."""
+        """Move the nearest fold to a place: the ileocaecal valve sits on one."""
         row = self.rows[int(self.sector(np.array([theta]))[0][0])]
         row.s[np.abs(row.s - s).argmin()] = s
 
     def reposed(self, curve: Curve) -> Surface:
-        """Returns the surface along another course of the same length, see :mod:`arcgym.anatomy.generator.posture`."""
+        """Return the surface along another course of the same length, see :mod:`arcgym.anatomy.generator.posture`."""
         surface = copy(self)
         surface.curve = curve
         return surface
 
     def ring_arc(self) -> np.ndarray:
-        """Returns the arc length of the wall's rings [m]; the last stands short of the pole, where the dome is wide."""
-        end = self.curve.length - LAST_RING_GAP
-        return np.linspace(0.0, end, round(end / self.spec.ring_spacing) + 1)
+        """Return the arc length of the wall's rings [m]."""
+        return ring_arcs(self.curve.length, self.spec.ring_spacing)
 
     def lumen_radius(self, s: np.ndarray) -> np.ndarray:
-        """Returns the mean radius between folds at ``s`` [m], without the dome of the caecum."""
+        """Return the mean radius between folds at ``s`` [m], without the dome of the caecum."""
         return np.interp(s, self.curve.s, self.mean_radius)
 
     def points(self, s: np.ndarray, theta: np.ndarray, depth: float = 1.0, min_width: float = 0.0) -> np.ndarray:
-        """Returns surface points [m], shape ``(*s.shape, 3)``; arguments as for :meth:`radius`."""
-        return self.curve.position(s) + self.radius(s, theta, depth, min_width)[..., None] * self.outwards(s, theta)
-
-    def outwards(self, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """Returns the unit vector from the centreline at ``s`` in the direction ``theta``."""
-        _, normal, binormal = self.curve.frame(s)
-        return np.cos(theta)[..., None] * normal + np.sin(theta)[..., None] * binormal
+        """Return surface points [m], shape ``(*s.shape, 3)``; arguments as for :meth:`radius`."""
+        radius = self.radius(s, theta, depth, min_width)
+        return self.curve.position(s) + radius[..., None] * self.curve.outwards(s, theta)
 
     def radius(self, s: np.ndarray, theta: np.ndarray, depth: float = 1.0, min_width: float = 0.0) -> np.ndarray:
-        """Returns the distance from centreline to wall [m].
+        """Return the distance from centreline to wall [m].
 
         Args:
             s: Arc length [m].
@@ -112,15 +106,15 @@ class Surface:
         return np.maximum(self._bounded(s, theta, radius), 0.0).reshape(shape)
 
     def sector(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Returns between which taeniae an angle lies (0 to 2), and the angle from the middle between them [rad]."""
+        """Return between which taeniae an angle lies (0 to 2), and the angle from the middle between them [rad]."""
         angle = np.mod(theta - self.taenia, 2 * np.pi)
         sector = np.minimum((angle * TAENIAE / (2 * np.pi)).astype(int), TAENIAE - 1)
         return sector, angle - (sector + 0.5) * 2 * np.pi / TAENIAE
 
     def _folds(self, s: np.ndarray, theta: np.ndarray, mean: np.ndarray, depth: float, min_width: float) -> np.ndarray:
-        """Returns the change of radius [m] by taeniae, haustra and folds; none in the rectum."""
+        """Return the change of radius [m] by taeniae, haustra and folds; none in the rectum."""
         start = self.curve.bounds("sigmoid")[0]
-        on = _smooth_step(start - 0.015, start + 0.02, s)
+        on = smooth_step(start - 0.015, start + 0.02, s)
         sector, phi = self.sector(theta)
         drawn_in = 1.0 + 0.05 * on * np.cos(TAENIAE * phi)
         chord = mean * np.cos(np.pi / TAENIAE) / np.maximum(np.cos(phi), 0.5)
@@ -133,16 +127,15 @@ class Surface:
         return mean * (drawn_in * (1.0 + bulge * on) - 1.0) - depth * height * reach * on
 
     def _bounded(self, s: np.ndarray, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
-        """Limits the radius softly on the inside of bends, where the surface would fold over."""
+        """Limit the radius softly on the inside of bends, where the surface would fold over."""
         bend = self.curve.interpolate(s, self.curve.curvature_vector)
-        towards = np.einsum("ij,ij->i", bend, self.outwards(s, theta))
+        towards = np.einsum("ij,ij->i", bend, self.curve.outwards(s, theta))
         limit = np.where(towards > 1e-3, _BEND_LIMIT / np.maximum(towards, 1e-3), 1.0)
-        excess = np.maximum(radius - 0.8 * limit, 0.0)
-        return np.minimum(radius, 0.8 * limit) + 0.2 * limit * np.tanh(excess / (0.2 * limit))
+        return soft_limit(radius, limit)
 
 
 def _vary_radius(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> np.ndarray:
-    """Returns the smoothed mean radius at the curve's samples [m], with slow random variation."""
+    """Return the smoothed mean radius at the curve's samples [m], with slow random variation."""
     nominal = sum(segment.length for segment in spec.segments.values())
     radius = base_radius(spec, curve.s * nominal / curve.length)
     radius = gaussian_filter1d(radius, 4.0, mode="nearest")
@@ -151,12 +144,7 @@ def _vary_radius(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> np.
 
 
 def _undulation(s: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Returns fine unevenness of the mucosa [m], about 0.3 mm."""
+    """Return fine unevenness of the mucosa [m], about 0.3 mm."""
     broad = np.sin(900 * s + 2.1 * np.sin(3 * theta)) * np.sin(5 * theta + 310 * s)
     fine = np.sin(1510 * s + 7 * theta) * np.cos(377 * s - 4 * theta)
     return 0.00035 * (broad + 0.8 * fine)
-
-
-def _smooth_step(low: float, high: float, x: np.ndarray) -> np.ndarray:
-    t = np.clip((x - low) / (high - low), 0.0, 1.0)
-    return t * t * (3.0 - 2.0 * t)

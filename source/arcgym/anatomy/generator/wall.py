@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tetrahedral wall on a grid of rings and sectors, one layer thick, closed at the blind end."""
+"""The wall of a generated colon: its surface sampled on the rings of :mod:`arcgym.anatomy.meshing.wall`."""
 
 from __future__ import annotations
 
@@ -8,123 +8,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from arcgym.anatomy.generator.lesions import Lesion, wall_bulge
-from arcgym.anatomy.generator.surface import LAST_RING_GAP as LAST_RING_GAP
+from arcgym.anatomy.generator.lesion_shapes import wall_bulge
+from arcgym.anatomy.generator.lesions import Lesion
 from arcgym.anatomy.generator.surface import Surface
-from arcgym.anatomy.measures import tet_volumes
-from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
+from arcgym.anatomy.meshing.wall import build_wall, wall_layers
 from arcgym.anatomy.stage.types import WallMesh
-
-FIXED_RINGS_START = 3
-"""Rings held still at the anus, where the pelvic floor surrounds the canal."""
-
-FIXED_RINGS_END = 2
-"""Rings held still at the blind end, so that the simulated piece is held at both ends."""
-
-
-def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarray, capped: bool = True) -> WallMesh:
-    """Builds the wall from the rest positions of its vertex layers.
-
-    Args:
-        layers: Positions of layer, ring and sector [m], shape (2, R, S, 3), the lumen side first.
-        ring_segment: Segment index of each ring, shape (R,).
-        ring_arc: Arc length of each ring [m], shape (R,).
-        capped: Closes the last ring with a wall.
-    """
-    count, rings, sectors, _ = layers.shape
-    points = layers.reshape(-1, 3).astype(np.float32)
-    triangles = tube_triangles(rings, sectors)
-    if capped:
-        triangles = np.concatenate([triangles, (rings - 1) * sectors + polygon_triangles(sectors)])
-    layer = np.repeat(np.arange(count, dtype=np.int32), rings * sectors)
-    ring = np.tile(np.repeat(np.arange(rings, dtype=np.int32), sectors), count)
-    segment = np.asarray(ring_segment, np.int32)[ring]
-    return WallMesh(
-        points=points,
-        tets=_extrude(points, triangles, rings * sectors),
-        anchor=_anchors(ring, layer, segment, rings),
-        segment=segment,
-        ring=ring,
-        layer=layer,
-        frame_neighbors=_frame_neighbors(count, rings, sectors),
-        ring_arc=np.asarray(ring_arc, np.float32),
-    )
-
-
-def tube_triangles(rings: int, sectors: int) -> np.ndarray:
-    """Return the triangles of a tube of ``rings`` closed rings, shape (F, 3), int32.
-
-    All diagonals run the same way around: then the bending of triangles is exact for every constant curvature, and
-    twist is not four times too stiff as with diagonals that alternate (:mod:`arcgym.assets.shell_geometry`).
-    """
-    i, j = np.meshgrid(np.arange(rings - 1), np.arange(sectors), indexing="ij")
-    after = (j + 1) % sectors
-    a, b, c, d = i * sectors + j, (i + 1) * sectors + j, (i + 1) * sectors + after, i * sectors + after
-    halves = [np.stack([a, b, c], -1), np.stack([a, c, d], -1)]
-    return np.concatenate([half.reshape(-1, 3) for half in halves]).astype(np.int32)
-
-
-def polygon_triangles(sectors: int) -> np.ndarray:
-    """Returns a triangulation of a ring by a zigzag across it, shape (sectors - 2, 3), int32."""
-    low, high, triangles = 0, sectors - 1, []
-    while high - low > 1:
-        triangles.append((low, low + 1, high))
-        if high - low > 2:
-            triangles.append((low + 1, high - 1, high))
-        low, high = low + 1, high - 1
-    return np.array(triangles, np.int32)
-
-
-def _extrude(points: np.ndarray, triangles: np.ndarray, stride: int) -> np.ndarray:
-    """Splits each prism between a triangle and its copy one layer out into three tetrahedra.
-
-    Prisms are split by ascending vertex number, so that neighbours agree on the diagonal of the face they share.
-    """
-    low = np.sort(triangles, 1)
-    chain = [low[:, 0], low[:, 1], low[:, 2], *(low[:, k] + stride for k in range(3))]
-    tets = np.stack(
-        [
-            np.stack([chain[0], chain[1], chain[2], chain[5]], 1),
-            np.stack([chain[0], chain[1], chain[4], chain[5]], 1),
-            np.stack([chain[0], chain[3], chain[4], chain[5]], 1),
-        ],
-        1,
-    ).reshape(-1, 4)
-    inverted = tet_volumes(points, tets) < 0
-    tets[inverted] = tets[inverted][:, [1, 0, 2, 3]]
-    return tets.astype(np.int32)
-
-
-def _anchors(ring: np.ndarray, layer: np.ndarray, segment: np.ndarray, rings: int) -> np.ndarray:
-    """Fixes the ends and ties the outer side of the retroperitoneal segments."""
-    tied = np.isin(segment, [SEGMENTS.index(name) for name in RETROPERITONEAL]) & (layer == layer.max())
-    anchor = np.where(tied, ANCHOR_ELASTIC, ANCHOR_FREE)
-    ends = (ring < FIXED_RINGS_START) | (ring >= rings - FIXED_RINGS_END)
-    return np.where(ends, ANCHOR_FIXED, anchor).astype(np.int32)
-
-
-def _frame_neighbors(layers: int, rings: int, sectors: int) -> np.ndarray:
-    """Returns next ring, previous ring, next around and previous around of each vertex, shape (V, 4)."""
-    index = np.arange(layers * rings * sectors, dtype=np.int32).reshape(layers, rings, sectors)
-    forward = np.concatenate([index[:, 1:], index[:, -1:]], 1)
-    back = np.concatenate([index[:, :1], index[:, :-1]], 1)
-    neighbors = [forward, back, np.roll(index, -1, 2), np.roll(index, 1, 2)]
-    return np.stack([x.ravel() for x in neighbors], 1)
 
 
 def sample_wall(surface: Surface, lesions: Sequence[Lesion] = ()) -> WallMesh:
-    """Samples a surface on the ring grid of its spec and gives it thickness; of the lesions, wide diverticula show.
+    """Sample a surface on the ring grid of its spec and give it thickness.
 
-    The last ring is closed.
+    Args:
+        surface: The colon.
+        lesions: Lesions of the surface; of them, wide diverticula are in the wall.
     """
-    spec, curve = surface.spec, surface.curve
+    spec = surface.spec
     arc = surface.ring_arc()
     theta = np.arange(spec.sectors) * 2 * np.pi / spec.sectors
     s, angle = np.meshgrid(arc, theta, indexing="ij")
     radius = surface.radius(s, angle, spec.wall_fold_depth, spec.wall_fold_width)
-    radius = (np.maximum(radius, spec.min_lumen_radius) + wall_bulge(surface, lesions, s, angle))[..., None]
-    center, outwards = curve.position(s), surface.outwards(s, angle)
-    outer = center + (radius + spec.wall_thickness) * outwards
-    tangent, _, _ = curve.frame(s[-2:])
-    outer[-2:] += spec.wall_thickness * np.array([0.5, 1.0])[:, None, None] * tangent
-    return build_wall(np.stack([center + radius * outwards, outer]), curve.segment(arc), arc)
+    radius = np.maximum(radius, spec.min_lumen_radius) + wall_bulge(surface, lesions, s, angle)
+    return build_wall(wall_layers(surface.curve, arc, radius, spec.wall_thickness), surface.curve.segment(arc), arc)

@@ -7,31 +7,27 @@ In reading order:
 - :mod:`settings`, :mod:`formats`, :mod:`arguments`, :mod:`preflight`, :mod:`errors`: settings, files and their checks;
 - :mod:`output` makes the folder, :mod:`pipeline` runs the stages in between;
 - :mod:`volumes` and :mod:`surfaces` read a file onto a :mod:`grid`; :mod:`openings` finds where a surface is open;
-- :mod:`cleaning` keeps the colon's pieces, which :mod:`joining` bridges;
-- :mod:`centerline` finds the path through the lumen on voxels, over :mod:`tree`, :mod:`clearance`, :mod:`ends`,
-  :mod:`leaks` and :mod:`poles`; :mod:`orientation` says which end is the anus;
-- :mod:`smooth_centerline` makes a smooth curve of the path, with :mod:`cecum_fit` at its blind end;
-- :mod:`polar` measures the lumen along the curve, :mod:`landmarks` divides it into segments;
+- :mod:`cleaning` keeps the colon's pieces, with :mod:`bridging` between them;
+- :mod:`path_search` finds the path through the lumen on voxels: :mod:`clearance` and :mod:`tree` of the lumen,
+  :mod:`colon_path` in the tree with its :mod:`anal_end`, :mod:`cecal_end` and :mod:`attached_lumen`, which
+  :mod:`cutting` cuts off, and :mod:`poles`; :mod:`orientation` says which end is the anus;
+- :mod:`measuring` makes a smooth curve of the path and measures the lumen along it: :mod:`smooth_centerline`,
+  :mod:`cecum_fit`, :mod:`bend_opening`, :mod:`polar`;
+- :mod:`placement` moves it to the stage's frame, :mod:`segment_borders` divides it into segments;
 - :mod:`wall_fitting` and :mod:`visual_fitting` fit the meshes, :mod:`report` writes figures and pictures.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.anatomy.importing.errors import ColonImportError, ImportArgumentError
 from arcgym.anatomy.importing.settings import ImportSettings
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.anatomy.importing.output import import_to_folder
 
 __all__ = ["ColonImportError", "ImportArgumentError", "ImportSettings", "import_to_folder"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import the pipeline, and with it SciPy, when it is asked for."""
-    if name != "import_to_folder":
-        raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    from arcgym.anatomy.importing.output import import_to_folder
-
-    return import_to_folder
+__getattr__ = lazy_names(__name__, {"import_to_folder": "arcgym.anatomy.importing.output"})

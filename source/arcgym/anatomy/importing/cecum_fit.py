@@ -1,9 +1,9 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The axis and the pole of the caecum, by fitting a bent bullet to its wall.
+"""Fit a bent bullet to the wall of the cecum; its axis ends at the pole.
 
-A caecum is nearly a ball: its deepest point depends on where one looks from, and folds move it by centimetres. The
-pole is the end of the axis along which the lumen runs in, so the whole pouch is fitted: a tube round an arc, closed by
+A cecum is nearly a ball: its deepest point depends on where one looks from, and folds move it by centimeters. The
+pole is the end of the axis along which the lumen runs in, so the whole cecum is fitted: a tube round an arc, closed by
 a dome.
 """
 
@@ -16,33 +16,57 @@ from scipy import ndimage
 from scipy.optimize import least_squares
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.polar import cast_rings
 
-FORWARD_BEND = 8.0
-"""How much the axis is expected to turn forwards, as the caecum does on the iliacus towards the abdominal wall [1/m].
-Weak: it decides only where the wall leaves the axis open. Set, with its weight, on generated colons."""
 
-_BEND_WEIGHT = 1.5
-_WINDOW = 2.2
-_ASPECT, _ASPECT_DEVIATION = 0.93, 0.02
-_TAPER_DEVIATION = 0.2
-_FOLD_WEIGHT = 0.35
-_ROUGHNESS = 0.003
-_MOST_POINTS = 1500
-_RADIUS = (0.008, 0.040)
-_LARGEST_TURN = 0.5
-_LARGEST_MOVE = 0.035
-_STEP = 0.003
+@dataclass(frozen=True)
+class CecumFitSettings:
+    """Expected shape of a cecum, with its weights, and how far the fit may change a path.
+
+    Our choices, set on generated colons, the five patients among them (docs/importing.md, "How well").
+    """
+
+    forward_bend: float = 8.0
+    """Expected curvature of the axis forwards, as the cecum turns on the iliacus to the abdominal wall [1/m]. Its
+    weight is small: it decides only where the wall leaves the axis open."""
+    bend_weight: float = 1.5
+    """Weight of that curvature: one over its standard deviation [m]."""
+    aspect: float = 0.93
+    """Expected length of the dome over its radius."""
+    aspect_deviation: float = 0.02
+    """Standard deviation of that ratio."""
+    taper_deviation: float = 0.2
+    """Standard deviation of the growth of the radius along the axis."""
+    window: float = 2.2
+    """Length of the cecum that is fitted, from a radius before the end of the path, in radii."""
+    fold_weight: float = 0.35
+    """Weight of wall inside of the fitted surface, where folds reach, over that of wall outside."""
+    roughness: float = 0.003
+    """Distance of the wall from the fitted surface that is expected [m]."""
+    most_points: int = 1500
+    """Number of wall voxels that are fitted."""
+    radius_range: tuple[float, float] = (0.008, 0.040)
+    """Least and largest radius of a cecum [m]."""
+    largest_turn: float = 0.5
+    """Largest shift of the axis's base, in radii; beyond, the path stays as it was."""
+    largest_move: float = 0.035
+    """Largest shift of the pole [m]; beyond, the path stays as it was."""
+    step: float = 0.003
+    """Distance of points along the path [m]."""
+
+
+SETTINGS = CecumFitSettings()
 
 
 @dataclass(frozen=True)
 class _Frame:
-    """Where a fit starts: a point on the axis, the way to the pole and two directions across it."""
+    """Start of a fit: a point on the axis, the direction to the pole and two directions across it."""
 
     base: np.ndarray
-    way: np.ndarray
+    direction: np.ndarray
     across: np.ndarray
 
 
@@ -52,10 +76,10 @@ class _Bullet:
 
     base: np.ndarray
     """Start of the axis [m], shape (3,)."""
-    way: np.ndarray
+    direction: np.ndarray
     """Its unit direction there, shape (3,)."""
     bend: np.ndarray
-    """Curvature vector, across ``way`` [1/m], shape (3,)."""
+    """Curvature vector, across ``direction`` [1/m], shape (3,)."""
     length: float
     """Length of the axis to the pole [m]."""
     radius: float
@@ -66,17 +90,17 @@ class _Bullet:
     """Length of the dome over its radius."""
 
     def position(self, t: np.ndarray) -> np.ndarray:
-        """Returns points of the axis at arc lengths ``t`` from its base [m], shape (n, 3)."""
+        """Return points of the axis at arc lengths ``t`` from its base [m], shape (n, 3)."""
         curvature = np.linalg.norm(self.bend) + 1e-9
         turned, towards = curvature * t[:, None], self.bend / curvature
-        return self.base + (np.sin(turned) * self.way + (1.0 - np.cos(turned)) * towards) / curvature
+        return self.base + (np.sin(turned) * self.direction + (1.0 - np.cos(turned)) * towards) / curvature
 
     def excess(self, points: np.ndarray) -> np.ndarray:
-        """Returns how far points are outside of the surface, negative inside [m], shape (n,)."""
+        """Return how far points are outside of the surface, negative inside [m], shape (n,)."""
         curvature = np.linalg.norm(self.bend) + 1e-9
         offset, towards = points - self.base, self.bend / curvature
-        along, inwards = offset @ self.way, offset @ towards
-        aside = offset - np.outer(along, self.way) - np.outer(inwards, towards)
+        along, inwards = offset @ self.direction, offset @ towards
+        aside = offset - np.outer(along, self.direction) - np.outer(inwards, towards)
         t = np.arctan2(along, 1.0 / curvature - inwards) / curvature
         out = np.hypot(along, 1.0 / curvature - inwards) - 1.0 / curvature
         dome = self.aspect * self.radius
@@ -85,8 +109,8 @@ class _Bullet:
         return (np.sqrt(beyond**2 + (out**2 + (aside**2).sum(1)) / radius**2) - 1.0) * radius
 
 
-def to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Leads the last of a centreline along the fitted axis of the caecum to its pole.
+def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Lead the last of a centreline along the fitted axis of the caecum to its pole.
 
     Args:
         grid: The lumen, +X right, +Y anterior, +Z cranial.
@@ -97,7 +121,7 @@ def to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
     """
     curve = Curve(points, np.linspace(0.0, 1.0, 9)[1:])
     radius = _typical_radius(grid, curve)
-    start = curve.length - (1.0 + _WINDOW) * radius
+    start = curve.length - (1.0 + SETTINGS.window) * radius
     if start < 0.2 * curve.length:
         return points
     base, last = curve.position(np.array([start, curve.length - radius]))
@@ -105,21 +129,21 @@ def to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
     bullet = _fit(_wall_points(grid, curve, start, radius), base, (last - base) / reach, reach + radius, radius)
     axis = _axis(grid, bullet)
     moved = np.linalg.norm(axis[-1] - points[-1])
-    if moved > _LARGEST_MOVE or np.linalg.norm(bullet.base - base) > _LARGEST_TURN * radius:
+    if moved > SETTINGS.largest_move or np.linalg.norm(bullet.base - base) > SETTINGS.largest_turn * radius:
         return points
     return _blended(curve, start, axis)
 
 
 def _typical_radius(grid: Grid, curve: Curve) -> float:
-    """Returns the radius between folds near the end [m]."""
-    s = np.arange(curve.length - 0.08, curve.length - 0.015, _STEP)
+    """Return the radius between folds near the end [m]."""
+    s = np.arange(curve.length - 0.08, curve.length - 0.015, SETTINGS.step)
     between = np.quantile(cast_rings(grid, curve, s, 48), 0.7, axis=1)
-    return float(np.clip(np.median(between), *_RADIUS))
+    return float(np.clip(np.median(between), *SETTINGS.radius_range))
 
 
 def _wall_points(grid: Grid, curve: Curve, start: float, radius: float) -> np.ndarray:
-    """Returns voxels at the wall, beyond an arc length and not far from the curve [m], shape (n, 3)."""
-    s = np.arange(0.0, curve.length, _STEP)
+    """Return voxels at the wall, beyond an arc length and not far from the curve [m], shape (n, 3)."""
+    s = np.arange(0.0, curve.length, SETTINGS.step)
     line = curve.position(s)
     near = line[s >= start]
     low = np.maximum(np.floor(grid.index(near.min(0) - 1.6 * radius)).astype(int), 0)
@@ -128,24 +152,24 @@ def _wall_points(grid: Grid, curve: Curve, start: float, radius: float) -> np.nd
     wall = grid.points(np.argwhere(part & ~ndimage.binary_erosion(part, border_value=1)) + low)
     distance, nearest = cKDTree(line).query(wall)
     wall = wall[(s[nearest] >= start) & (distance < 1.5 * radius)]
-    return np.random.default_rng(0).permutation(wall)[:_MOST_POINTS]
+    return np.random.default_rng(0).permutation(wall)[: SETTINGS.most_points]
 
 
-def _fit(wall: np.ndarray, base: np.ndarray, way: np.ndarray, length: float, radius: float) -> _Bullet:
-    """Returns the bullet whose surface most of the wall lies on; folds, which reach inwards, count less."""
-    across = np.linalg.svd(way[None])[2][1:]
-    frame = _Frame(base, way, across)
-    first = np.r_[np.zeros(6), length, radius, 0.0, _ASPECT]
+def _fit(wall: np.ndarray, base: np.ndarray, direction: np.ndarray, length: float, radius: float) -> _Bullet:
+    """Return the bullet whose surface most of the wall lies on; folds, which reach inwards, count less."""
+    across = np.linalg.svd(direction[None])[2][1:]
+    frame = _Frame(base, direction, across)
+    first = np.r_[np.zeros(6), length, radius, 0.0, SETTINGS.aspect]
     scale = np.r_[0.01, 0.01, 0.3, 0.3, 3.0, 3.0, 0.02, 0.01, 0.1, 0.01]
-    wanted = FORWARD_BEND * across[:, 1]
+    wanted = SETTINGS.forward_bend * across[:, 1]
 
     def residuals(values: np.ndarray) -> np.ndarray:
         excess = _bullet(frame, values).excess(wall)
-        rough = np.where(excess < 0, _FOLD_WEIGHT, 1.0) * excess / _ROUGHNESS
+        rough = np.where(excess < 0, SETTINGS.fold_weight, 1.0) * excess / SETTINGS.roughness
         expected = np.r_[
-            _BEND_WEIGHT * (values[4:6] - wanted),
-            values[8] / _TAPER_DEVIATION,
-            (values[9] - _ASPECT) / _ASPECT_DEVIATION,
+            SETTINGS.bend_weight * (values[4:6] - wanted),
+            values[8] / SETTINGS.taper_deviation,
+            (values[9] - SETTINGS.aspect) / SETTINGS.aspect_deviation,
         ]
         return np.r_[np.sqrt(np.log1p(rough**2) * 2500 / max(len(wall), 1)), expected]
 
@@ -155,25 +179,25 @@ def _fit(wall: np.ndarray, base: np.ndarray, way: np.ndarray, length: float, rad
 
 
 def _bullet(frame: _Frame, values: np.ndarray) -> _Bullet:
-    """Builds a bullet from shifts (2), turns (2) and curvatures (2) across the frame, length, radius and shape."""
-    way = frame.way + values[2:4] @ frame.across
-    way /= np.linalg.norm(way)
+    """Build a bullet from shifts (2), turns (2) and curvatures (2) across the frame, length, radius and shape."""
+    direction = frame.direction + values[2:4] @ frame.across
+    direction /= np.linalg.norm(direction)
     bend = values[4:6] @ frame.across
-    return _Bullet(frame.base + values[:2] @ frame.across, way, bend - (bend @ way) * way, *map(float, values[6:]))
+    bend = bend - (bend @ direction) * direction
+    return _Bullet(frame.base + values[:2] @ frame.across, direction, bend, *map(float, values[6:]))
 
 
 def _axis(grid: Grid, bullet: _Bullet) -> np.ndarray:
-    """Returns the axis from the bullet's base to where it leaves the lumen [m], shape (n, 3)."""
-    t = np.arange(0.0, bullet.length + bullet.radius, 0.5 * _STEP)
+    """Return the axis from the bullet's base to where it leaves the lumen [m], shape (n, 3)."""
+    t = np.arange(0.0, bullet.length + bullet.radius, 0.5 * SETTINGS.step)
     points = bullet.position(t)
     out = (grid.sample(points) < 0.5) & (t > bullet.length - bullet.radius)
     return points[: int(out.argmax())] if out.any() else points[t <= bullet.length]
 
 
 def _blended(curve: Curve, start: float, axis: np.ndarray) -> np.ndarray:
-    """Returns the curve, passing over to the axis in the axis' first half."""
-    before = curve.position(np.arange(0.0, start, _STEP))
-    arc = 0.5 * _STEP * np.arange(len(axis))
-    share = np.clip(2.0 * arc / arc[-1], 0.0, 1.0)[:, None]
-    share = share * share * (3.0 - 2.0 * share)
+    """Return the curve, passing over to the axis in the axis' first half."""
+    before = curve.position(np.arange(0.0, start, SETTINGS.step))
+    arc = 0.5 * SETTINGS.step * np.arange(len(axis))
+    share = smooth_step(0.0, 1.0, 2.0 * arc / arc[-1])[:, None]
     return np.concatenate([before, (1.0 - share) * curve.position(start + arc) + share * axis])

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Keeps the colon among the pieces of a mask: bridges gaps from end to end, drops everything else."""
+"""Keep the colon among the pieces of a mask: bridge gaps from end to end, drop everything else."""
 
 from __future__ import annotations
 
@@ -10,15 +10,24 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
+from arcgym.anatomy.importing.bridging import Bridge, Piece, join_pieces, make_piece
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.joining import Bridge, Piece, join_pieces, make_piece
 
 _SMALLEST_PIECE = 5e-7
+"""Volume below which a piece is a speck and dropped [m^3]."""
+
 _SMALLEST_COLON = 8e-5
+"""Least volume of a colon's largest piece [m^3]; our choice."""
+
 _LEAST_EXTENT = 0.15
+"""Least extent of a colon along its longest axis [m]."""
+
 _MOST_PIECES = 40
+"""Number of pieces, the largest first, that may be joined; each takes a search."""
+
 _BRIDGE_RADIUS = 0.005
+"""Radius of the bridge that is drawn through a gap [m]."""
 
 
 @dataclass
@@ -38,7 +47,7 @@ class Cleaning:
 
 
 def keep_colon(grid: Grid, max_gap: float) -> tuple[Grid, Cleaning]:
-    """Keeps the chain of pieces, joined end to end, that holds most.
+    """Keep the chain of pieces, joined end to end, that holds most.
 
     Args:
         grid: The lumen.
@@ -65,32 +74,32 @@ def keep_colon(grid: Grid, max_gap: float) -> tuple[Grid, Cleaning]:
     single = len(order) == 1
     pieces = [make_piece(grid, labels, boxes[k - 1], k, float(volume[k - 1]), single) for k in order[:_MOST_PIECES]]
     kept, bridges = join_pieces(pieces, max_gap)
-    _tell(grid, done, pieces, kept, bridges)
+    _report_pieces(grid, done, pieces, kept, bridges)
     keep = np.isin(labels, [piece.label for piece in kept])
     _check_extent(keep, grid.spacing)
     return _drawn(grid, keep, bridges), done
 
 
-def _tell(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[Piece], bridges: list[Bridge]) -> None:
+def _report_pieces(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[Piece], bridges: list[Bridge]) -> None:
     for bridge in bridges:
-        way = bridge.end - bridge.start
-        outside = float((grid.sample(bridge.start + np.linspace(0, 1, 200)[:, None] * way) < 0.5).mean())
-        told = {
-            "gap_mm": round(1e3 * outside * float(np.linalg.norm(way)), 1),
+        offset = bridge.end - bridge.start
+        outside = float((grid.sample(bridge.start + np.linspace(0, 1, 200)[:, None] * offset) < 0.5).mean())
+        figures = {
+            "gap_mm": round(1e3 * outside * float(np.linalg.norm(offset)), 1),
             "volume_ml": round(1e6 * bridge.volume, 1),
         }
-        done.bridges.append(told | {"place_mm": in_millimeters(0.5 * (bridge.start + bridge.end))})
+        done.bridges.append(figures | {"place_mm": in_millimeters(0.5 * (bridge.start + bridge.end))})
     for piece in [piece for piece in pieces if piece not in kept][:20]:
         done.dropped.append({"volume_ml": round(1e6 * piece.volume, 1), "place_mm": in_millimeters(piece.middle)})
 
 
 def in_millimeters(point: np.ndarray) -> list[int]:
-    """Returns a position in whole millimetres."""
+    """Return a position in whole millimetres."""
     return [round(1e3 * float(value)) for value in point]
 
 
 def _drawn(grid: Grid, keep: np.ndarray, bridges: list[Bridge]) -> Grid:
-    """Returns the field of what is kept, with bridges drawn and holes filled."""
+    """Return the field of what is kept, with bridges drawn and holes filled."""
     for bridge in bridges:
         start, end = (np.rint(grid.index(point)).astype(int) for point in (bridge.start, bridge.end))
         _draw_bridge(keep, start, end, _BRIDGE_RADIUS / grid.spacing)
@@ -113,11 +122,11 @@ def _check_extent(keep: np.ndarray, spacing: float) -> None:
 
 
 def _draw_bridge(mask: np.ndarray, start: np.ndarray, end: np.ndarray, radius: float) -> None:
-    """Sets the voxels within a capsule."""
+    """Set the voxels within a capsule."""
     low = np.maximum(np.minimum(start, end) - int(radius) - 2, 0)
     high = np.minimum(np.maximum(start, end) + int(radius) + 3, mask.shape)
     box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
     index = np.moveaxis(np.indices(high - low), 0, -1) + low
-    way = (end - start).astype(float)
-    share = np.clip((index - start) @ way / max(way @ way, 1e-9), 0.0, 1.0)
-    mask[box] |= np.linalg.norm(index - start - share[..., None] * way, axis=-1) <= radius
+    axis = (end - start).astype(float)
+    share = np.clip((index - start) @ axis / max(axis @ axis, 1e-9), 0.0, 1.0)
+    mask[box] |= np.linalg.norm(index - start - share[..., None] * axis, axis=-1) <= radius

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""How far the lumen's voxels are from its wall, and what it costs to pass them."""
+"""Clearance of the lumen's voxels from its wall, and the cost of passing them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,23 @@ OUTSIDE = -1.0
 """Cost of voxels that no path may enter, as scikit-image wants it."""
 
 _WIDE = (0.010, 0.016)
+"""Range of clearances below which passing costs [m]: a fold leaves more room than that."""
+
 _WIDE_SHARE = 0.6
+"""That clearance as a share of the lumen's radius nearby."""
+
 _REACH = 0.013
+"""Distance within which the lumen's radius is taken [m]."""
+
 _POWER = 6
+"""Power by which the cost rises as the clearance falls."""
+
 _DEAREST = 2e4
+"""Largest cost of a voxel."""
 
 
 def coarse_clearance(grid: Grid) -> Grid:
-    """Returns the distance to the wall [m] on voxels of twice the size, the largest of eight: nothing is cut off."""
+    """Return the distance to the wall [m] on voxels of twice the size, the largest of eight: nothing is cut off."""
     import SimpleITK as sitk
 
     mask = grid.mask
@@ -34,13 +43,13 @@ def coarse_clearance(grid: Grid) -> Grid:
 
 
 def widest_near(clearance: Grid) -> np.ndarray:
-    """Returns the largest clearance within 13 mm of each voxel [m], same shape."""
+    """Return the largest clearance within 13 mm of each voxel [m], same shape."""
     size = 2 * round(_REACH / clearance.spacing) + 1
     return maximum_filter(clearance.values, size)
 
 
 def passing_cost(clearance: Grid, widest: np.ndarray) -> np.ndarray:
-    """Returns the cost of passing each voxel, :data:`OUTSIDE` beyond the wall.
+    """Return the cost of passing each voxel, :data:`OUTSIDE` beyond the wall.
 
     It rises with the sixth power of the nearness of the wall once that is below 10 to 16 mm, or 0.6 times the lumen's
     radius: a fold leaves more room than that, a window between two touching loops does not, so that a path goes the

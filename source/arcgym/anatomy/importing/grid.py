@@ -27,14 +27,14 @@ class Grid:
         return self.values > 0.5
 
     def points(self, index: np.ndarray) -> np.ndarray:
-        """Returns positions [m] of voxel indices, both of shape (n, 3)."""
+        """Return positions [m] of voxel indices, both of shape (n, 3)."""
         return self.origin + self.spacing * np.asarray(index, float)
 
     def index(self, points: np.ndarray) -> np.ndarray:
-        """Returns fractional voxel indices of positions [m], same shape."""
+        """Return fractional voxel indices of positions [m], same shape."""
         return (np.asarray(points) - self.origin) / self.spacing
 
     def sample(self, points: np.ndarray) -> np.ndarray:
-        """Interpolates linearly at positions [m], shape (..., 3); 0 outside the grid."""
+        """Interpolate linearly at positions [m], shape (..., 3); 0 outside the grid."""
         index = np.moveaxis(self.index(points), -1, 0).astype(np.float32)
         return map_coordinates(self.values, index, order=1, mode="constant", output=np.float32)

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a surface is open: at the rectum, and perhaps at the caecum."""
+"""Openings of a surface: at the rectum, and perhaps at the cecum."""
 
 from __future__ import annotations
 
@@ -12,8 +12,13 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 _SMALLEST, _LARGEST = 0.004, 0.080
+"""Range of an opening's radius [m]."""
+
 _NEAR = 2.5
+"""Largest distance of a path from the opening it leads to, in the opening's radii."""
+
 _SPACING = 0.003
+"""Distance of the points that lead to the middle [m]."""
 
 
 @dataclass(frozen=True)
@@ -26,12 +31,12 @@ class Opening:
     """Length of its rim over two pi [m]."""
 
     def turned(self, rotation: np.ndarray) -> Opening:
-        """Returns the opening on other axes."""
+        """Return the opening on other axes."""
         return replace(self, center=rotation @ self.center)
 
 
 def find_openings(points: np.ndarray, faces: np.ndarray) -> list[Opening]:
-    """Finds the holes of a surface.
+    """Find the holes of a surface.
 
     Args:
         points: Vertices [m]; those in the same place are taken for one, shape (n, 3).
@@ -55,11 +60,11 @@ def find_openings(points: np.ndarray, faces: np.ndarray) -> list[Opening]:
     return found
 
 
-def to_opening(path: np.ndarray, openings: Sequence[Opening]) -> np.ndarray | None:
-    """Leads the end of a path to the middle of the opening there, whichever way that was cut.
+def lead_to_opening(path: np.ndarray, openings: Sequence[Opening]) -> np.ndarray | None:
+    """Lead the end of a path to the middle of the opening there, whichever way that was cut.
 
     Args:
-        path: Way to the end, evenly spaced [m], shape (n, 3).
+        path: Path to the end, evenly spaced [m], shape (n, 3).
         openings: Where the surface is open.
 
     Returns:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which end is the anus, and for surfaces which way the file's axes point: by likeness to a typical course."""
+"""Find the anal end, and for surfaces the file's axes, by likeness to a typical course."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.formats import FRAMES
+from arcgym.anatomy.polyline import arc_lengths
 
 _TYPICAL_COURSE = np.array(
     [
@@ -35,7 +36,10 @@ _TYPICAL_SHARE = np.array([0.0, 0.06, 0.115, 0.19, 0.29, 0.40, 0.487, 0.55, 0.63
 """Share of the length at which each of these points lies."""
 
 _LEAST_MARGIN = 0.08
+"""Least difference of likeness between both readings of the ends; our choice."""
+
 _LEAST_LIKENESS = 0.25
+"""Least likeness at which the ends can be told apart; our choice."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class Orientation:
 
 
 def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
-    """Tells the ends apart and finds the frame.
+    """Tell the ends apart and find the frame.
 
     Args:
         path: Course from one end to the other in the file's axes [m], shape (n, 3).
@@ -66,11 +70,11 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
         ColonImportError: Both readings of the ends, or no frame, are like a colon.
     """
     names = list(FRAMES) if frame == "auto" else [frame]
-    ways = [False] if ends_known else [False, True]
-    scores = {(name, way): likeness(path, FRAMES[name], way) for name in names for way in ways}
-    name, way = max(scores, key=lambda key: scores[key])
-    best = scores[name, way]
-    other = max((score for (_, w), score in scores.items() if w != way), default=-1.0)
+    readings = [False] if ends_known else [False, True]
+    scores = {(name, back): likeness(path, FRAMES[name], back) for name in names for back in readings}
+    name, backwards = max(scores, key=lambda key: scores[key])
+    best = scores[name, backwards]
+    other = max((score for (_, back), score in scores.items() if back != backwards), default=-1.0)
     if not ends_known and (best - other < _LEAST_MARGIN or best < _LEAST_LIKENESS):
         a, b = (", ".join(f"{1e3 * value:.0f}" for value in path[k]) for k in (0, -1))
         raise ColonImportError(
@@ -78,12 +82,12 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
             f"{other:.2f} the other",
             "Pass --anus X,Y,Z with the one that is the anus (and --frame for a surface).",
         )
-    mirror = likeness(path * [-1, 1, 1], FRAMES[name], way)
-    return Orientation(name, way, best, best - other, mirror > best + _LEAST_MARGIN)
+    mirror = likeness(path * [-1, 1, 1], FRAMES[name], backwards)
+    return Orientation(name, backwards, best, best - other, mirror > best + _LEAST_MARGIN)
 
 
 def likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:
-    """Returns the correlation with a typical course at equal shares of the length, 1 at best.
+    """Return the correlation with a typical course at equal shares of the length, 1 at best.
 
     Args:
         path: Course [m], shape (n, 3).
@@ -91,7 +95,7 @@ def likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:
         backwards: Whether it is read from its last point.
     """
     course = (path[::-1] if backwards else path) @ rotation.T
-    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(course, axis=0), axis=1))]
+    arc = arc_lengths(course)
     share = np.linspace(0.0, 1.0, 60)
     a = np.stack([np.interp(share, arc / arc[-1], course[:, k]) for k in range(3)], 1)
     b = np.stack([np.interp(share, _TYPICAL_SHARE, _TYPICAL_COURSE[:, k]) for k in range(3)], 1)

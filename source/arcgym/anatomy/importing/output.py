@@ -17,14 +17,14 @@ from arcgym.anatomy.stage import write_colon
 
 
 def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite: bool = False) -> dict[str, Any]:
-    """Imports a colon into a folder with ``colon.usda``, what it refers to, ``report.json`` and ``report.png``.
+    """Import a colon into a folder with ``colon.usda``, what it refers to, ``report.json`` and ``report.png``.
 
     Everything is made in a folder beside it that is renamed at the end; when the import fails, nothing stays.
 
     Args:
         path: Label volume or surface.
         out: Folder to make.
-        settings: What the caller knows better.
+        settings: Import settings.
         overwrite: Replaces a folder that is empty or was made by an import.
 
     Returns:
@@ -41,8 +41,8 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
         made.mkdir()
         imported = import_colon(path, settings, made)
         write_colon(imported.stage, made / "colon.usda")
-        told = write_report(imported, made)
+        report = write_report(imported, made)
         if out.exists():
             shutil.rmtree(out)
         made.rename(out)
-    return told
+    return report

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.blending import soft_limit
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.importing.grid import Grid
 
@@ -15,24 +16,27 @@ REACH = 0.060
 """Length of the rays [m]."""
 
 _STEP = 0.0006
+"""Distance of the samples along a ray [m]."""
+
 _BEND_LIMIT = 0.85
+"""Largest radius over the bend's on its inside."""
+
 _CHUNK = 200
+"""Cross-sections that are cast at once, which bounds the memory."""
 
 
 def cast_rings(grid: Grid, curve: Curve, s: np.ndarray, sectors: int) -> np.ndarray:
-    """Casts rays in the plane across the curve at each ``s``.
+    """Cast rays in the plane across the curve at each ``s``.
 
     Returns:
         Distance to where the lumen ends [m], shape (n, sectors); sector j stands at ``2 pi j / sectors``.
     """
     theta = np.arange(sectors) * 2 * np.pi / sectors
-    _, normal, binormal = curve.frame(s)
-    outwards = np.cos(theta)[:, None] * normal[:, None] + np.sin(theta)[:, None] * binormal[:, None]
-    return cast(grid, curve.position(s), outwards)
+    return cast(grid, curve.position(s), curve.outwards(s[:, None], theta))
 
 
 def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Casts rays from centres, shape (n, 3), in unit directions, shape (n, k, 3); returns lengths [m], (n, k)."""
+    """Cast rays from centres, shape (n, 3), in unit directions, shape (n, k, 3); returns lengths [m], (n, k)."""
     rho = _STEP * np.arange(round(REACH / _STEP) + 1)
     out = np.zeros(directions.shape[:2])
     for start in range(0, len(centers), _CHUNK):
@@ -52,19 +56,18 @@ def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
 def bounded(
     curve: Curve, s: np.ndarray, radius: np.ndarray, wall: float = 0.0, share: float = _BEND_LIMIT
 ) -> np.ndarray:
-    """Limits radii softly on the inside of bends, where a swept surface would fold over; shape (n, sectors)."""
+    """Limit radii softly on the inside of bends, where a swept surface would fold over; shape (n, sectors)."""
     theta = np.arange(radius.shape[1]) * 2 * np.pi / radius.shape[1]
     _, normal, binormal = curve.frame(s)
     bend = curve.interpolate(s, curve.curvature_vector)
     across = np.stack([(bend * normal).sum(1), (bend * binormal).sum(1)], 1)
     towards = across[:, :1] * np.cos(theta) + across[:, 1:] * np.sin(theta)
     limit = np.where(towards > 1e-3, share / np.maximum(towards, 1e-3) - wall, 1.0)
-    excess = np.maximum(radius - 0.8 * limit, 0.0)
-    return np.minimum(radius, 0.8 * limit) + 0.2 * limit * np.tanh(excess / (0.2 * limit))
+    return soft_limit(radius, limit)
 
 
 def own_loop(curve: Curve, s: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Cuts rays that run through a window or a leak: at the border to a neighbouring loop, and where they stick out.
+    """Cut rays that run through a window or a leak: at the border to a neighbouring loop, and where they stick out.
 
     The border between two loops is the power plane of their mean circles, moved out by a tenth.
     """
@@ -76,7 +79,7 @@ def own_loop(curve: Curve, s: np.ndarray, radius: np.ndarray) -> np.ndarray:
 
 
 def _loop_border(curve: Curve, s: np.ndarray, typical: np.ndarray, sectors: int) -> np.ndarray:
-    """Returns the distance along each ray to the border with other loops [m], shape (n, sectors)."""
+    """Return the distance along each ray to the border with other loops [m], shape (n, sectors)."""
     centers, theta = curve.position(s), np.arange(sectors) * 2 * np.pi / sectors
     _, normal, binormal = curve.frame(s)
     limit = np.full((len(s), sectors), REACH)

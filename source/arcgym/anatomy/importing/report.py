@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an import tells beside the stage: ``report.json`` and a page of pictures."""
+"""Report of an import beside the stage: figures in ``report.json`` and a page of pictures."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _COLORS = ("#4c72b0", "#dd8452", "#55a868", "#c44e52", "#8172b3", "#937860", "#d
 
 
 def figures(imported: ImportedColon) -> dict[str, Any]:
-    """Returns everything there is to tell about an import, ready for JSON."""
+    """Return all figures of an import, ready for JSON."""
     stage = imported.stage
     bounds = stage.segment_bounds()
     radii = ring_radii(stage.wall)
@@ -50,11 +50,11 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
 
 
 def write_report(imported: ImportedColon, folder: Path) -> dict[str, Any]:
-    """Writes ``report.json`` and ``report.png`` and returns the figures."""
-    told = figures(imported)
-    (folder / REPORT_NAME).write_text(json.dumps(told, indent=2) + "\n")
+    """Write ``report.json`` and ``report.png`` and return the figures."""
+    report = figures(imported)
+    (folder / REPORT_NAME).write_text(json.dumps(report, indent=2) + "\n")
     _draw_page(imported, folder / PAGE_NAME)
-    return told
+    return report
 
 
 def _mm(value: float) -> float:
@@ -72,13 +72,13 @@ def _draw_page(imported: ImportedColon, path: Path) -> None:
         _draw_projection(figure.add_subplot(views[0, column]), imported, axes)
     _draw_radius(figure.add_subplot(views[1, :]), imported.stage)
     _draw_unrolled(figure.add_subplot(views[2, :]), imported.stage)
-    told = "\n".join(_cleaning_lines(imported.report["cleaning"]))
-    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm\n{told}", fontsize=9)
+    lines = "\n".join(_cleaning_lines(imported.report["cleaning"]))
+    figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm\n{lines}", fontsize=9)
     figure.savefig(path, dpi=110)
 
 
 def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
-    """Returns in words what was bridged, dropped and cut off, at most six lines."""
+    """Return in words what was bridged, dropped and cut off, at most six lines."""
     lines = [f"bridged a gap of {b['gap_mm']:.0f} mm at {b['place_mm']}" for b in cleaning["bridges"]]
     for cut in cleaning["cut"]:
         size = f", {cut['length_mm']} mm long, {cut['caliber_mm']:.0f} mm wide" if "length_mm" in cut else ""
@@ -89,7 +89,7 @@ def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
 
 
 def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) -> None:
-    """Draws the cleaned lumen seen through, with the centreline in the colours of its segments."""
+    """Draw the cleaned lumen seen through, with the centreline in the colours of its segments."""
     grid = imported.grid
     (hidden,) = set(range(3)) - set(axes)
     depth = grid.values.sum(hidden) * grid.spacing
@@ -124,7 +124,7 @@ def _draw_radius(axis: Any, stage: ColonStage) -> None:
 
 
 def _draw_unrolled(axis: Any, stage: ColonStage) -> None:
-    """Draws the visual surface cut open along its seam: distance from the centreline, dark on folds."""
+    """Draw the visual surface cut open along its seam: distance from the centreline, dark on folds."""
     visual, line, wall = stage.visual, stage.centerline, stage.wall
     arc = (visual.skin_weights * wall.ring_arc[wall.ring[visual.skin_indices]]).sum(1)
     columns = int(np.argmax(arc > arc[0]))

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Import settings: what may be told about a scan, the wall's grid and the bounds of the lumen."""
+"""Import settings: facts about a scan, the grid of the wall, and the bounds of the lumen."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class ImportSettings:
     max_gap: float = 0.05
     """Longest collapsed or fluid-filled stretch to bridge [m]."""
     ring_spacing: float = ColonSpec.ring_spacing
-    """Distance of the wall's rings [m], that of generated colons unless told otherwise."""
+    """Distance of the wall's rings [m], by default that of generated colons."""
     sectors: int = ColonSpec.sectors
     """Wall vertices around a ring, likewise; more suit a wide colon: 12 are 13 mm apart where it is 50 mm wide."""
     wall_thickness: float = ColonSpec.wall_thickness

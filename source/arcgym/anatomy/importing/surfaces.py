@@ -14,12 +14,17 @@ from arcgym.anatomy.importing.formats import UNITS
 from arcgym.anatomy.importing.grid import Grid
 
 _COLON_EXTENT = (0.18, 0.80)
+"""Least and largest extent of a colon [m], by which the unit is chosen."""
+
 _LARGEST_HOLE = 0.08
+"""Radius of the largest hole that is closed [m]."""
+
 _MARGIN = 0.006
+"""Room that is left round the lumen [m]."""
 
 
 def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel: float) -> tuple[Grid, str]:
-    """Reads a surface and fills it.
+    """Read a surface and fill it.
 
     Args:
         path: File with one of :data:`arcgym.anatomy.importing.formats.SURFACE_SUFFIXES`.
@@ -38,7 +43,7 @@ def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel:
 
 
 def load_surface(path: Path, units: str, scale: tuple[float, ...] | None) -> tuple[np.ndarray, np.ndarray, str]:
-    """Reads a surface: vertices [m], triangles and the unit that was used; arguments as for :func:`read_surface`."""
+    """Read a surface: vertices [m], triangles and the unit that was used; arguments as for :func:`read_surface`."""
     points, faces = _load_vtk(path) if path.suffix in (".vtk", ".vtp") else _load_mesh(path)
     if len(faces) < 100:
         raise ColonImportError(f"{path} holds {len(faces)} triangles", "Pass a closed surface of the colon's lumen.")
@@ -93,7 +98,7 @@ def _guess_unit(path: Path, points: np.ndarray) -> str:
 
 
 def fill_surface(points: np.ndarray, faces: np.ndarray, voxel: float) -> Grid:
-    """Returns the inside of a surface: vertices [m], triangles, edge of the voxels [m]."""
+    """Return the inside of a surface: vertices [m], triangles, edge of the voxels [m]."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonDataModel import vtkImageData
     from vtkmodules.vtkImagingStencil import vtkImageStencilToImage, vtkPolyDataToImageStencil
@@ -119,7 +124,7 @@ def fill_surface(points: np.ndarray, faces: np.ndarray, voxel: float) -> Grid:
 
 
 def _closed(points: np.ndarray, faces: np.ndarray) -> Any:
-    """Returns the surface as VTK polygons, vertices merged and holes up to an open rectum's size closed."""
+    """Return the surface as VTK polygons, vertices merged and holes up to an open rectum's size closed."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The lumen as a tree of centred paths: the colon, and whatever hangs on it."""
+"""The lumen as a tree of centered paths: the colon, and whatever hangs on it."""
 
 from __future__ import annotations
 
@@ -17,10 +17,19 @@ from arcgym.anatomy.importing.clearance import passing_cost, widest_near
 from arcgym.anatomy.importing.grid import Grid
 
 _RIDGE = 0.45
+"""Least clearance of a branch's tip as a share of the largest nearby: tips lie in the middle of the lumen."""
+
 _COVER = 1.35
+"""Radius round a path that it covers, over the largest clearance nearby."""
+
 _COVER_MORE = 0.008
+"""Radius that is covered in addition [m]."""
+
 _LEAST_BRANCH = 0.012
+"""Length by which a branch is longer than the lumen is wide [m]."""
+
 _MOST_BRANCHES = 80
+"""Number of branches after which the search ends."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +39,7 @@ class LumenTree:
     points: np.ndarray
     """Positions [m], shape (n, 3)."""
     parent: np.ndarray
-    """Node before each on the way from the root, the root's own is itself, shape (n,)."""
+    """Node before each on the path from the root, the root's own is itself, shape (n,)."""
     clearance: np.ndarray
     """Distance to the wall [m], shape (n,)."""
     widest: np.ndarray
@@ -47,30 +56,30 @@ class LumenTree:
         """Distance to the parent [m], shape (n,)."""
         return np.linalg.norm(self.points - self.points[self.parent], axis=1)
 
-    def up(self, node: int) -> list[int]:
-        """Returns the nodes from ``node`` to the root."""
-        way = [node]
-        while self.parent[way[-1]] != way[-1]:
-            way.append(int(self.parent[way[-1]]))
-        return way
+    def to_root(self, node: int) -> list[int]:
+        """Return the nodes from ``node`` to the root."""
+        path = [node]
+        while self.parent[path[-1]] != path[-1]:
+            path.append(int(self.parent[path[-1]]))
+        return path
 
     def between(self, first: int, last: int) -> np.ndarray:
-        """Returns the nodes on the way from one node to another, shape (n,)."""
-        a, b = self.up(first), self.up(last)
+        """Return the nodes on the path from one node to another, shape (n,)."""
+        a, b = self.to_root(first), self.to_root(last)
         shared = set(a)
         meet = next(k for k, node in enumerate(b) if node in shared)
         return np.array(a[: a.index(b[meet])] + b[: meet + 1][::-1])
 
 
 def caliber(clearance: np.ndarray, points: np.ndarray, reach: float = 0.012) -> np.ndarray:
-    """Returns the lumen radius between folds along a path [m]: the largest clearance nearby, smoothed, shape (n,)."""
+    """Return the lumen radius between folds along a path [m]: the largest clearance nearby, smoothed, shape (n,)."""
     step = max(float(np.linalg.norm(np.diff(points, axis=0), axis=1).mean()) if len(points) > 1 else 1.0, 1e-5)
     widest = maximum_filter1d(clearance, 2 * round(reach / step) + 1, mode="nearest")
     return gaussian_filter1d(widest, 0.5 * reach / step, mode="nearest")
 
 
 def lumen_tree(clearance: Grid, given: Sequence[np.ndarray] = ()) -> LumenTree:
-    """Covers a lumen with paths, the longest first, until nothing sticks out (after Sato et al., TEASAR, 2000).
+    """Cover a lumen with paths, the longest first, until nothing sticks out (after Sato et al., TEASAR, 2000).
 
     Args:
         clearance: Distance to the wall [m], of one connected lumen.
@@ -116,13 +125,13 @@ class _Growth:
         self.tips: list[int] = []
 
     def beyond(self, path: list[tuple[int, ...]]) -> np.ndarray:
-        """Returns the part of a path from the last voxel that the tree has, shape (n, 3)."""
+        """Return the part of a path from the last voxel that the tree has, shape (n, 3)."""
         known = max(k for k, voxel in enumerate(path) if tuple(voxel) in self.number)
         return np.array(path[known:])
 
-    def add(self, way: np.ndarray) -> None:
-        """Adds a branch; its first voxel is in the tree."""
-        voxels = [tuple(voxel) for voxel in way.tolist()]
+    def add(self, path: np.ndarray) -> None:
+        """Add a branch; its first voxel is in the tree."""
+        voxels = [tuple(voxel) for voxel in path.tolist()]
         for before, voxel in pairwise(voxels):
             self.number[voxel] = len(self.nodes)
             self.nodes.append(voxel)
@@ -131,16 +140,16 @@ class _Growth:
 
 
 def _passes_through(tree: LumenTree) -> bool:
-    """Tells whether branches leave the root in at least two directions, so that the root is no tip."""
+    """Return whether branches leave the root in at least two directions, so that the root is no tip."""
     if len(tree.tips) < 2:
         return False
     reach = 2.0 * tree.clearance[0] + _LEAST_BRANCH
-    ways = []
+    found = []
     for tip in tree.tips:
-        way = tree.points[tree.up(tip)] - tree.points[0]
-        out = way[np.linalg.norm(way, axis=1) > reach]
-        ways += [out[-1] / np.linalg.norm(out[-1])] if len(out) else []
-    if len(ways) < 2:
+        offset = tree.points[tree.to_root(tip)] - tree.points[0]
+        out = offset[np.linalg.norm(offset, axis=1) > reach]
+        found += [out[-1] / np.linalg.norm(out[-1])] if len(out) else []
+    if len(found) < 2:
         return False
-    directions = np.array(ways)
+    directions = np.array(found)
     return bool((directions @ directions.T).min() < 0.3)

@@ -8,21 +8,30 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.generator.visual import dome_texture, grid_triangles, skin_to_rings, smooth_normals, tube_texture
 from arcgym.anatomy.importing.polar import bounded
 from arcgym.anatomy.importing.wall_fitting import FittedWall
 from arcgym.anatomy.measures import face_normals
+from arcgym.anatomy.meshing.surface_grid import (
+    dome_texture,
+    grid_triangles,
+    skin_to_rings,
+    smooth_normals,
+    tube_texture,
+)
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage.types import VisualMesh
 
 _LEAST_RADIUS = 0.005
+"""Least distance of the visual surface from the centerline [m]."""
+
 _DOME_STEPS = 10
+"""Rows of the dome of the cecum."""
 
 
 def fit_visual(
     curve: Curve, s: np.ndarray, radius: np.ndarray, dome: np.ndarray, fitted: FittedWall, spacing: float, columns: int
 ) -> VisualMesh:
-    """Samples the measured surface, moved along with the wall where that was widened or narrowed.
+    """Sample the measured surface, moved along with the wall where that was widened or narrowed.
 
     Args:
         curve: Centreline.
@@ -66,7 +75,7 @@ def fit_visual(
 def _texture_coordinates(
     curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndarray, rho: np.ndarray
 ) -> np.ndarray:
-    """Returns u and v of tube and dome, each stretch in the band of its vessels, shape (M, 2)."""
+    """Return u and v of tube and dome, each stretch in the band of its vessels, shape (M, 2)."""
     bounds = {name: curve.bounds(name) for name in SEGMENTS}
     s, angle = (grid.ravel() for grid in np.meshgrid(rows, theta, indexing="ij"))
     rim = float(rho[len(rows)].mean())
@@ -76,7 +85,7 @@ def _texture_coordinates(
 
 
 def _resampled(s: np.ndarray, values: np.ndarray, rows: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Interpolates values on a grid that closes around, shape (len(rows), len(theta))."""
+    """Interpolate values on a grid that closes around, shape (len(rows), len(theta))."""
     at = np.interp(rows, s, np.arange(len(s)))
     column = theta * values.shape[1] / (2 * np.pi)
     index = np.stack(np.meshgrid(at, column, indexing="ij"))
@@ -89,12 +98,11 @@ def _change(fitted: FittedWall, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
 
 
 def _positions(curve: Curve, rows: np.ndarray, polar: np.ndarray, theta: np.ndarray, rho: np.ndarray) -> np.ndarray:
-    """Returns the vertices of tube and dome [m], those of seam and rim the same twice, shape (M, 3), float32."""
+    """Return the vertices of tube and dome [m], those of seam and rim the same twice, shape (M, 3), float32."""
     theta = np.where(theta > 2 * np.pi - 1e-9, 0.0, theta)
     center = np.r_[rows, np.full(len(polar), rows[-1])]
     lift = np.r_[np.zeros(len(rows)), polar]
-    tangent, normal, binormal = curve.frame(center)
-    flat = np.cos(theta)[:, None] * normal[:, None] + np.sin(theta)[:, None] * binormal[:, None]
-    way = np.cos(lift)[:, None, None] * flat + np.sin(lift)[:, None, None] * tangent[:, None]
-    points = curve.position(center)[:, None] + rho[..., None] * way
+    tangent, flat = curve.frame(center)[0], curve.outwards(center[:, None], theta)
+    direction = np.cos(lift)[:, None, None] * flat + np.sin(lift)[:, None, None] * tangent[:, None]
+    points = curve.position(center)[:, None] + rho[..., None] * direction
     return points.reshape(-1, 3).astype(np.float32)

@@ -18,15 +18,22 @@ from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
 
 _PLAUSIBLE_SPACING = (0.2, 6.0)
+"""Least and largest voxel spacing of a CT [mm]."""
+
 _MARGIN = 0.006
+"""Room that is left round the lumen [m]."""
+
 _MOST_LABELS = 150
+"""Number of different values above which a volume is taken for grey values."""
+
 _SAMPLE = 997
+"""Every how many voxels these are looked for; a prime."""
 
 
 def read_volume(
     path: Path, label: int | tuple[int, ...] | None, spacing: tuple[float, ...] | None, voxel: float
 ) -> Grid:
-    """Reads a label volume.
+    """Read a label volume.
 
     Args:
         path: File with one of :data:`arcgym.anatomy.importing.formats.VOLUME_SUFFIXES`.
@@ -87,7 +94,7 @@ def _check_size(path: Path, image: Any) -> None:
 
 
 def _check_packing(path: Path) -> None:
-    """Unpacks a file to its end: ITK fills what is missing with zeros and says nothing."""
+    """Unpack a file to its end: ITK fills what is missing with zeros and says nothing."""
     try:
         with gzip.open(path, "rb") as packed:
             while packed.read(1 << 24):
@@ -97,7 +104,7 @@ def _check_packing(path: Path) -> None:
 
 
 def _binarise(image: Any, path: Path, label: int | tuple[int, ...] | None) -> Any:
-    """Returns the lumen as a float image of 0 and 1, cut to its bounding box, in the same physical place."""
+    """Return the lumen as a float image of 0 and 1, cut to its bounding box, in the same physical place."""
     import SimpleITK as sitk
 
     values = sitk.GetArrayViewFromImage(image)
@@ -116,7 +123,7 @@ def _binarise(image: Any, path: Path, label: int | tuple[int, ...] | None) -> An
 
 
 def _chosen(values: np.ndarray, path: Path, label: int | tuple[int, ...] | None) -> np.ndarray:
-    """Returns which voxels are the colon's; refuses grey values, several labels and none."""
+    """Return which voxels are the colon's; refuses grey values, several labels and none."""
     sample = np.unique(values.ravel()[::_SAMPLE])
     if len(sample) > _MOST_LABELS:
         raise ColonImportError(
@@ -139,7 +146,7 @@ def _chosen(values: np.ndarray, path: Path, label: int | tuple[int, ...] | None)
 
 
 def _resample(image: Any, voxel: float) -> Grid:
-    """Resamples onto axes right, anterior, cranial; ITK's are left, posterior, cranial and in millimetres."""
+    """Resample onto axes right, anterior, cranial; ITK's are left, posterior, cranial and in millimetres."""
     import SimpleITK as sitk
 
     ends = [(0, size - 1) for size in image.GetSize()]

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fits the simulated wall, a grid of rings and sectors, to the measured radii."""
+"""Fit the simulated wall, a grid of rings and sectors, to the measured radii."""
 
 from __future__ import annotations
 
@@ -11,20 +11,32 @@ from scipy.ndimage import gaussian_filter
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.generator.wall import LAST_RING_GAP, build_wall
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.polar import bounded
 from arcgym.anatomy.importing.settings import ImportSettings
 from arcgym.anatomy.measures import tet_quality
+from arcgym.anatomy.meshing.wall import build_wall, ring_arcs, wall_layers
 from arcgym.anatomy.stage.types import WallMesh
 from arcgym.anatomy.validation.mesh_checks import boundary_faces, find_crossings
 
 _LEAST_QUALITY = 0.06
+"""Quality of an element below which the wall is narrowed there; half more than a valid wall needs."""
+
 _ITERATIONS = 120
+"""Number of times that the wall is narrowed where it does not fit."""
+
 _CROSSING_EVERY = 8
+"""Iterations between two searches for self-crossings, which are slow."""
+
 _CROSSING_WEIGHT = 2.0
+"""How much more the wall is narrowed at a crossing than elsewhere."""
+
 _SHRINK = 0.93
+"""Radius after an iteration over that before, where the wall does not fit."""
+
 _LEAST_RADIUS = 0.0074
+"""Radius below which the wall is not narrowed [m]; a head has a radius of 6.6 mm."""
+
 _BEND_LIMIT = 0.72
 """Curvature times radius of the outer wall on the inside of bends: leaves 3.5 mm between rings 12.5 mm apart."""
 
@@ -44,7 +56,7 @@ class FittedWall:
 
 
 def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSettings) -> FittedWall:
-    """Fits the wall.
+    """Fit the wall.
 
     Args:
         curve: Centreline.
@@ -55,12 +67,11 @@ def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSe
     Raises:
         ColonImportError: No wall without inverted elements was found.
     """
-    end = curve.length - LAST_RING_GAP
-    arc = np.linspace(0.0, end, round(end / settings.ring_spacing) + 1)
+    arc = ring_arcs(curve.length, settings.ring_spacing)
     measured = _on_rings(s, radius, arc, settings.sectors)
     wanted = bounded(curve, arc, measured, settings.wall_thickness, _BEND_LIMIT)
     inner = np.maximum(wanted, settings.min_lumen_radius)
-    wall = _build(curve, arc, inner, settings)
+    wall = _build(curve, arc, inner, settings.wall_thickness)
     for turn in range(_ITERATIONS):
         tight = np.maximum(_too_near(wall, settings), _inverted(wall))
         if turn % _CROSSING_EVERY == 0 or not tight.any():
@@ -70,7 +81,7 @@ def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSe
         soft = gaussian_filter(tight, (0.6, 0.8), mode=("nearest", "wrap"))
         floor = min(settings.min_lumen_radius, _LEAST_RADIUS)
         inner = np.maximum(inner * (1.0 - (1.0 - _SHRINK) * np.maximum(soft, tight)), floor)
-        wall = _build(curve, arc, inner, settings)
+        wall = _build(curve, arc, inner, settings.wall_thickness)
     quality = float(tet_quality(wall.points, wall.tets).min())
     if quality <= 0.0:
         at = float(arc[wall.ring[wall.tets[tet_quality(wall.points, wall.tets).argmin()]].min()])
@@ -83,7 +94,7 @@ def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSe
 
 
 def _on_rings(s: np.ndarray, radius: np.ndarray, arc: np.ndarray, sectors: int) -> np.ndarray:
-    """Averages measured radii about each vertex of the ring grid: a coarse grid would turn sharp folds into spikes."""
+    """Average measured radii about each vertex of the ring grid: a coarse grid would turn sharp folds into spikes."""
     step, columns = s[1] - s[0], radius.shape[1]
     soft = gaussian_filter(
         radius, (0.35 * (arc[1] - arc[0]) / step, 0.35 * columns / sectors), mode=("nearest", "wrap")
@@ -96,19 +107,12 @@ def _on_rings(s: np.ndarray, radius: np.ndarray, arc: np.ndarray, sectors: int) 
     return (1 - share) * wrapped[:, low] + share * wrapped[:, low + 1]
 
 
-def _build(curve: Curve, arc: np.ndarray, inner: np.ndarray, settings: ImportSettings) -> WallMesh:
-    theta = np.arange(settings.sectors) * 2 * np.pi / settings.sectors
-    tangent, normal, binormal = curve.frame(arc)
-    outwards = np.cos(theta)[:, None] * normal[:, None] + np.sin(theta)[:, None] * binormal[:, None]
-    center = curve.position(arc)[:, None]
-    outer = center + (inner + settings.wall_thickness)[..., None] * outwards
-    outer[-2:] += settings.wall_thickness * np.array([0.5, 1.0])[:, None, None] * tangent[-2:, None]
-    layers = np.stack([center + inner[..., None] * outwards, outer])
-    return build_wall(layers, curve.segment(arc), arc)
+def _build(curve: Curve, arc: np.ndarray, inner: np.ndarray, thickness: float) -> WallMesh:
+    return build_wall(wall_layers(curve, arc, inner, thickness), curve.segment(arc), arc)
 
 
 def _inverted(wall: WallMesh) -> np.ndarray:
-    """Marks the grid vertices of badly shaped elements with 1, shape (R, S)."""
+    """Mark the grid vertices of badly shaped elements with 1, shape (R, S)."""
     bad = wall.tets[tet_quality(wall.points, wall.tets) < _LEAST_QUALITY]
     grid = wall.num_rings * wall.num_sectors
     mark = np.zeros(grid)
@@ -117,7 +121,7 @@ def _inverted(wall: WallMesh) -> np.ndarray:
 
 
 def _crossing(wall: WallMesh) -> np.ndarray:
-    """Marks the grid vertices of edges that pass through faces, and of these faces, with 2, shape (R, S)."""
+    """Mark the grid vertices of edges that pass through faces, and of these faces, with 2, shape (R, S)."""
     grid = wall.num_rings * wall.num_sectors
     mark = np.zeros(grid)
     mark[find_crossings(wall.points, boundary_faces(wall.tets)).ravel() % grid] = _CROSSING_WEIGHT
@@ -125,13 +129,13 @@ def _crossing(wall: WallMesh) -> np.ndarray:
 
 
 def _too_near(wall: WallMesh, settings: ImportSettings) -> np.ndarray:
-    """Marks the grid vertices that are too near another loop with 1, shape (R, S)."""
+    """Mark the grid vertices that are too near another loop with 1, shape (R, S)."""
     shape = (wall.num_rings, wall.num_sectors)
     outer = wall.points[wall.layer == 1].reshape(*shape, 3).astype(float)
     middle = outer.mean(1)
     width = np.linalg.norm(outer - middle[:, None], axis=2).max(1)
-    way = np.gradient(middle, axis=0)
-    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
+    tangent = np.gradient(middle, axis=0)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-9)
     points, ring = outer.reshape(-1, 3), np.repeat(np.arange(shape[0]), shape[1])
     mark = np.zeros(len(points))
     pairs = cKDTree(points).query_pairs(1.6 * settings.ring_spacing, output_type="ndarray")
@@ -141,7 +145,7 @@ def _too_near(wall: WallMesh, settings: ImportSettings) -> np.ndarray:
     a, b = a[other], b[other]
     near = np.linalg.norm(points[a] - points[b], axis=1) < settings.clearance
     offset = points[a] - middle[ring[b]]
-    across = offset - np.einsum("ij,ij->i", offset, way[ring[b]])[:, None] * way[ring[b]]
+    across = offset - np.einsum("ij,ij->i", offset, tangent[ring[b]])[:, None] * tangent[ring[b]]
     own = np.linalg.norm(points[b] - middle[ring[b]], axis=1)
     inside = np.linalg.norm(across, axis=1) < own + 0.5 * settings.clearance
     mark[a[near | inside]] = 1.0

@@ -1,6 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Colon stages: the data classes and the two functions that write and read them as USD."""
+"""Colon stages: data classes, and the functions that write and read them as USD.
+
+In reading order: :mod:`types`, the arrays of a colon; :mod:`layout`, their names in a file; :mod:`writer`;
+:mod:`reader`, which says what is wrong with a file.
+"""
 
 from __future__ import annotations
 

@@ -15,10 +15,11 @@ from arcgym.anatomy.stage import layout
 from arcgym.anatomy.stage.types import Centerline, ColonStage, StageError, TissueMaterial, VisualMesh, WallMesh
 
 _REMAKE = "Remake the stage with scripts/tools/author_assets.py or write it with arcgym.anatomy.write_colon"
+"""Advice where a stage is broken."""
 
 
 def read_colon(path: str | Path) -> ColonStage:
-    """Reads and checks a colon stage.
+    """Read and check a colon stage.
 
     Args:
         path: The stage, usually ``assets/usd/colon_<n>/colon.usda``.
@@ -88,7 +89,7 @@ class _Reader:
         return value
 
     def array(self, path: str, name: str, width: int = 1, rows: int | None = None) -> np.ndarray:
-        """Reads an array as (rows, width), or (rows,) for width 1, and checks its length and that it is finite."""
+        """Read an array as (rows, width), or (rows,) for width 1, and check its length and that it is finite."""
         value = np.asarray(self.value(path, name))
         kind = np.int32 if value.dtype.kind in "iu" else np.float32
         if value.size % width or (rows is not None and value.size != rows * width):
@@ -100,7 +101,7 @@ class _Reader:
         return value.reshape(-1, width) if width > 1 else value.reshape(-1)
 
     def indices(self, path: str, name: str, width: int, count: int, rows: int | None = None) -> np.ndarray:
-        """Reads an index array and checks that every index points at one of ``count`` vertices."""
+        """Read an index array and check that every index points at one of ``count`` vertices."""
         value = self.array(path, name, width, rows)
         if value.size and (value.min() < 0 or value.max() >= count):
             raise self.error(path, name, f"indices from {value.min()} to {value.max()}, expected 0 to {count - 1}")
@@ -115,7 +116,7 @@ class _Reader:
 
 
 def _list_stages(path: Path) -> str:
-    """Lists the stages closest above the missing file."""
+    """List the stages closest above the missing file."""
     for folder in list(path.parents)[:4]:
         stages = sorted(folder.glob("**/colon.usda"))[:10] if folder.is_dir() and folder.parent != folder else []
         if stages:

@@ -20,7 +20,7 @@ class StageError(ValueError):
     """A stage file cannot be used; the message names file, prim and attribute, what was found and how to mend it."""
 
     def __init__(self, path: str | Path, prim: str, attribute: str, found: str, mend: str) -> None:
-        """Builds the message from its five parts; an empty prim or attribute is left out."""
+        """Build the message from its five parts; an empty prim or attribute is left out."""
         where = "".join([f", prim {prim}" if prim else "", f", attribute '{attribute}'" if attribute else ""])
         super().__init__(f"{path}{where}: {found}. {mend}")
 
@@ -125,7 +125,7 @@ class ColonStage:
     albedo_texture: Path
     """Colour of the mucosa, periodic in both directions."""
     detail_texture: Path
-    """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.generator.texture`)."""
+    """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.mucosa.texture`)."""
     metadata: dict[str, Any] = field(default_factory=dict)
     """Provenance, licence, patient, frame."""
 
@@ -135,17 +135,17 @@ class ColonStage:
         return float(self.centerline.arc[-1])
 
     def segment_bounds(self) -> dict[str, tuple[float, float]]:
-        """Returns arc length at start and end [m] of each segment that the colon has."""
+        """Return arc length at start and end [m] of each segment that the colon has."""
         arc, code = self.centerline.arc, self.centerline.segment
         starts = {SEGMENTS[k]: float(arc[np.argmax(code == k)]) for k in dict.fromkeys(code.tolist())}
         ends = [*list(starts.values())[1:], self.length]
         return {name: (start, end) for (name, start), end in zip(starts.items(), ends, strict=True)}
 
     def segment_at(self, s: float) -> str:
-        """Returns the segment at arc length ``s`` [m]; beyond either end, the last one there."""
+        """Return the segment at arc length ``s`` [m]; beyond either end, the last one there."""
         bounds = self.segment_bounds()
         return next((name for name, (_, end) in bounds.items() if s < end), list(bounds)[-1])
 
     def segment_nodes(self, name: str) -> np.ndarray:
-        """Returns the wall vertices of a segment, shape (n,), int."""
+        """Return the wall vertices of a segment, shape (n,), int."""
         return np.flatnonzero(self.wall.segment == segment_index(name))

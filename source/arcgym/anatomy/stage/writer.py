@@ -15,10 +15,11 @@ from arcgym.anatomy.stage import layout
 from arcgym.anatomy.stage.types import Centerline, ColonStage, TissueMaterial, VisualMesh, WallMesh
 
 _FRAME = "metres, Z up; +X patient's right, +Y anterior, +Z cranial (right-handed); anal verge at the origin"
+"""Units and axes, for readers of the file."""
 
 
 def write_colon(stage: ColonStage, path: str | Path) -> Path:
-    """Writes ``<path>`` (text), ``<path with .usdc>`` (arrays) and copies the textures beside them.
+    """Write ``<path>`` (text), ``<path with .usdc>`` (arrays) and copy the textures beside them.
 
     Args:
         stage: The colon.
@@ -37,7 +38,7 @@ def write_colon(stage: ColonStage, path: str | Path) -> Path:
 
 
 def _save_layer(path: Path, author: Callable[[Usd.Stage], None], sublayer: str = "") -> None:
-    """Authors a layer in memory and writes it in one go, so that an interrupted run leaves no half-written file."""
+    """Write a layer in one go: an interrupted run leaves no half-written file."""
     layer = Sdf.Layer.CreateAnonymous(path.suffix)
     usd = Usd.Stage.Open(layer)
     UsdGeom.SetStageUpAxis(usd, UsdGeom.Tokens.z)
@@ -75,7 +76,7 @@ def _author_head(usd: Usd.Stage, stage: ColonStage, albedo: str, detail: str) ->
 
 
 def _primvar(prim: Usd.Prim, name: str, values: np.ndarray) -> None:
-    """Writes a per-vertex primvar; rows of four become one flat array with elementSize 4."""
+    """Write a per-vertex primvar; rows of four become one flat array with elementSize 4."""
     width = values.shape[1] if values.ndim == 2 else 1
     if values.dtype.kind == "i":
         type_name, array = Sdf.ValueTypeNames.IntArray, Vt.IntArray.FromNumpy(values.astype(np.int32).ravel())
@@ -159,7 +160,7 @@ def _author_tissue(usd: Usd.Stage, tissue: TissueMaterial) -> None:
 
 
 def _author_mucosa(usd: Usd.Stage, albedo: str, detail: str) -> None:
-    """Authors the look of the mucosa for USD viewers; ARCGym's camera reads the two textures itself."""
+    """Write the look of the mucosa for USD viewers; ARCGym's camera reads the two textures itself."""
     material = UsdShade.Material.Define(usd, layout.MUCOSA_PATH)
     surface = _shader(usd, "Surface", "UsdPreviewSurface")
     texture = _shader(usd, "Albedo", "UsdUVTexture")

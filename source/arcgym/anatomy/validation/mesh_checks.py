@@ -8,23 +8,24 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 _BLOCK = 200_000
+"""Pairs of edge and face that are tested at once, which bounds the memory."""
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
-    """Returns the faces that belong to one tetrahedron only, normals outwards, shape (F, 3), int32."""
+    """Return the faces that belong to one tetrahedron only, normals outwards, shape (F, 3), int32."""
     faces = np.concatenate([tets[:, [0, 2, 1]], tets[:, [0, 1, 3]], tets[:, [0, 3, 2]], tets[:, [1, 2, 3]]])
     _, first, uses = np.unique(np.sort(faces, 1), axis=0, return_index=True, return_counts=True)
     return faces[np.sort(first[uses == 1])].astype(np.int32)
 
 
 def edge_uses(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns each edge once, shape (E, 2), and by how many faces it is used, shape (E,)."""
+    """Return each edge once, shape (E, 2), and by how many faces it is used, shape (E,)."""
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), 1)
     return np.unique(edges, axis=0, return_counts=True)
 
 
 def count_crossings(points: np.ndarray, faces: np.ndarray) -> int:
-    """Counts the pairs of an edge and a face that cross without sharing a vertex; 0 for a mesh free of them.
+    """Count the pairs of an edge and a face that cross without sharing a vertex; 0 for a mesh free of them.
 
     Args:
         points: Vertices [m], shape (V, 3).
@@ -34,7 +35,7 @@ def count_crossings(points: np.ndarray, faces: np.ndarray) -> int:
 
 
 def find_crossings(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Returns the vertices, two of an edge and three of a face, of each pair that crosses, shape (n, 5)."""
+    """Return the vertices, two of an edge and three of a face, of each pair that crosses, shape (n, 5)."""
     points = points.astype(np.float64)
     edges, _ = edge_uses(faces)
     middle = points[edges].mean(1)
@@ -54,7 +55,7 @@ def find_crossings(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def _crosses(points: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Tells of each pair whether the edge passes through the triangle (Moeller and Trumbore, 1997), shape (n,)."""
+    """Return whether, of each pair, the edge passes through the triangle (Moeller and Trumbore, 1997), shape (n,)."""
     start, direction = points[edges[:, 0]], points[edges[:, 1]] - points[edges[:, 0]]
     corner = points[faces[:, 0]]
     first, second = points[faces[:, 1]] - corner, points[faces[:, 2]] - corner
@@ -71,7 +72,7 @@ def _crosses(points: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> np.nda
 
 
 def winding_numbers(points: np.ndarray, faces: np.ndarray, queries: np.ndarray) -> np.ndarray:
-    """Returns how often a closed surface winds round each query point: 1 inside, 0 outside.
+    """Return how often a closed surface winds round each query point: 1 inside, 0 outside.
 
     Sums signed solid angles (Van Oosterom and Strackee, IEEE TBME 1983).
 
@@ -93,7 +94,7 @@ def winding_numbers(points: np.ndarray, faces: np.ndarray, queries: np.ndarray) 
 
 
 def cap_openings(faces: np.ndarray) -> np.ndarray:
-    """Returns the faces with every opening closed by a fan, so that the surface encloses a volume, shape (F', 3)."""
+    """Return the faces with every opening closed by a fan, so that the surface encloses a volume, shape (F', 3)."""
     directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     known = {(int(a), int(b)) for a, b in directed}
     following = {b: a for a, b in known if (b, a) not in known}

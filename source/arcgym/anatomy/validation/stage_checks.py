@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every check of a stage that needs no simulation; what ``scripts/tools/validate_colon.py`` prints."""
+"""All checks of a stage that needs no simulation; ``arcgym validate`` prints them."""
 
 from __future__ import annotations
 
@@ -21,11 +21,14 @@ from arcgym.anatomy.validation.mesh_checks import (
 from arcgym.anatomy.validation.validate import Check, validate_stage
 
 _LENGTH_RANGE = 0.1, 3.0
+"""Least and largest length of a colon or a piece of one [m]."""
+
 _DIAMETER_RANGE = 0.010, 0.120
+"""Least and largest median diameter [m]."""
 
 
 def inspect_file(path: str) -> tuple[ColonStage | None, list[Check]]:
-    """Reads a stage and checks it; where it cannot be read, the only check is the failed one that says why."""
+    """Read a stage and check it; where it cannot be read, the only check is the failed one that says why."""
     try:
         stage = read_colon(path)
     except StageError as error:
@@ -34,7 +37,7 @@ def inspect_file(path: str) -> tuple[ColonStage | None, list[Check]]:
 
 
 def inspect_stage(stage: ColonStage) -> list[Check]:
-    """Checks a stage in memory: size, meshes, topology, centreline, anchors."""
+    """Check a stage in memory: size, meshes, topology, centreline, anchors."""
     return [
         *_check_size(stage),
         *validate_stage(stage),
@@ -45,7 +48,7 @@ def inspect_stage(stage: ColonStage) -> list[Check]:
 
 
 def _check_schema(path: str) -> list[Check]:
-    """Runs all validators of OpenUSD, as ``usdchecker`` does; reading has checked ARCGym's own schema and units."""
+    """Run all validators of OpenUSD, as ``usdchecker`` does; reading has checked ARCGym's own schema and units."""
     context = UsdValidation.ValidationContext(UsdValidation.ValidationRegistry().GetOrLoadAllValidators())
     errors = [error.GetMessage() for error in context.Validate(Usd.Stage.Open(path))]
     name = "errors found by usdchecker" + "".join(f"; {error}" for error in errors[:3])
@@ -53,7 +56,7 @@ def _check_schema(path: str) -> list[Check]:
 
 
 def _check_size(stage: ColonStage) -> list[Check]:
-    """Catches millimetres taken for metres, and the reverse."""
+    """Catch millimetres taken for metres, and the reverse."""
     diameter = 2 * float(np.median(stage.centerline.radius))
     return [
         Check("length [m]", stage.length, _LENGTH_RANGE[0], at_least=True),
@@ -76,7 +79,7 @@ def _check_topology(wall: WallMesh) -> list[Check]:
 
 
 def _check_centerline(stage: ColonStage) -> Check:
-    """Finds centreline points outside the lumen; the end rings' planes may leave out a point each."""
+    """Find centreline points outside the lumen; the end rings' planes may leave out a point each."""
     wall, line = stage.wall, stage.centerline
     lumen = cap_openings(inner_faces(wall.tets, wall.layer))
     margin = 0.5 * float(np.median(np.diff(wall.ring_arc)))

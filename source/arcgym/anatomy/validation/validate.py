@@ -31,6 +31,7 @@ RING_TOLERANCE = 0.32
 """Least distance of two rings on the inside of a bend over their spacing; thinner triangles would hurt the solver."""
 
 _END_SAMPLES = 3
+"""Samples at either end of a curve whose curvature does not count."""
 
 
 @dataclass(frozen=True)
@@ -58,12 +59,12 @@ class Check:
 
 
 def failed(checks: Iterable[Check]) -> list[Check]:
-    """Returns the checks that are not kept."""
+    """Return the checks that are not kept."""
     return [check for check in checks if not check.ok]
 
 
 def validate_curve(spec: ColonSpec, surface: Surface) -> list[Check]:
-    """Checks a generated centreline against its spec: bends and lengths."""
+    """Check a generated centreline against its spec: bends and lengths."""
     curve = surface.curve
     sharpest = float((curve.curvature * surface.mean_radius).max())
     wanted = np.array([spec.segments[name].length for name in SEGMENTS])
@@ -81,7 +82,7 @@ def validate_curve(spec: ColonSpec, surface: Surface) -> list[Check]:
 
 
 def validate_wall(wall: WallMesh, spec: ColonSpec | None = None) -> list[Check]:
-    """Checks the wall: tetrahedra, gap between loops, room for the scope."""
+    """Check the wall: tetrahedra, gap between loops, room for the scope."""
     gap = 0.0 if spec is None else spec.clearance
     room = 0.0066 if spec is None else 0.95 * spec.min_lumen_radius
     apart = 0.0 if spec is None else RING_TOLERANCE * spec.ring_spacing
@@ -95,7 +96,7 @@ def validate_wall(wall: WallMesh, spec: ColonSpec | None = None) -> list[Check]:
 
 
 def validate_stage(stage: ColonStage) -> list[Check]:
-    """Checks a whole stage: wall, visual surfaces, landmarks, handedness."""
+    """Check a whole stage: wall, visual surfaces, landmarks, handedness."""
     arcs = np.diff(list(stage.landmarks.values()))
     return [
         *validate_wall(stage.wall),
@@ -107,7 +108,7 @@ def validate_stage(stage: ColonStage) -> list[Check]:
 
 
 def _validate_sides(stage: ColonStage) -> list[Check]:
-    """Finds mirrored anatomies: the ascending colon is on the patient's right. Empty where there is only one side."""
+    """Find mirrored anatomies: the ascending colon is on the patient's right. Empty where there is only one side."""
     left, right = (stage.centerline.segment == SEGMENTS.index(name) for name in ("descending", "ascending"))
     if not (left.any() and right.any()):
         return []
@@ -134,19 +135,19 @@ def _largest_distance(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def ring_centers(wall: WallMesh) -> np.ndarray:
-    """Returns the mean position of each ring's inner vertices [m], shape (R, 3)."""
+    """Return the mean position of each ring's inner vertices [m], shape (R, 3)."""
     inner = wall.points[wall.layer == 0]
     return inner.reshape(wall.num_rings, -1, 3).mean(1)
 
 
 def ring_distance(wall: WallMesh) -> float:
-    """Returns the least distance between vertices of neighbouring rings at the middle of the wall [m]."""
+    """Return the least distance between vertices of neighbouring rings at the middle of the wall [m]."""
     points = wall.points.reshape(wall.layer.max() + 1, wall.num_rings, -1, 3).astype(float)
     return float(np.linalg.norm(np.diff(points.mean(0), axis=0), axis=-1).min())
 
 
 def ring_radii(wall: WallMesh) -> np.ndarray:
-    """Returns the least distance from each ring's centre to its inner edges [m], shape (R,)."""
+    """Return the least distance from each ring's centre to its inner edges [m], shape (R,)."""
     ring = wall.points[wall.layer == 0].reshape(wall.num_rings, -1, 3).astype(float)
     offset = ring - ring.mean(1, keepdims=True)
     edge = np.roll(offset, -1, axis=1) - offset
@@ -155,7 +156,7 @@ def ring_radii(wall: WallMesh) -> np.ndarray:
 
 
 def loop_gap(wall: WallMesh, reach: float = 0.05) -> float:
-    """Returns the least distance between outer vertices of different loops [m]; ``reach`` if there are none so near.
+    """Return the least distance between outer vertices of different loops [m]; ``reach`` if there are none so near.
 
     Two rings belong to different loops when the way along the centreline is more than 1.7 times what their radii
     and a straight wall between them would need.

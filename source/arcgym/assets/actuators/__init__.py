@@ -6,13 +6,13 @@
 ``class_type`` names a subclass of :class:`ActuatorBase`; both may lie in any module.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.assets.actuators.actuator_base_cfg import ActuatorBaseCfg
 from arcgym.assets.actuators.base_drive_cfg import BaseDriveCfg
 from arcgym.assets.actuators.bending_drive_cfg import BendingDriveCfg
 from arcgym.assets.actuators.tip_pull_cfg import TipPullCfg
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.assets.actuators.actuator_base import ActuatorBase
@@ -38,9 +38,4 @@ __all__ = [
     "TipPullCfg",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Newton only when a runtime class is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)

@@ -49,7 +49,7 @@ def wall_penetrated(env: ManagerBasedRLEnv) -> torch.Tensor:
     It takes about 100 N on one link in stiff tissue and 55 to 85 N in ``in_situ``: a full push that is kept on for 20 s
     and coils the shaft, or one with the shaft twisted to its limit.
     """
-    return env.sim.pierced
+    return env.sim.wall_penetrated
 
 
 @expects(threshold=FINITE, steps=Range(1), lumen=LUMEN_PRESETS)

@@ -68,11 +68,11 @@ def load_contacts(
     friction: wp.array[float],
     dt: float,
     loads: LinkLoads,
-    pierced: wp.array[int],
+    penetrated: wp.array[int],
 ):
     """Sum the contacts of each link with the wall where it is. Launch (L, W).
 
-    Sets ``pierced``, shape (W,), where a link's axis is so close to the wall that it may get, or be, behind it.
+    Sets ``penetrated``, shape (W,), where a link's axis is so close to the wall that it may get, or be, behind it.
     """
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
@@ -87,7 +87,7 @@ def load_contacts(
         radius = links.radius[link] + law.wall_radius
         c = contact_geometry(p, records.normal[slot], pose, links.half_length[link], radius)
         if c.gap + radius < CLEARANCE * links.radius[link]:
-            pierced[w] = 1
+            penetrated[w] = 1
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - center)
         one = shift_origin(
             contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - center

@@ -124,12 +124,18 @@ class NewtonCoupling:
     def _record(self, weight: float) -> None:
         # SolverCoupledProxy offers the contact forces of its proxies nowhere else (Newton 1.8).
         wrench = self.solver._proxy_mappings[0].coupling_forces
-        args = [wrench, weight, self.sim.step_force]
-        wp.launch(newton_kernels.add_coupling_forces, self.sim.step_force.shape, args, device=self.model.device)
+        total = self.sim.scope_readout.step_force
+        wp.launch(
+            newton_kernels.add_coupling_forces,
+            total.shape,
+            inputs=[wrench, weight],
+            outputs=[total],
+            device=total.device,
+        )
 
     def _damp(self, dt: float) -> None:
         velocity, factor = self.now.particle_qd, math.exp(-self.cfg.wall.drag * dt)
-        wp.launch(newton_kernels.damp, velocity.shape, [factor, velocity], device=self.model.device)
+        wp.launch(newton_kernels.damp, velocity.shape, inputs=[factor], outputs=[velocity], device=velocity.device)
 
     def _copy_in(self) -> None:
         sim = self.sim
@@ -137,7 +143,13 @@ class NewtonCoupling:
             wp.copy(getattr(self.now, name), getattr(sim.state, name))
         wp.copy(self.control.joint_target_q, sim.control.joint_target_q)
         for ours, theirs in ((sim.nodal_pos, self.now.particle_q), (sim.nodal_vel, self.now.particle_qd)):
-            wp.launch(newton_kernels.to_particles, ours.shape, [ours, self.stride, theirs], device=self.model.device)
+            wp.launch(
+                newton_kernels.to_particles,
+                ours.shape,
+                inputs=[ours, self.stride],
+                outputs=[theirs],
+                device=ours.device,
+            )
 
     def _copy_out(self) -> None:
         sim = self.sim
@@ -145,7 +157,13 @@ class NewtonCoupling:
             wp.copy(getattr(sim.state, name), getattr(self.now, name))
         wp.copy(sim.control.joint_target_q, self.control.joint_target_q)
         for theirs, ours in ((self.now.particle_q, sim.nodal_pos), (self.now.particle_qd, sim.nodal_vel)):
-            wp.launch(newton_kernels.from_particles, ours.shape, [theirs, self.stride, ours], device=self.model.device)
+            wp.launch(
+                newton_kernels.from_particles,
+                ours.shape,
+                inputs=[theirs, self.stride],
+                outputs=[ours],
+                device=ours.device,
+            )
 
     def forward(self) -> None:
         """Recompute the links' poses after joints were written to."""

@@ -4,17 +4,15 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-import newton
 import warp as wp
 
-from arcgym.sim.contact import link_load_kernels
-from arcgym.sim.contact.contact_search import ContactSearch
-from arcgym.sim.scope.actuation import Actuation
+from arcgym.sim.contact import link_load_kernels as kernels
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
-from arcgym.sim.simulation_cfg import SimulationCfg
-from arcgym.sim.wall.wall_solver import WallSolver
+
+if TYPE_CHECKING:
+    from arcgym.sim.simulation import Simulation
 
 
 class Coupling(Protocol):
@@ -34,77 +32,65 @@ class TwoLevelCoupling:
     """One wall step with K scope substeps in it.
 
     Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, implicitly;
-    the wall solve then sees the scope's final pose. **What is stale:** the contact points, and for the scope the place
-    of the wall, stay put for one step, which acts like a normal dashpot of stiffness * dt where the wall gives way.
-    Moving the wall on at its velocity meanwhile would undo that, but sets light walls swinging.
+    the wall solve then sees the scope's final pose.
+
+    **Stale within a step:** the contact points, and for the scope the place of the wall. That acts like a normal
+    dashpot of stiffness * dt where the wall yields. Moving the wall on at its velocity meanwhile would undo that, but
+    sets light walls swinging.
     """
 
-    def __init__(
-        self,
-        cfg: SimulationCfg,
-        model: newton.Model,
-        state: newton.State,
-        control: newton.Control,
-        actuation: Actuation,
-        contact: ContactSearch,
-        wall: WallSolver,
-        x: wp.array,
-        v: wp.array,
-        wall_force: wp.array,
-        pierced: wp.array,
-    ):
-        """Connect the parts; all arrays are changed in place by :meth:`step`.
+    def __init__(self, sim: Simulation):
+        """Make the scope solver, and allocate.
 
         Args:
-            cfg: Simulation settings.
-            model: Newton model of all scopes.
-            state: Newton state of all scopes.
-            control: Newton control of all scopes.
-            actuation: Commands and drives.
-            contact: Contact search.
-            wall: Wall solver.
-            x: Wall positions [m], shape (V, W), vec3.
-            v: Wall velocities [m/s], shape (V, W), vec3.
-            wall_force: Sum of mean link forces [N], shape (W*L,), vec3.
-            pierced: Set to 1 where the axis of a link is about to get behind the wall, or there, shape (W,).
+            sim: Simulation whose model, state, actuation, contact search, wall solver and scope readout are built.
         """
-        self.cfg, self.model, self.control = cfg, model, control
-        self.actuation, self.contact, self.wall = actuation, contact, wall
-        self.x, self.v, self.wall_force, self.pierced = x, v, wall_force, pierced
-        self.solver = SolverArticulatedChain(model)
-        self.solver.resistance = actuation.resistance
-        self.state = state
-        self.body_q_prev = wp.clone(state.body_q)
-        """Link poses at the start of the last step, shape (W*L,)."""
+        self.sim = sim
+        self.solver = SolverArticulatedChain(sim.model)
+        self.solver.resistance = sim.actuation.resistance
+        self.body_q_prev = wp.clone(sim.state.body_q)
+        """Link poses at the start of the last step, shape (W*L,), transform."""
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
-        count = self.cfg.scope_substeps
-        dt = self.cfg.dt / count
-        wp.copy(self.body_q_prev, self.state.body_q)
-        self.contact.detect(self.x, self.state.body_q)
+        sim, state = self.sim, self.sim.state
+        count = sim.cfg.scope_substeps
+        dt = sim.cfg.dt / count
+        wp.copy(self.body_q_prev, state.body_q)
+        sim.contact.detect(sim.nodal_pos, state.body_q)
         for _ in range(count):
             self._load_contacts(dt)
-            self.actuation.apply(self.state, self.control, self.contact.ring, dt)
-            self.solver.step(self.state, self.state, self.control, None, dt)
+            sim.actuation.apply(state, sim.control, sim.contact.ring, dt)
+            self.solver.step(state, state, sim.control, None, dt)
             self._record(1.0 / count)
-        self.wall.step(self.x, self.v, self.contact, self.state.body_q, self.body_q_prev)
+        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
 
     def _load_contacts(self, dt: float) -> None:
-        contact, state, loads = self.contact, self.state, self.solver.loads
-        args = [state.body_q, state.body_qd, self.model.body_com, self.x, self.v, contact.links, contact.records]
-        args += [contact.law, contact.friction, dt, loads, self.pierced]
-        wp.launch(link_load_kernels.load_contacts, loads.wrench.shape, args, device=self.model.device)
+        sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
+        inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
+        inputs += [contact.links, contact.records, contact.law, contact.friction, dt]
+        wp.launch(
+            kernels.load_contacts,
+            loads.wrench.shape,
+            inputs=inputs,
+            outputs=[loads, sim.scope_readout.penetrated],
+            device=sim.device,
+        )
 
     def _record(self, weight: float) -> None:
         loads, work = self.solver.loads, self.solver.work
-        args = [loads, work.acc_lin, work.acc_ang, weight, self.wall_force]
-        wp.launch(link_load_kernels.record_forces, loads.wrench.shape, args, device=self.model.device)
-        self.actuation.record(work.drive_force, work.acc_lin, weight)
+        wp.launch(
+            kernels.record_forces,
+            loads.wrench.shape,
+            inputs=[loads, work.acc_lin, work.acc_ang, weight],
+            outputs=[self.sim.scope_readout.step_force],
+            device=self.sim.device,
+        )
+        self.sim.actuation.record(work.drive_force, work.acc_lin, weight)
 
     def forward(self) -> None:
         """Recompute the links' poses after joints were written to."""
-        self.solver.forward(self.state)
+        self.solver.forward(self.sim.state)
 
     def reset(self, world_mask: wp.array) -> None:
         """Nothing to forget: neither solver keeps anything from step to step."""

@@ -1,3 +1,0 @@
-# Copyright (c) 2026, The ARCGym Developers.
-# SPDX-License-Identifier: BSD-3-Clause
-"""Checks of the physics against theory and converged references, a few rows each."""

@@ -1,0 +1,29 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Build wall and visual meshes on grids of rings; generator and importer share them.
+
+- :mod:`wall`: the tetrahedral wall of rings and sectors;
+- :mod:`surface_grid`: triangles, normals, texture coordinates and skin weights of a visual surface.
+"""
+
+from __future__ import annotations
+
+from arcgym.anatomy.meshing.surface_grid import (
+    dome_texture,
+    grid_triangles,
+    skin_to_rings,
+    smooth_normals,
+    tube_texture,
+)
+from arcgym.anatomy.meshing.wall import build_wall, ring_arcs, wall_layers
+
+__all__ = [
+    "build_wall",
+    "dome_texture",
+    "grid_triangles",
+    "ring_arcs",
+    "skin_to_rings",
+    "smooth_normals",
+    "tube_texture",
+    "wall_layers",
+]

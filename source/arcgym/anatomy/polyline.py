@@ -1,0 +1,55 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Polylines: arc length, even spacing, smoothing, and edges that keep their lengths."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+
+def arc_lengths(points: np.ndarray) -> np.ndarray:
+    """Return the distance of each point from the first along the polyline, shape (n,), of points of shape (n, 3)."""
+    return np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+
+
+def resample(points: np.ndarray, spacing: float) -> np.ndarray:
+    """Return points at equal distances of about ``spacing`` along a polyline, ends kept, shape (m, 3)."""
+    arc = arc_lengths(points)
+    even = np.linspace(0.0, arc[-1], max(2, round(arc[-1] / spacing) + 1))
+    return np.stack([np.interp(even, arc, points[:, k]) for k in range(3)], 1)
+
+
+def smooth(points: np.ndarray, sigma: float) -> np.ndarray:
+    """Smooth a polyline without rounding its bends off (twicing, Tukey 1977); ends stay where they are.
+
+    Args:
+        points: Positions, shape (n, 3).
+        sigma: Width of the Gaussian, in points.
+    """
+    pad = min(len(points) - 1, int(4 * sigma) + 1)
+    once = _blur(points, sigma, pad)
+    out = once + _blur(points - once, sigma, pad)
+    out[[0, -1]] = points[[0, -1]]
+    return out
+
+
+def _blur(values: np.ndarray, sigma: float, pad: int) -> np.ndarray:
+    padded = np.pad(values, ((pad, pad), (0, 0)), "reflect", reflect_type="odd")
+    return gaussian_filter1d(padded, sigma, axis=0)[pad:-pad]
+
+
+def restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
+    """Move both ends of every edge until it has its length, even edges first, then odd ones, in place.
+
+    Args:
+        points: Positions, shape (n, 3).
+        edge: Length of each edge, shape (n - 1,).
+    """
+    for first in (0, 1):
+        a, b = points[first:-1:2], points[first + 1 :: 2]
+        offset = b - a
+        length = np.linalg.norm(offset, axis=1, keepdims=True)
+        half = 0.5 * offset * (1.0 - edge[first::2, None] / np.maximum(length, 1e-9))
+        a += half
+        b -= half

@@ -1,0 +1,74 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rows of the fidelity table, in order. Importing this loads neither torch nor Warp.
+
+A new row is a function in :mod:`arcgym.benchmarks.fidelity.checks` that takes a :class:`~.rows.Run` and returns
+:class:`~.rows.Row` objects, and one line in :data:`TABLE`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.benchmarks.fidelity.rows import Check
+
+
+def line(rows: str, function: str, quick: bool = False, **params: Any) -> Check:
+    """Return the check of one line.
+
+    Args:
+        rows: Names of its rows, separated by blanks.
+        function: ``module:name`` of the function in ``checks``.
+        quick: Whether it takes seconds only.
+        params: Further arguments of the function.
+    """
+    return Check(tuple(rows.split()), function, params, quick)
+
+
+TABLE: tuple[Check, ...] = (
+    line("cantilever_small cantilever_large", "shaft:cantilever", quick=True),
+    line("torsion", "shaft:torsion", quick=True),
+    line("buckling", "shaft:buckling", quick=True),
+    line("wall_beam", "wall:beam_mode", quick=True),
+    line("wall_ring", "wall:ring_mode", quick=True),
+    line("indentation_paper", "indentation:indentation", material="paper"),
+    line("indentation_in_situ", "indentation:indentation", material="in_situ"),
+    line("straight_advance", "insertion:straight_advance", quick=True),
+    line("volume_stiff volume_soft", "insertion:volume"),
+    line("bend_force bend_tip", "insertion:bend"),
+    line("sigmoid_force sigmoid_tip", "insertion:sigmoid"),
+    line("sigmoid_deep_force sigmoid_deep_tip", "insertion:sigmoid_deep"),
+    line("newton_force newton_tip", "insertion:plain_newton"),
+    line("wall_motion_stiff wall_motion_soft", "insertion:wall_motion"),
+    line("action_reaction base_force", "balance:balance"),
+    line("capstan", "friction:capstan", quick=True),
+    line("tunnelling", "tunnelling:tunnelling"),
+    line("bend_loss", "friction:bend_loss", quick=True),
+    line("speed_capsule", "commands:speeds", robot="capsule"),
+    line("random_capsule", "commands:random_actions", robot="capsule"),
+    line("speed_magnetic", "commands:speeds", robot="magnetic"),
+    line("random_magnetic", "commands:random_actions", robot="magnetic"),
+    line("speed_proximal", "commands:speeds", robot="proximal"),
+    line("random_proximal", "commands:random_actions", robot="proximal"),
+    line("energy", "stability:energy", quick=True),
+    line("parked_drift", "stability:parked"),
+)
+"""All checks."""
+
+
+def choose(rows: str | None, quick: bool) -> list[Check]:
+    """Return the checks that give the named rows, or all; only the quick ones if so wished.
+
+    Args:
+        rows: Names separated by commas, or None for all.
+        quick: Whether checks of more than seconds are left out.
+
+    Raises:
+        ValueError: If there is no row of a name.
+    """
+    known = [name for check in TABLE for name in check.rows]
+    wanted = set(rows.split(",")) if rows else set(known)
+    unknown = sorted(wanted - set(known))
+    if unknown:
+        raise ValueError(f"--rows names {unknown}; the rows are {', '.join(known)}")
+    return [check for check in TABLE if wanted & set(check.rows) and (check.quick or not quick)]

@@ -1,0 +1,152 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tubes with the mesh of the shipped colon's sigmoid, written as stages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from arcgym.anatomy import (
+    ANCHOR_FIXED,
+    ANCHOR_FREE,
+    SEGMENTS,
+    Centerline,
+    ColonStage,
+    VisualMesh,
+    WallMesh,
+    read_colon,
+    segment_index,
+)
+from arcgym.anatomy.meshing.surface_grid import grid_triangles, skin_to_rings, smooth_normals
+from arcgym.anatomy.meshing.wall import build_wall
+from arcgym.anatomy.stage.types import TEXTURE_LENGTH
+from arcgym.assets import ColonCfg
+from arcgym.utils.paths import resolve_asset
+
+SEGMENT = "sigmoid"
+"""Part of the shipped colon that the tubes take their measures from."""
+HELD_SPACINGS = (2, 1)
+"""Spacings of the shipped rings over which a tube is held at its start and at its end, as the colon is."""
+FREE = dict.fromkeys(SEGMENTS, 0.0)
+"""Anchor stiffness of a tube that is held at its ends alone."""
+
+
+@dataclass(frozen=True)
+class Tube:
+    """A straight tube with one circular bend towards +Y."""
+
+    length: float
+    """[m]."""
+    bend: float = 0.0
+    """Angle of the bend [rad]."""
+    bend_start: float = 0.0
+    """Arc length at which it starts [m]."""
+    bend_radius: float = 0.05
+    """Radius of the centerline in the bend [m]."""
+    refine: int = 1
+    """Rings and sectors for each one of the shipped mesh."""
+
+    def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the points of the centerline [m], shape (n, 3), and its angle from the Z axis [rad], shape (n,)."""
+        angle = np.clip((s - self.bend_start) / self.bend_radius, 0.0, self.bend)
+        before = np.minimum(s, self.bend_start) if self.bend else s
+        after = np.maximum(0.0, s - self.bend_start - self.bend * self.bend_radius) if self.bend else 0.0 * s
+        y = self.bend_radius * (1.0 - np.cos(angle)) + after * np.sin(angle)
+        z = before + self.bend_radius * np.sin(angle) + after * np.cos(angle)
+        return np.stack([0.0 * s, y, z], axis=1), angle
+
+    def surface(self, s: np.ndarray, theta: np.ndarray, radius: float) -> np.ndarray:
+        """Return the points at arc lengths, angles around and a distance from the centerline [m], shape (S, A, 3)."""
+        center, angle = self.frame(s)
+        inwards = np.stack([0.0 * s, np.cos(angle), -np.sin(angle)], axis=1)
+        across = np.array([1.0, 0.0, 0.0])
+        around = np.cos(theta)[None, :, None] * across + np.sin(theta)[None, :, None] * inwards[:, None]
+        return center[:, None] + radius * around
+
+
+@dataclass(frozen=True)
+class WallMeasures:
+    """Measures of the shipped wall in the sigmoid."""
+
+    spacing: float
+    """Distance of rings [m]."""
+    sectors: int
+    """Vertices around a ring."""
+    radius: float
+    """Mean radius of the lumen [m]."""
+    thickness: float
+    """Wall thickness [m]."""
+
+
+@cache
+def shipped_stage() -> ColonStage:
+    """Return the colon that ships with ARCGym."""
+    return read_colon(resolve_asset(ColonCfg().usd_path))
+
+
+@cache
+def wall_measures() -> WallMeasures:
+    """Measure the shipped colon."""
+    wall = shipped_stage().wall
+    rings = len(wall.ring_arc)
+    inner, outer = wall.points.reshape(2, rings, -1, 3).astype(float)
+    radius = np.linalg.norm(inner - inner.mean(axis=1, keepdims=True), axis=2).mean(axis=1)
+    here = wall.segment.reshape(2, rings, -1)[0, :, 0] == segment_index(SEGMENT)
+    thickness = np.median(np.linalg.norm(outer - inner, axis=2))
+    return WallMeasures(
+        float(np.diff(wall.ring_arc).mean()), inner.shape[1], float(radius[here].mean()), float(thickness)
+    )
+
+
+def tube_stage(tube: Tube) -> ColonStage:
+    """Return a tube with the ring spacing, sectors, radius and thickness of the shipped colon."""
+    measures = wall_measures()
+    sectors = measures.sectors * tube.refine
+    arc = np.linspace(0.0, tube.length, round(tube.length / measures.spacing) * tube.refine + 1)
+    theta = 2.0 * np.pi * np.arange(sectors) / sectors
+    radii = (measures.radius, measures.radius + measures.thickness)
+    layers = np.stack([tube.surface(arc, theta, radius) for radius in radii])
+    codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
+    shipped = shipped_stage()
+    visual = _visual(tube, arc, sectors, measures.radius)
+    held = (HELD_SPACINGS[0] * measures.spacing, tube.length - HELD_SPACINGS[1] * measures.spacing)
+    return ColonStage(
+        name="tube",
+        wall=_hold(build_wall(layers, codes, arc, capped=False), *held),
+        visual=visual,
+        visual_proxy=visual,
+        centerline=Centerline(
+            tube.frame(arc)[0].astype(np.float32),
+            arc.astype(np.float32),
+            np.full(len(arc), measures.radius, np.float32),
+            codes,
+        ),
+        landmarks={"anal_verge": 0.0, "blind_end": tube.length},
+        material=shipped.material,
+        albedo_texture=shipped.albedo_texture,
+        detail_texture=shipped.detail_texture,
+        metadata={"provenance": "arcgym bench fidelity", "licence": "BSD-3-Clause", "patient": "none"},
+    )
+
+
+def _hold(wall: WallMesh, start: float, end: float) -> WallMesh:
+    """Hold the wall before one arc length and beyond another [m], however fine its rings are."""
+    arc = wall.ring_arc[wall.ring]
+    still = (arc < start + 1.0e-4) | (arc > end - 1.0e-4)
+    loose = np.where(wall.anchor == ANCHOR_FIXED, ANCHOR_FREE, wall.anchor)
+    return replace(wall, anchor=np.where(still, ANCHOR_FIXED, loose).astype(np.int32))
+
+
+def _visual(tube: Tube, ring_arc: np.ndarray, sectors: int, radius: float) -> VisualMesh:
+    """Return the inner surface, which a stage must have."""
+    rows, columns = len(ring_arc), sectors + 1
+    arc, theta = np.linspace(0.0, tube.length, rows), np.linspace(0.0, 2.0 * np.pi, columns)
+    points = tube.surface(arc, theta, radius).reshape(-1, 3).astype(np.float32)
+    s, angle = (grid.ravel() for grid in np.meshgrid(arc, theta, indexing="ij"))
+    faces = grid_triangles(rows, columns)
+    uv = np.stack([angle / (2.0 * np.pi), s / TEXTURE_LENGTH], axis=1).astype(np.float32)
+    skin = skin_to_rings(s, angle, ring_arc, sectors)
+    return VisualMesh(points, faces, smooth_normals(points, faces), uv, np.zeros(len(points), np.float32), *skin)

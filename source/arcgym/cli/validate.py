@@ -1,0 +1,67 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Check colon stages: schema, units, meshes, lumen, landmarks, anchors, skinning, and that the wall holds still.
+
+Prints one line a check with its figure and bound; the exit status is 0 if all checks of all stages pass, else 1.
+``--json`` adds a last line ``{"stages": [{"path", "ok", "checks": [{"name", "value", "bound", "ok"}]}]}``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from arcgym.anatomy.validation.validate import Check
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the stages and how far to check them."""
+    parser.add_argument("stage", type=Path, nargs="+", help="stage files (colon.usda)")
+    parser.add_argument("--json", action="store_true", help="print all figures as JSON in the last line")
+    parser.add_argument("--no-physics", action="store_true", help="leave out the simulated second")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Check the stages and return 1 if any check fails."""
+    reports = [check_stage(path, physics=not args.no_physics) for path in args.stage]
+    if args.json:
+        print(json.dumps({"stages": reports}, allow_nan=False))
+    return 0 if all(report["ok"] for report in reports) else 1
+
+
+def check_stage(path: Path, physics: bool) -> dict[str, Any]:
+    """Check one stage, printing as it goes, and return its report."""
+    print(path, flush=True)
+    checks = []
+    for check in all_checks(path, physics):
+        print(f"  {'ok  ' if check.ok else 'FAIL'} {check}", flush=True)
+        checks.append(check)
+    rows = [{"name": c.name, "value": finite(c.value), "bound": c.bound, "ok": c.ok} for c in checks]
+    ok = all(check.ok for check in checks)
+    print(f"  {'passes' if ok else 'FAILS'}", flush=True)
+    return {"path": str(path), "ok": ok, "checks": rows}
+
+
+def finite(value: float) -> float | None:
+    """Return the value as a plain number, None where it is not finite, which JSON cannot say."""
+    return float(value) if math.isfinite(value) else None
+
+
+def all_checks(path: Path, physics: bool) -> Iterator[Check]:
+    """Yield the checks of one stage; those that need a readable stage only if it is."""
+    from arcgym.anatomy.validation.stage_checks import inspect_file
+
+    stage, checks = inspect_file(str(path))
+    yield from checks
+    if stage is None:
+        return
+    from arcgym.scene.colon_checks import physics_checks, skinning_checks
+
+    yield from skinning_checks(stage)
+    if physics and all(check.ok for check in checks):
+        yield from physics_checks(path)

@@ -1,0 +1,105 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arguments of environments, those of ``gymnasium.make`` and the options of ``reset``: checked before they act."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any
+
+import torch
+
+from arcgym.utils.configclass import is_config
+from arcgym.utils.registry import CFG_SUFFIX, load_cfg
+from arcgym.utils.string import did_you_mean
+
+ARGUMENTS = ("cfg", "render_mode", "num_envs", "device", "seed")
+"""What an environment and ``gymnasium.make`` take; ``gymnasium.make_vec`` adds ``to_numpy``."""
+
+RESET_OPTIONS = ("env_ids", "reset_mask")
+"""Options of ``reset``."""
+
+
+def refuse_unknown(arguments: Collection[str]) -> None:
+    """Check arguments that no parameter took; further configurations of a registered task pass.
+
+    Raises:
+        TypeError: If there is an unknown one, naming the nearest.
+    """
+    for name in arguments:
+        if not name.endswith(CFG_SUFFIX):
+            raise TypeError(f"The environment has no argument '{name}'. {did_you_mean(name, ARGUMENTS)}")
+
+
+def choose_cfg(cfg: Any, entry_point: str | None, *, num_envs: int | None, device: str | None, seed: int | None) -> Any:
+    """Return the configuration to build.
+
+    Args:
+        cfg: The user's, returned as it is unless one of the others changes it: then a copy is.
+        entry_point: ``"module:Class"`` of the registered one, for when ``cfg`` is None.
+        num_envs: Number of worlds; None leaves that of the configuration.
+        device: Device of the simulation; None leaves that of the configuration.
+        seed: Seed of all random numbers; None leaves that of the configuration.
+
+    Raises:
+        TypeError: If there is no configuration, or it is none.
+    """
+    if cfg is None and entry_point is None:
+        raise TypeError("An environment needs a cfg, or gymnasium.make with the name of a registered task.")
+    if cfg is not None and not is_config(cfg):
+        given = f"the class {cfg.__name__}; call it" if isinstance(cfg, type) else f"of type {type(cfg).__name__}"
+        raise TypeError(f"The environment's cfg is {given}, expected an instance of a configuration class.")
+    if cfg is None or not num_envs is device is seed is None:
+        cfg = load_cfg(entry_point if cfg is None else cfg)
+    if num_envs is not None:
+        cfg.scene.num_envs = num_envs
+    if device is not None:
+        cfg.sim.device = str(device)
+    if seed is not None:
+        cfg.seed = seed
+    return cfg
+
+
+def check_render_mode(mode: str | None, known: Collection[str]) -> None:
+    """Check that a render mode is among those of the environment's metadata.
+
+    Raises:
+        ValueError: If it is not.
+    """
+    if mode is not None and mode not in known:
+        raise ValueError(f"render_mode is '{mode}', expected None or one of {', '.join(known)}.")
+
+
+def worlds_to_reset(options: dict[str, Any] | None, num_envs: int, device: str) -> torch.Tensor | None:
+    """Return the worlds that the options of a reset name, int64, ascending, shape (n,); None for all.
+
+    Args:
+        options: ``env_ids``, world indices, or ``reset_mask``, one bool a world; both as sequence, array or tensor.
+        num_envs: Number of worlds N.
+        device: Device of the result.
+
+    Raises:
+        ValueError: If an option is unknown, both are given, or the mask has another shape or type.
+        IndexError: If a world does not exist.
+    """
+    for name in options or ():
+        if name not in RESET_OPTIONS:
+            raise ValueError(f"reset has no option '{name}'. {did_you_mean(name, RESET_OPTIONS)}")
+    if not options:
+        return None
+    if len(options) > 1:
+        raise ValueError("reset got both env_ids and reset_mask; give one of them.")
+    if "reset_mask" in options:
+        return _masked_worlds(torch.as_tensor(options["reset_mask"], device=device), num_envs)
+    env_ids = torch.as_tensor(options["env_ids"], device=device).flatten().unique().long()
+    if len(env_ids) and not 0 <= int(env_ids[0]) <= int(env_ids[-1]) < num_envs:
+        raise IndexError(f"reset's env_ids are {env_ids.tolist()}; worlds go from 0 to {num_envs - 1}.")
+    return env_ids
+
+
+def _masked_worlds(mask: torch.Tensor, num_envs: int) -> torch.Tensor:
+    if mask.dtype != torch.bool or mask.shape != (num_envs,):
+        raise ValueError(
+            f"reset_mask is {mask.dtype} of shape {tuple(mask.shape)}, expected torch.bool of shape ({num_envs},)."
+        )
+    return mask.nonzero().flatten()

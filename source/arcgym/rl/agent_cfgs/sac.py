@@ -1,0 +1,122 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Configuration of soft actor-critic."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
+from arcgym.rl.runner_cfg import CnnCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class SquashedGaussianDistributionCfg:
+    """Normal distribution through a tanh: actions stay in [-1, 1]."""
+
+    class_name: str = "arcgym.rl.networks.squashed_gaussian:SquashedGaussianDistribution"
+    """Distribution class."""
+
+    init_std: float = 1.0
+    """First standard deviation before squashing; 1 spreads actions almost evenly."""
+
+
+@configclass
+class MlpQModelCfg(RslRlMlpModelCfg):
+    """Action value from vector groups, such as the privileged state."""
+
+    class_name: str = "arcgym.rl.networks.q_models:MlpQModel"
+    """Model class."""
+
+    layer_norm: bool = True
+    """Whether a LayerNorm comes before each activation. Off only to reproduce older results."""
+
+
+@configclass
+class CnnQModelCfg(AugmentedCnnModelCfg):
+    """Action value from images, with an encoder for each critic. Slower; for tasks without a privileged state."""
+
+    class_name: str = "arcgym.rl.networks.q_models:CnnQModel"
+    """Model class."""
+
+    layer_norm: bool = True
+    """Whether a LayerNorm comes before each activation."""
+
+
+@configclass
+class RslRlSacAlgorithmCfg:
+    """Soft actor-critic for many worlds; rates as in Squint (arXiv:2602.21203), without its distributional critic."""
+
+    class_name: str = "arcgym.rl.algorithms.sac:SAC"
+    """Algorithm class."""
+
+    replay_size: int = 400_000
+    """Observations to keep, of all worlds together, on the training device. A frame of 84×84 takes 21 kB, so that a
+    million takes 21 GB."""
+
+    frame_stacks: dict[str, int] = {}
+    """Frames in the channels of each stacked image group, as ``history_length`` of its term; each is stored once."""
+
+    gamma: float = 0.97
+    """Discount of one control step."""
+
+    learning_rate: float = 3.0e-4
+    """Of actor, critics and temperature."""
+
+    batch_size: int = 512
+    """Transitions of one gradient step."""
+
+    updates_per_transition: float = 0.25
+    """Gradient steps for each new transition. Lower it when the simulator waits for the learner."""
+
+    learning_starts: int = 10_000
+    """Transitions with random actions before the first gradient step."""
+
+    actor_interval: int = 4
+    """Critic steps for each step of actor and temperature."""
+
+    target_step: float = 0.01
+    """Fraction by which the target critics follow in each step. Lower it when values grow without bound."""
+
+    init_temperature: float = 0.1
+    """First temperature, in units of reward per nat; the only one with ``learn_temperature`` off."""
+
+    learn_temperature: bool = True
+    """Whether the temperature holds the entropy at ``target_entropy``."""
+
+    target_entropy: float | None = None
+    """Entropy to hold [nat]; None is minus the size of the action."""
+
+    max_grad_norm: float = 10.0
+    """Gradient clipping by norm."""
+
+
+@configclass
+class RslRlSacRunnerCfg(RslRlOnPolicyRunnerCfg):
+    """Runner of soft actor-critic: one step of all worlds, then the gradient steps that its transitions call for."""
+
+    class_name: str = "arcgym.rl.off_policy_runner:OffPolicyRunner"
+    """Runner class."""
+
+    num_steps_per_env: int = 8
+    """Control steps of each world between two visits to the learner; also the iterations that logs count."""
+
+    actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(
+        hidden_dims=[256],
+        activation="relu",
+        cnn_cfg=CnnCfg(activation="relu"),
+        distribution_cfg=SquashedGaussianDistributionCfg(),  # type: ignore[arg-type]
+    )
+    """Policy network; its distribution must be a squashed one."""
+
+    critic: RslRlMlpModelCfg = MlpQModelCfg(hidden_dims=[256, 256], activation="relu", obs_normalization=True)
+    """Each of the two action-value networks."""
+
+    algorithm: Any = RslRlSacAlgorithmCfg()
+    """Learning algorithm."""
+
+    save_replay: bool = False
+    """Whether the memory is saved with every checkpoint, so that a resumed run goes on at once. Takes
+    ``replay_size`` images of disk."""

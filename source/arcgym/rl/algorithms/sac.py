@@ -1,0 +1,287 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Soft actor-critic."""
+
+from __future__ import annotations
+
+import copy
+import math
+from itertools import chain
+from typing import Any
+
+import torch
+from rsl_rl.env import VecEnv
+from rsl_rl.models import MLPModel
+from rsl_rl.utils import reduce_gradients_in_buckets, resolve_class, resolve_obs_groups
+from tensordict import TensorDict
+from torch import nn
+
+from arcgym.rl.networks.q_models import with_action
+from arcgym.rl.replay import ReplayBatch, ReplayBuffer
+
+
+class SAC:
+    """Soft actor-critic (Haarnoja et al. 2018, arXiv:1812.05905) with two critics and a learned temperature.
+
+    The shape is that of rsl_rl's PPO, so that the same runner drives it: an iteration is ``num_steps_per_env`` steps of
+    all worlds and then ``updates_per_transition`` gradient steps for each of their transitions. With the target's
+
+        y = r + gamma (1 - terminated) (min_i Q'_i(s', a') - alpha log p(a' | s')),  a' ~ p(. | s')
+
+    the critics minimise ``(Q_i(s, a) - y)^2``, the actor ``alpha log p(a | s) - min_i Q_i(s, a)``, the temperature
+    ``-log alpha (log p(a | s) + target entropy)``. A time-out is not an end: its ``s'`` is the episode's last state.
+    """
+
+    rnd = None
+
+    def __init__(
+        self,
+        actor: MLPModel,
+        critics: list[MLPModel],
+        replay: ReplayBuffer,
+        gamma: float = 0.99,
+        learning_rate: float = 3.0e-4,
+        batch_size: int = 512,
+        updates_per_transition: float = 0.25,
+        learning_starts: int = 10_000,
+        actor_interval: int = 4,
+        target_step: float = 0.01,
+        init_temperature: float = 0.1,
+        learn_temperature: bool = True,
+        target_entropy: float | None = None,
+        max_grad_norm: float = 10.0,
+        device: str = "cpu",
+        multi_gpu_cfg: dict | None = None,
+        grad_reduce_bucket_mb: float = 25,
+    ):
+        """Build targets and optimizers.
+
+        Args:
+            actor: Policy with :class:`arcgym.rl.networks.squashed_gaussian.SquashedGaussianDistribution`.
+            critics: Action-value networks.
+            replay: Memory, filled by :meth:`process_env_step`.
+            gamma: Discount of a step.
+            learning_rate: Of actor, critics and temperature.
+            batch_size: Transitions of one gradient step.
+            updates_per_transition: Gradient steps of the critics for each new transition.
+            learning_starts: Transitions with uniformly random actions, before the first gradient step.
+            actor_interval: Critic steps for each step of actor and temperature.
+            target_step: Fraction by which the targets follow the critics in each step.
+            init_temperature: First temperature alpha; the only one with ``learn_temperature`` off.
+            learn_temperature: Whether the temperature keeps the entropy at ``target_entropy``.
+            target_entropy: In nats; None is minus the size of the action.
+            max_grad_norm: Gradient clipping by norm.
+            device: Device of the networks.
+            multi_gpu_cfg: Rank and number of processes, from the runner.
+            grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
+        """
+        self.device, self.replay, self.learning_rate = device, replay, learning_rate
+        self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
+        self.gpu_world_size = multi_gpu_cfg["world_size"] if multi_gpu_cfg else 1
+        self.gamma, self.batch_size, self.learning_starts = gamma, batch_size, learning_starts
+        self.updates_per_transition, self.actor_interval = updates_per_transition, actor_interval
+        self.target_step, self.max_grad_norm = target_step, max_grad_norm
+        self.learn_temperature = learn_temperature
+        self.actor, self.critics = actor.to(device), nn.ModuleList(critics).to(device)
+        self.targets = copy.deepcopy(self.critics).requires_grad_(False)
+        num_actions = actor.distribution.output_dim
+        self.target_entropy = -float(num_actions) if target_entropy is None else target_entropy
+        self.log_temperature = torch.tensor(math.log(init_temperature), device=device, requires_grad=learn_temperature)
+        self.actor_optimizer = torch.optim.Adam(self.actor.parameters(), lr=learning_rate)
+        self.critic_optimizer = torch.optim.Adam(self.critics.parameters(), lr=learning_rate)
+        self.temperature_optimizer = torch.optim.Adam([self.log_temperature], lr=learning_rate)
+        self.num_updates = 0
+        self._owed = 0.0
+        self._obs: TensorDict | None = None
+        self._actions = torch.empty(0)
+        self._fresh: list[TensorDict] = []
+        models = [self.actor, *self.critics]
+        self._vector_groups = sorted(
+            {group for model in models if model.obs_normalization for group in model.obs_groups}
+        )
+
+    @staticmethod
+    def construct_algorithm(obs: TensorDict, env: VecEnv, cfg: dict, device: str) -> SAC:
+        """Build networks, memory and algorithm from the training dictionary."""
+        alg_class, alg_cfg = resolve_class(cfg["algorithm"])
+        actor_class, actor_cfg = resolve_class(cfg["actor"])
+        critic_class, critic_cfg = resolve_class(cfg["critic"])
+        if cfg.get("torch_compile_mode"):
+            raise ValueError("agent.torch_compile_mode is set, but SAC runs eagerly: leave it None.")
+        groups = cfg["obs_groups"] = resolve_obs_groups(obs, cfg["obs_groups"], ["actor", "critic"])
+        actor = actor_class(obs, groups, "actor", env.num_actions, **actor_cfg)
+        with_actions = with_action(obs, torch.zeros(env.num_envs, env.num_actions, device=obs.device))
+        critics = [critic_class(with_actions, groups, "critic", 1, **critic_cfg) for _ in range(2)]
+        size, stacks = alg_cfg.pop("replay_size"), alg_cfg.pop("frame_stacks", None)
+        read = {group for groups_of_set in groups.values() for group in groups_of_set}
+        replay = ReplayBuffer(obs.select(*read), env.num_actions, size, device, stacks)
+        print(f"replay: {size} observations, {replay.num_bytes / 2**20:.1f} MiB on {device}")
+        return alg_class(actor, critics, replay, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+
+    @property
+    def temperature(self) -> torch.Tensor:
+        """Price of entropy alpha, scalar."""
+        return self.log_temperature.exp()
+
+    def act(self, obs: TensorDict) -> torch.Tensor:
+        """Return actions to explore with, shape (N, A): uniform ones until learning starts, then the policy's."""
+        self._obs, self._actions = obs, self.actor(obs, stochastic_output=True)
+        if self.num_updates == 0 and self.replay.num_transitions < self.learning_starts:
+            self._actions = 2.0 * torch.rand_like(self._actions) - 1.0
+        return self._actions
+
+    def process_env_step(
+        self, obs: TensorDict, rewards: torch.Tensor, dones: torch.Tensor, extras: dict[str, Any]
+    ) -> None:
+        """Store one step; ``extras["final_obs"]`` is needed where ``extras["time_outs"]``."""
+        assert self._obs is not None, "act comes before process_env_step"
+        time_outs = extras.get("time_outs", torch.zeros_like(dones))
+        self.replay.add(self._obs, self._actions, rewards, dones, time_outs, extras.get("final_obs"))
+        self._fresh.append(self._obs.select(*self._vector_groups))
+        self._owed += self.updates_per_transition * self.replay.num_envs
+
+    def compute_returns(self, obs: TensorDict) -> None:
+        """Do nothing: targets are computed batch by batch."""
+
+    def update(self) -> dict[str, float]:
+        """Make the gradient steps that the new transitions call for, and return mean losses."""
+        self._update_normalization()
+        if self.replay.num_transitions < self.learning_starts:
+            self._owed = 0.0
+            return {}
+        sums: dict[str, torch.Tensor] = {}
+        counts: dict[str, int] = {}
+        while self._owed >= 1.0:
+            self._owed -= 1.0
+            for name, value in self.step_on(self.replay.sample(self.batch_size)).items():
+                sums[name] = sums.get(name, torch.zeros((), device=self.device)) + value
+                counts[name] = counts.get(name, 0) + 1
+        return {name: float(total) / counts[name] for name, total in sums.items()}
+
+    def step_on(self, batch: ReplayBatch) -> dict[str, torch.Tensor]:
+        """Make one gradient step on ``batch`` and return the losses."""
+        critic_loss = self.critic_loss(batch)
+        self._descend(critic_loss, self.critic_optimizer, self.critics.parameters())
+        losses = {"critic": critic_loss.detach()}
+        if self.num_updates % self.actor_interval == 0:
+            losses |= self._step_actor(batch.observations)
+        self._follow()
+        self.num_updates += 1
+        return losses
+
+    def targets_of(self, batch: ReplayBatch) -> torch.Tensor:
+        """Return the critics' targets y, shape (B,)."""
+        with torch.no_grad():
+            actions, log_prob = self._sample(batch.next_observations)
+            following = with_action(batch.next_observations, actions)
+            value = self._values(self.targets, following).amin(dim=0) - self.temperature * log_prob
+            return batch.rewards + self.gamma * (1.0 - batch.terminated) * value
+
+    def critic_loss(self, batch: ReplayBatch) -> torch.Tensor:
+        """Return the mean squared error of each critic, added up."""
+        targets = self.targets_of(batch)
+        values = self._values(self.critics, with_action(batch.observations, batch.actions))
+        return (values - targets).square().mean(dim=1).sum()
+
+    def train_mode(self) -> None:
+        """Set train mode."""
+        self.actor.train()
+        self.critics.train()
+
+    def eval_mode(self) -> None:
+        """Set evaluation mode."""
+        self.actor.eval()
+        self.critics.eval()
+
+    def get_policy(self) -> MLPModel:
+        """Return the actor."""
+        return self.actor
+
+    def save(self) -> dict:
+        """Return all state but the replay, which the runner keeps in a file of its own."""
+        return {
+            "actor_state_dict": self.actor.state_dict(),
+            "critics_state_dict": self.critics.state_dict(),
+            "targets_state_dict": self.targets.state_dict(),
+            "log_temperature": self.log_temperature.detach(),
+            "optimizer_state_dicts": [optimizer.state_dict() for optimizer in self._optimizers()],
+            "num_updates": self.num_updates,
+            "owed": self._owed,
+        }
+
+    def load(self, loaded_dict: dict, load_cfg: dict | None, strict: bool) -> bool:
+        """Load a checkpoint: all of it, or only the actor when ``load_cfg`` says so."""
+        self.actor.load_state_dict(loaded_dict["actor_state_dict"], strict=strict)
+        if load_cfg is not None and not load_cfg.get("critic"):
+            return load_cfg.get("iteration", False)
+        self.critics.load_state_dict(loaded_dict["critics_state_dict"], strict=strict)
+        self.targets.load_state_dict(loaded_dict["targets_state_dict"], strict=strict)
+        with torch.no_grad():
+            self.log_temperature.copy_(loaded_dict["log_temperature"])
+        for optimizer, state in zip(self._optimizers(), loaded_dict["optimizer_state_dicts"], strict=True):
+            optimizer.load_state_dict(state)
+        self.num_updates, self._owed = loaded_dict["num_updates"], loaded_dict["owed"]
+        return True
+
+    def broadcast_parameters(self) -> None:
+        """Send the first process's networks and temperature to all."""
+        tensors = chain.from_iterable(model.state_dict().values() for model in (self.actor, self.critics, self.targets))
+        for tensor in chain(tensors, [self.log_temperature.data]):
+            torch.distributed.broadcast(tensor, src=0)
+
+    def _step_actor(self, obs: TensorDict) -> dict[str, torch.Tensor]:
+        actions, log_prob = self._sample(obs)
+        self.critics.requires_grad_(False)
+        values = self._values(self.critics, with_action(obs, actions)).amin(dim=0)
+        self.critics.requires_grad_(True)
+        actor_loss = (self.temperature.detach() * log_prob - values).mean()
+        self._descend(actor_loss, self.actor_optimizer, self.actor.parameters())
+        if self.learn_temperature:
+            loss = -(self.log_temperature * (log_prob.detach() + self.target_entropy)).mean()
+            self._descend(loss, self.temperature_optimizer, [self.log_temperature])
+        return {
+            "actor": actor_loss.detach(),
+            "entropy": -log_prob.detach().mean(),
+            "temperature": self.temperature.detach(),
+            "value": values.detach().mean(),
+        }
+
+    def _sample(self, obs: TensorDict) -> tuple[torch.Tensor, torch.Tensor]:
+        """Actions with gradients, shape (B, A), and their log-probabilities, shape (B,)."""
+        distribution = self.actor.distribution
+        distribution.update(self.actor.mlp(self.actor.get_latent(obs)))
+        return distribution.sample_with_log_prob()
+
+    @staticmethod
+    def _values(critics: nn.ModuleList, obs: TensorDict) -> torch.Tensor:
+        """Value of each critic, shape (2, B)."""
+        return torch.stack([critic(obs).squeeze(-1) for critic in critics])
+
+    def _descend(self, loss: torch.Tensor, optimizer: torch.optim.Optimizer, parameters: Any) -> None:
+        parameters = list(parameters)
+        optimizer.zero_grad()
+        loss.backward()
+        if self.is_multi_gpu:
+            reduce_gradients_in_buckets(parameters, self.gpu_world_size, self.grad_reduce_bucket_mb)
+        nn.utils.clip_grad_norm_(parameters, self.max_grad_norm)
+        optimizer.step()
+
+    def _follow(self) -> None:
+        """Move the targets' weights towards the critics', and copy their normalizers."""
+        with torch.no_grad():
+            for target, source in zip(self.targets.parameters(), self.critics.parameters(), strict=True):
+                target.lerp_(source, self.target_step)
+            for statistic, learned in zip(self.targets.buffers(), self.critics.buffers(), strict=True):
+                statistic.copy_(learned)
+
+    def _update_normalization(self) -> None:
+        """Show the normalizers each new observation once."""
+        if self._fresh and self._vector_groups:
+            obs = torch.cat(self._fresh)  # type: ignore[arg-type]
+            for model in (self.actor, *self.critics):
+                model.update_normalization(obs)  # type: ignore[operator]
+        self._fresh.clear()
+
+    def _optimizers(self) -> tuple[torch.optim.Optimizer, ...]:
+        return self.actor_optimizer, self.critic_optimizer, self.temperature_optimizer

@@ -1,0 +1,126 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Wall force on the links, averaged over a control step, and where tip and camera are at its end."""
+
+from __future__ import annotations
+
+import newton
+import numpy as np
+import torch
+import warp as wp
+
+from arcgym.assets.endoscope import Endoscope
+from arcgym.sim.contact.contact_search import ContactSearch
+from arcgym.sim.scope import readout_kernels as kernels
+from arcgym.utils.worlds import fill_worlds
+
+TIP_SPAN = 3
+"""Rings on either side of the last link's own among which the tip is located."""
+
+
+class ScopeReadout:
+    """Sums up the wall forces of each physics step, and measures tip, camera and failures. W worlds, L links, R rings.
+
+    Attributes:
+        step_force: Wall force on each link, mean over one physics step; the coupling fills it [N], shape (W*L,), vec3.
+        wall_force: Wall force on each link, mean over the control step [N], shape (W*L,), vec3.
+        wall_force_norm: Its magnitude [N], shape (W*L,).
+        wall_force_peak: Largest magnitude of ``step_force`` in the control step [N], shape (W*L,).
+        tip_pose: Front of the last link, shape (W,), transform.
+        tip_velocity: Its velocity [m/s] and spin [rad/s], shape (W,), spatial_vector.
+        camera_pose: Pose of the camera, shape (W,), transform.
+        tip_arc: Arc length of the tip along the colon at rest [m], shape (W,).
+        tip_distance: Distance of the tip from the deformed centreline [m], shape (W,).
+        tip_direction: Direction of the deformed centreline there, shape (W,), vec3.
+        broken: 1 where the state is not finite or farther than 10 m away, shape (W,), int.
+        penetrated: 1 where a link's axis came close to the wall or behind it, set by the coupling, shape (W,), int.
+    """
+
+    def __init__(self, endoscope: Endoscope, ring_arc: np.ndarray, num_envs: int, device: str):
+        """Allocate the results.
+
+        Args:
+            endoscope: Endoscope of every world.
+            ring_arc: Arc length of each ring of the colon at rest [m], shape (R,).
+            num_envs: Worlds, W.
+            device: Warp device.
+        """
+        self.num_envs, self.device, self.link_count = num_envs, device, endoscope.num_bodies
+        rows = num_envs * self.link_count
+        self.step_force, self.wall_force = (wp.zeros(rows, dtype=wp.vec3, device=device) for _ in range(2))
+        self.wall_force_norm, self.wall_force_peak = (wp.zeros(rows, dtype=float, device=device) for _ in range(2))
+        self.tip_pose, self.camera_pose = (wp.zeros(num_envs, dtype=wp.transform, device=device) for _ in range(2))
+        self.tip_velocity = wp.zeros(num_envs, dtype=wp.spatial_vector, device=device)
+        self.tip_arc, self.tip_distance = (wp.zeros(num_envs, dtype=float, device=device) for _ in range(2))
+        self.tip_direction = wp.zeros(num_envs, dtype=wp.vec3, device=device)
+        self.broken, self.penetrated = (wp.zeros(num_envs, dtype=int, device=device) for _ in range(2))
+        self._ring_arc = wp.array(ring_arc, dtype=float, device=device)
+        self._tip_offset = wp.vec3(0.0, 0.0, endoscope.tip_offset)
+        camera = endoscope.stage.camera
+        self._camera_offset = wp.transform(wp.vec3(*camera.position), wp.quat(*camera.quaternion))
+
+    def clear(self) -> None:
+        """Start a control step."""
+        for array in (self.wall_force, self.wall_force_peak, self.penetrated):
+            array.zero_()
+
+    def collect(self) -> None:
+        """Add the physics step's forces to the control step's, and clear them."""
+        wp.launch(
+            kernels.collect_forces,
+            self.step_force.shape,
+            outputs=[self.step_force, self.wall_force, self.wall_force_peak],
+            device=self.device,
+        )
+
+    def finish(self, steps: int) -> None:
+        """End a control step of ``steps`` physics steps: the sum becomes a mean."""
+        wp.to_torch(self.wall_force).mul_(1.0 / steps)
+
+    def update(self, state: newton.State, contact: ContactSearch, x: wp.array) -> None:
+        """Measure tip, camera, magnitudes and failures.
+
+        Args:
+            state: State of all scopes.
+            contact: Contact search; its ring centres and the links' rings must be those of ``x`` and ``state``.
+            x: Wall positions [m], shape (V, W), vec3.
+        """
+        wp.launch(
+            kernels.measure_forces,
+            self.wall_force.shape,
+            inputs=[self.wall_force],
+            outputs=[self.wall_force_norm],
+            device=self.device,
+        )
+        wp.launch(
+            kernels.read_tip,
+            self.num_envs,
+            inputs=[state.body_q, state.body_qd, self.link_count, self._tip_offset, self._camera_offset],
+            outputs=[self.tip_pose, self.tip_velocity, self.camera_pose],
+            device=self.device,
+        )
+        wp.launch(
+            kernels.locate_tip,
+            self.num_envs,
+            inputs=[self.tip_pose, contact.centers, self._ring_arc, contact.ring, TIP_SPAN],
+            outputs=[self.tip_arc, self.tip_distance, self.tip_direction],
+            device=self.device,
+        )
+        self._flag_broken(state, x)
+
+    def _flag_broken(self, state: newton.State, x: wp.array) -> None:
+        self.broken.zero_()
+        wp.launch(kernels.flag_broken_points, x.shape, inputs=[x], outputs=[self.broken], device=self.device)
+        wp.launch(
+            kernels.flag_broken_bodies,
+            state.body_q.shape,
+            inputs=[state.body_q, self.link_count],
+            outputs=[self.broken],
+            device=self.device,
+        )
+
+    def reset(self, ids: torch.Tensor) -> None:
+        """Forget the control step of the worlds ``ids``, shape (n,), int64."""
+        forces = (self.step_force, self.wall_force, self.wall_force_norm, self.wall_force_peak)
+        for array in (self.penetrated, *forces):
+            fill_worlds(wp.to_torch(array).view(self.num_envs, -1), ids, 0.0)

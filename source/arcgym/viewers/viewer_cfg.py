@@ -1,0 +1,84 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Configuration of the pictures of ``env.render()`` and of videos."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class OutsideViewCfg:
+    """Camera and look of the outside view."""
+
+    width: int = 560
+    """Width of the picture [px]."""
+    height: int = 512
+    """Height of the picture [px]."""
+    azimuth: float = 0.0
+    """Turn of the camera around the body axis [rad]: 0 looks from anterior, +pi/2 from the patient's left. Change it
+    to see the sigmoid loop, which rises towards the front, from the side."""
+    elevation: float = math.radians(8.0)
+    """Height of the camera above the transverse plane [rad], within ±85°."""
+    distance: float = 1.6
+    """From the camera to the middle of the colon [m]. Smaller values exaggerate the perspective."""
+    outside_length: float = 0.07
+    """Part of the scope below the anus that is kept in the picture [m]."""
+    wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
+    """What the wall's colour shows: how far it has moved, its strain, the pull of its anchors, or the force of the
+    links beside it."""
+    scope_color: Literal["force", "plain"] = "force"
+    """Whether the scope is coloured by the force of the wall on each link."""
+    wall_full_scale: float | None = None
+    """Value of the wall that gets the last colour; None for 50 mm, a strain of 10 %, a pull of 1 N, or a force just
+    above the perforation tier. Lower it for gentle robots."""
+    near_alpha: float = 0.16
+    """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
+    rim_alpha: float = 0.70
+    """Opacity added towards silhouettes, 0..1."""
+    far_alpha: float = 0.97
+    """Opacity of the wall that is seen through the lumen, 0..1."""
+    ghost_alpha: float = 0.42
+    """The same where the scope lies behind it, 0..1."""
+    scope_share: float = 0.4
+    """Smallest share of the scope in the picture, 0..1, however many loops of the colon lie before it."""
+    edge_threshold: float = 0.06
+    """Difference of neighbouring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
+    """
+    depth_contrast: float = 0.7
+    """Strength of the shade behind loops that lie in front of others, 0..1."""
+
+
+@configclass
+class ViewerCfg:
+    """Picture of one world: the endoscope's view beside the outside view, with numbers below."""
+
+    class_type: Any = "arcgym.viewers.two_pane:TwoPaneView"
+    """Class, or its text ``"module:Class"``, that is built as ``class_type(env, cfg)`` and draws ``frame(env_id)``.
+    Change it, and subclass this configuration for its settings, to draw another picture."""
+
+    env_id: int = 0
+    """World that ``env.render()`` draws."""
+
+    outside: OutsideViewCfg = OutsideViewCfg()
+    """Camera, colors and look of the outside view; its height is the endoscope view's size too."""
+
+    samples: int = 2
+    """Rays a pixel of the endoscope's view. 1 is twice as fast, 4 gives the smoothest edges."""
+
+    metrics: tuple[str, ...] = ("s_c", "s_o")
+    """Metrics terms of the task whose value in the last step is shown; those that it lacks are left out."""
+
+    def validate_config(self) -> None:
+        """Check the numbers.
+
+        Raises:
+            ValueError: If the world or the number of rays cannot be.
+        """
+        if self.env_id < 0:
+            raise ValueError(f"viewer.env_id is {self.env_id}, expected the index of a world, 0 or more.")
+        if self.samples < 1:
+            raise ValueError(f"viewer.samples is {self.samples}, expected 1 or more rays a pixel.")

@@ -1,4 +1,0 @@
-# Copyright (c) 2026, The ARCGym Developers.
-# SPDX-License-Identifier: BSD-3-Clause
-
-"""Learning settings of the capsule tasks."""

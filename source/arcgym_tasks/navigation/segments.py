@@ -1,0 +1,32 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""The segments that have tasks, and their time limits; imports neither torch nor Newton."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+Start = Literal["segment", "rest"]
+"""Where an episode begins: at the start of its segment, or at rest in the anus."""
+
+TIME_LIMIT_S: dict[str, float] = {"rectum": 10.0, "sigmoid": 45.0, "descending": 16.0, "splenic": 27.0}
+"""Time limit of each segment [s], anus first: three times what a scripted expert needs that advances at 40 mm/s and
+steers by the deformed centerline (2.1 to 3.4, 11 to 15, 4.5 to 5.5 and 3.6 to 9 s). A line here makes a segment's tasks
+for every robot."""
+
+
+def time_limit_s(segment: str, start: Start = "segment") -> float:
+    """Return the time limit of a task [s]; from rest, the limits of the segments on the way are added up.
+
+    Raises:
+        ValueError: If a segment is not in :data:`TIME_LIMIT_S`.
+    """
+    if segment not in TIME_LIMIT_S:
+        raise ValueError(
+            f"env.segment '{segment}' has no time limit of its own; set env.episode_length_s [s], or choose one of "
+            f"{', '.join(TIME_LIMIT_S)}."
+        )
+    names = list(TIME_LIMIT_S)
+    way = names[: names.index(segment) + 1] if start == "rest" else [segment]
+    return sum(TIME_LIMIT_S[name] for name in way)
