@@ -205,7 +205,7 @@ class Simulation:
             "link_ring": self.contact.ring,
             **self.actuation.memory,
         }
-        views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()}
+        views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()} | self.contact.memory
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
     def read_snapshot(self, env_id: int) -> Snapshot:

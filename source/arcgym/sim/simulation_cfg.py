@@ -25,8 +25,16 @@ class ContactCfg:
     friction: float = 0.1
     """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
+    friction_stiffness: float = 2000.0
+    """Stiffness along the wall of a contact that friction holds [N/m]: a contact of 1 N slides after
+    ``friction * 1 N / friction_stiffness``, 0.05 mm. Softer, and a shaft that stops springs back visibly; stiffer, and
+    it needs a shorter ``SimulationCfg.dt``."""
+    static_friction: float = 1.0
+    """Static over dynamic friction. 1 for Coulomb's law with one coefficient; above it, contacts that have stopped hold
+    by so much more, and stick and slip."""
     slip_velocity: float = 0.001
-    """Speed under which friction is viscous [m/s]. A link pulled by half of what friction holds creeps at 0.3 of it."""
+    """Speed at which friction has fallen from static to dynamic but for 1/e [m/s]; without effect while
+    ``static_friction`` is 1."""
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
     search_gap: float = 0.001

@@ -56,7 +56,12 @@ class SnapshotLibrary:
             )
 
     def _stack(self, snapshots: Sequence[Snapshot]) -> dict[str, torch.Tensor]:
-        names = snapshots[0].arrays
-        return {
-            name: torch.tensor(np.stack([s.arrays[name] for s in snapshots]), device=self._device) for name in names
-        }
+        return {name: self._stacked(name, snapshots) for name in self._rest.arrays}
+
+    def _stacked(self, name: str, snapshots: Sequence[Snapshot]) -> torch.Tensor:
+        """One array of all states. Friction's memory is empty in states that were made with room for other contacts."""
+        empty = np.zeros_like(self._rest.arrays[name])
+        values = [snapshot.arrays.get(name, empty) for snapshot in snapshots]
+        if name.startswith("contact_"):
+            values = [value if value.shape == empty.shape else empty for value in values]
+        return torch.tensor(np.stack(values), device=self._device)

@@ -35,7 +35,7 @@ class ContactRecords:
     """
 
     capacity: int  # slots of a world, S
-    start: wp.array2d[int]  # first slot of each link in the pool of all worlds, and of none after the last, (W, L + 1)
+    start: wp.array2d[int]  # first slot of each link among its world's, and of none after the last, shape (W, L + 1)
     link: wp.array[int]  # link of each slot, -1 where it is free, shape (W*S,)
     face: wp.array[int]  # shape (W*S,)
     corners: wp.array[wp.vec3i]  # the face's three wall vertices
@@ -44,6 +44,7 @@ class ContactRecords:
     weight: wp.array[float]  # share of the contact stiffness
     direction: wp.array[wp.vec3]  # unit vector there from the link's axis
     normal: wp.array[wp.vec3]  # outward normal of the wall there at detection
+    slide: wp.array[wp.vec3]  # elastic displacement of the link along the wall, which friction bounds [m]
     vertex_head: wp.array2d[int]  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array[int]  # shape (3*W*S,)
     ring_head: wp.array2d[int]  # first record whose lowest ring is this one, shape (R, W)
@@ -53,12 +54,14 @@ class ContactRecords:
 
 @wp.struct
 class ContactLaw:
-    """Penalty contact with regularised Coulomb friction."""
+    """Penalty contact with Coulomb friction that holds elastically until it slides."""
 
     stiffness: float  # of a shallow contact inside a face [N/m]
     hardening: float  # depth at which the stiffness has doubled, as a secant [m]
     damping: float  # [N s/m], approach only
-    slip_velocity: float  # speed under which friction is viscous [m/s]
+    friction_stiffness: float  # across the wall, of a contact that sticks [N/m]
+    static_friction: float  # static over dynamic friction
+    slip_velocity: float  # speed at which friction has fallen to 1/e of the way from static to dynamic [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
     search_gap: float  # distance up to which records are kept [m]
 
@@ -107,8 +110,23 @@ def contact_geometry(
 
 
 @wp.func
-def slip_scale(speed: float, limit: float) -> float:
-    """1/speed above ``limit``, smoothly bounded below it: friction = mu N * scale * slip (Li et al. 2020, IPC)."""
-    if speed > limit:
-        return 1.0 / speed
-    return (2.0 - speed / limit) / limit
+def slide_stiffness(
+    law: ContactLaw, share: float, friction: float, normal: float, slide: wp.vec3, speed: float
+) -> float:
+    """Return the secant stiffness [N/m] with which friction resists the displacement ``slide`` along the wall [m].
+
+    Friction is a spring that slides on where it would pull harder than Coulomb's limit (Cundall and Strack 1979, "A
+    discrete numerical model for granular assemblies"): it holds without creep. The limit falls from static to dynamic
+    friction with the speed of the slip (Stribeck).
+
+    Args:
+        law: Contact law.
+        share: Share of a full contact.
+        friction: Coulomb coefficient, dynamic.
+        normal: Normal force [N].
+        slide: Displacement of the link along the wall, elastic part and that of this step [m].
+        speed: Speed of the slip [m/s].
+    """
+    ratio = speed / law.slip_velocity
+    limit = friction * normal * (1.0 + (law.static_friction - 1.0) * wp.exp(-ratio * ratio))
+    return wp.min(share * law.friction_stiffness, limit / wp.max(wp.length(slide), 1.0e-12))

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import numpy as np
+import torch
 import warp as wp
 
 from arcgym.sim.contact import contact_search_kernels as kernels
@@ -65,6 +66,9 @@ class ContactSearch:
         self.bounds.patch = wp.zeros((num_envs, len(topology.patch_start) - 1), dtype=wp.vec4, device=device)
         self.candidates = self._candidates(cfg.link_capacity)
         self.records = self._records(max(cfg.link_capacity, cfg.capacity * self.link_count))
+        self.past = kernels.PastContacts()
+        for name in ("start", "face", "slide"):
+            setattr(self.past, name, wp.clone(getattr(self.records, name)))
 
     def _surface(self, topology: LumenTopology, reach: int) -> kernels.LumenSurface:
         surface = kernels.LumenSurface()
@@ -75,7 +79,8 @@ class ContactSearch:
 
     def _law(self, cfg: ContactCfg) -> ContactLaw:
         law = ContactLaw()
-        for name in ("stiffness", "hardening", "damping", "slip_velocity", "wall_radius", "search_gap"):
+        names = ("stiffness", "hardening", "damping", "friction_stiffness", "static_friction", "slip_velocity")
+        for name in (*names, "wall_radius", "search_gap"):
             setattr(law, name, getattr(cfg, name))
         return law
 
@@ -99,13 +104,23 @@ class ContactSearch:
         records.corners = wp.zeros(slots, dtype=wp.vec3i, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(slots, dtype=float, device=self.device))
-        for name in ("bary", "direction", "normal"):
+        for name in ("bary", "direction", "normal", "slide"):
             setattr(records, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
         records.vertex_next = wp.full(3 * slots, -1, dtype=int, device=self.device)
         records.ring_head = wp.full((self.ring_count, self.num_envs), -1, dtype=int, device=self.device)
         records.ring_next = wp.full(slots, -1, dtype=int, device=self.device)
         return records
+
+    @property
+    def memory(self) -> dict[str, torch.Tensor]:
+        """What friction remembers of each world's contacts, as views of shape (N, ...)."""
+        records, n = self.records, self.num_envs
+        return {
+            "contact_start": wp.to_torch(records.start),
+            "contact_face": wp.to_torch(records.face).view(n, -1),
+            "contact_slide": wp.to_torch(records.slide).view(n, -1),
+        }
 
     def update_centers(self, x: wp.array) -> None:
         """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W), vec3."""
@@ -145,7 +160,9 @@ class ContactSearch:
         self._list()
 
     def _select(self, x: wp.array, body_q: wp.array) -> None:
-        """Record the faces near each link."""
+        """Record the faces near each link, and what friction held where it touched the same face before."""
+        for name in ("start", "face", "slide"):
+            wp.copy(getattr(self.past, name), getattr(self.records, name))
         worlds, links = self.num_envs, self.link_count
         wp.launch(
             kernels.bound_faces,
@@ -165,7 +182,7 @@ class ContactSearch:
         wp.launch(
             kernels.fill_slots,
             (worlds, links + 1),
-            inputs=[self.candidates],
+            inputs=[self.candidates, self.past],
             outputs=[self.records],
             device=self.device,
         )

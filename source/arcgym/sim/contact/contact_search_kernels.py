@@ -212,14 +212,12 @@ def allot_slots(candidates: Candidates, records: ContactRecords):
     """Give every link as many slots as it has candidates. Launch (W,)."""
     w = wp.tid()
     links = candidates.count.shape[1]
-    first = w * records.capacity
-    end = first + records.capacity
-    slot = first
+    slot = int(0)
     dropped = int(0)
     for link in range(links):
         records.start[w, link] = slot
         wanted = candidates.count[w, link]
-        given = wp.min(wp.min(wanted, candidates.capacity), end - slot)
+        given = wp.min(wp.min(wanted, candidates.capacity), records.capacity - slot)
         dropped += wanted - given
         slot += given
     records.start[w, links] = slot
@@ -293,19 +291,40 @@ def closest_point(
     return out
 
 
+@wp.struct
+class PastContacts:
+    """Contacts of the last step, see :class:`ContactRecords`."""
+
+    start: wp.array2d[int]  # shape (W, L + 1)
+    face: wp.array[int]  # shape (W*S,)
+    slide: wp.array[wp.vec3]  # [m], shape (W*S,)
+
+
+@wp.func
+def past_slide(past: PastContacts, face: int, link: int, w: int, capacity: int) -> wp.vec3:
+    """Return the displacement that friction held between a link and a face, zero where they did not touch [m]."""
+    for k in range(past.start[w, link], past.start[w, link + 1]):
+        if past.face[w * capacity + k] == face:
+            return past.slide[w * capacity + k]
+    return wp.vec3(0.0)
+
+
 @wp.kernel
-def fill_slots(candidates: Candidates, records: ContactRecords):
+def fill_slots(candidates: Candidates, past: PastContacts, records: ContactRecords):
     """Copy the candidates into the slots of their links. Launch (W, L + 1); the last frees what is left over."""
     w, link = wp.tid()
+    first = w * records.capacity
     if link == candidates.count.shape[1]:
-        for slot in range(records.start[w, link], (w + 1) * records.capacity):
-            records.link[slot] = -1
+        for k in range(records.start[w, link], records.capacity):
+            records.link[first + k] = -1
         return
-    first = records.start[w, link]
-    for slot in range(first, records.start[w, link + 1]):
-        records.link[slot] = link
-        records.face[slot] = candidates.face[w, link, slot - first]
-        records.distance[slot] = candidates.distance[w, link, slot - first]
+    start = records.start[w, link]
+    for k in range(start, records.start[w, link + 1]):
+        face = candidates.face[w, link, k - start]
+        records.link[first + k] = link
+        records.face[first + k] = face
+        records.distance[first + k] = candidates.distance[w, link, k - start]
+        records.slide[first + k] = past_slide(past, face, link, w, records.capacity)
 
 
 @wp.kernel
@@ -343,12 +362,13 @@ def use_directions_as_normals(links: LinkShapes, records: ContactRecords):
     normal points away from the link, pushes it back then, too.
     """
     w, link = wp.tid()
+    first = w * records.capacity
     nearest = float(FAR)
-    for slot in range(records.start[w, link], records.start[w, link + 1]):
-        nearest = wp.min(nearest, records.distance[slot])
+    for k in range(records.start[w, link], records.start[w, link + 1]):
+        nearest = wp.min(nearest, records.distance[first + k])
     if nearest > CLEARANCE * links.radius[link]:
-        for slot in range(records.start[w, link], records.start[w, link + 1]):
-            records.normal[slot] = records.direction[slot]
+        for k in range(records.start[w, link], records.start[w, link + 1]):
+            records.normal[first + k] = records.direction[first + k]
 
 
 @wp.kernel
@@ -359,7 +379,7 @@ def build_contact_lists(vertex_ring: wp.array[int], records: ContactRecords):
     """
     w = wp.tid()
     first = w * records.capacity
-    count = records.start[w, records.start.shape[1] - 1] - first
+    count = records.start[w, records.start.shape[1] - 1]
     for back in range(count):
         slot = first + count - 1 - back
         face = records.corners[slot]

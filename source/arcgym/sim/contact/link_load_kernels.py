@@ -12,7 +12,7 @@ from arcgym.sim.contact.contact_kernels import (
     LinkShapes,
     contact_geometry,
     normal_force,
-    slip_scale,
+    slide_stiffness,
 )
 from arcgym.sim.geometry_kernels import corner_point
 from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
@@ -28,13 +28,13 @@ def contact_load(
     normal: wp.vec3,
     lin: wp.vec3,
     wall_v: wp.vec3,
+    slide: wp.vec3,
     dt: float,
 ) -> ArticulatedBody:
     """Load of one contact, a ``share`` of a full one, at its point, which moves at ``lin``; the wall's at ``wall_v``.
 
-    The normal spring and damper act with their values at the end of the step, the spring's stiffness as a secant that
-    lets it not pull. Friction is a damper that gives Coulomb's
-    force at the present slip: it brakes and holds at any friction coefficient, and creeps below the slip velocity.
+    Springs and damper act with their values at the end of the step; the stiffness of the normal spring is a secant that
+    lets it not pull. ``slide`` is how far the link has come along the wall so far [m].
     """
     out = ArticulatedBody()
     end = gap - dt * wp.dot(normal, lin)
@@ -46,12 +46,14 @@ def contact_load(
             damping = share * law.damping
         slip = relative - approach * normal
         now = share * normal_force(law, wp.max(-gap, 0.0))
-        drag = friction * now[0] * slip_scale(wp.length(slip), law.slip_velocity)
+        end_slide = slide - wp.dot(normal, slide) * normal + dt * slip
+        hold = slide_stiffness(law, share, friction, now[0], end_slide, wp.length(slip))
         push = share * normal_force(law, -end)
         stiffness = wp.max(-push[0] / end, 0.5 * push[1])
-        out.force = (damping * approach + push[0]) * normal + drag * slip
+        out.force = (damping * approach + push[0]) * normal + hold * end_slide
         along = wp.outer(normal, normal)
-        out.ll = (dt * (damping + dt * stiffness)) * along + (dt * drag) * (wp.identity(n=3, dtype=float) - along)
+        across = wp.identity(n=3, dtype=float) - along
+        out.ll = (dt * (damping + dt * stiffness)) * along + (dt * dt * hold) * across
     return out
 
 
@@ -66,11 +68,15 @@ def load_contacts(
     records: ContactRecords,
     law: ContactLaw,
     friction: wp.array[float],
+    body_q_prev: wp.array[wp.transform],
+    elapsed: float,
     dt: float,
     loads: LinkLoads,
     penetrated: wp.array[int],
 ):
     """Sum the contacts of each link with the wall where it is. Launch (L, W).
+
+    ``body_q_prev`` are the link poses at the start of the physics step, ``elapsed`` [s] before.
 
     Sets ``penetrated``, shape (W,), where a link's axis is so close to the wall that it may get, or be, behind it.
     """
@@ -79,7 +85,9 @@ def load_contacts(
     pose = body_q[row]
     center = wp.transform_point(pose, com[link])
     total = ArticulatedBody()
-    for slot in range(records.start[w, link], records.start[w, link + 1]):
+    back = body_q_prev[row] * wp.transform_inverse(pose)
+    for k in range(records.start[w, link], records.start[w, link + 1]):
+        slot = w * records.capacity + k
         f = records.corners[slot]
         u = records.bary[slot]
         wall_v = corner_point(v, f, u, w)
@@ -89,9 +97,9 @@ def load_contacts(
         if c.gap + radius < CLEARANCE * links.radius[link]:
             penetrated[w] = 1
         lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - center)
-        one = shift_origin(
-            contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, dt), p - center
-        )
+        slide = records.slide[slot] + p - wp.transform_point(back, p) - elapsed * wall_v
+        load = contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, slide, dt)
+        one = shift_origin(load, p - center)
         total.ll += one.ll
         total.la += one.la
         total.aa += one.aa

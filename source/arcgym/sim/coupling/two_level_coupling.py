@@ -58,17 +58,18 @@ class TwoLevelCoupling:
         dt = sim.cfg.dt / count
         wp.copy(self.body_q_prev, state.body_q)
         sim.contact.detect(sim.nodal_pos, state.body_q)
-        for _ in range(count):
-            self._load_contacts(dt)
+        for k in range(count):
+            self._load_contacts(k * dt, dt)
             sim.actuation.apply(state, sim.control, sim.contact.ring, dt)
             self.solver.step(state, state, sim.control, None, dt)
             self._record(1.0 / count)
         sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
+        sim.wall.advance_slides(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev)
 
-    def _load_contacts(self, dt: float) -> None:
+    def _load_contacts(self, elapsed: float, dt: float) -> None:
         sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
         inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
-        inputs += [contact.links, contact.records, contact.law, contact.friction, dt]
+        inputs += [contact.links, contact.records, contact.law, contact.friction, self.body_q_prev, elapsed, dt]
         wp.launch(
             kernels.load_contacts,
             loads.wrench.shape,

@@ -15,7 +15,7 @@ from arcgym.sim.contact.contact_kernels import (
     LinkShapes,
     contact_geometry,
     normal_force,
-    slip_scale,
+    slide_stiffness,
 )
 from arcgym.sim.contact.self_contact_kernels import SelfContactForce
 from arcgym.sim.geometry_kernels import corner_point
@@ -100,7 +100,7 @@ class ContactForce:
     stiffness: float  # along the normal [N/m]
     friction: float  # secant stiffness across the normal [N/m]
     normal: wp.vec3  # unit vector from the scope into the wall
-    slip: wp.vec3  # of link against wall in this step, across the normal [m]
+    slip: wp.vec3  # of the wall along the link, elastic part and that of this step [m]
 
 
 @wp.func
@@ -129,9 +129,11 @@ def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d[wp.vec3], 
             damping = share * contacts.law.damping / contacts.dt
             out.normal_force -= damping * opening
             out.stiffness += damping
-        out.slip = slip - c.normal * opening
-        limit = contacts.law.slip_velocity * contacts.dt
-        out.friction = contacts.friction[w] * out.normal_force * slip_scale(wp.length(out.slip), limit)
+        slip = slip - c.normal * opening
+        held = contacts.records.slide[slot]
+        out.slip = slip - held + wp.dot(c.normal, held) * c.normal
+        speed = wp.length(slip) / contacts.dt
+        out.friction = slide_stiffness(contacts.law, share, contacts.friction[w], out.normal_force, out.slip, speed)
     return out
 
 
@@ -173,6 +175,20 @@ def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: M
     measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip
     measured.normal[slot] = c.normal
     measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
+
+
+@wp.kernel
+def advance_slides(contacts: WallContacts, x: wp.array2d[wp.vec3]):
+    """Keep of every contact's displacement along the wall what friction holds. Launch (S, W)."""
+    k, w = wp.tid()
+    slot = w * contacts.records.capacity + k
+    if contacts.records.link[slot] < 0:
+        return
+    c = contact_force_at(contacts, slot, x, w)
+    slide = wp.vec3(0.0)
+    if c.normal_force > 0.0:
+        slide = -(c.friction / (contacts.records.weight[slot] * contacts.law.friction_stiffness)) * c.slip
+    contacts.records.slide[slot] = slide
 
 
 @wp.func

@@ -144,6 +144,12 @@ class WallSolver:
                 self._sweep(x, contacts)
         wp.launch(wall_kernels.finish, x.shape, [self.x_prev, self.dt, x, v], device=self.device)
 
+    def advance_slides(self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
+        """Keep of each contact's displacement along the wall what friction holds; arguments as in :meth:`step`."""
+        contacts = wall_contacts(contact, self.dt, self.x_prev if self.moves else x, body_q, body_q_prev)
+        slots = (contacts.records.capacity, self.num_envs)
+        wp.launch(wall_kernels.advance_slides, slots, inputs=[contacts, x], device=self.device)
+
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         for color in self.colors:
             args = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
