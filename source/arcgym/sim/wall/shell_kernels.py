@@ -138,8 +138,8 @@ def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) ->
 
 
 @wp.kernel
-def measure_hinges(shell: ShellElements, x: wp.array2d[wp.vec3]):
-    """Angle of every hinge from rest. Launch (H, W)."""
+def measure_hinges(x: wp.array2d[wp.vec3], shell: ShellElements):
+    """Write ``shell.angle_change`` at the positions ``x`` [m], shape (V, W). Launch (H, W)."""
     h, w = wp.tid()
     shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
 
@@ -153,8 +153,8 @@ def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
 
 
 @wp.kernel
-def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d[wp.vec3]):
-    """Normal and corner forces of every triangle, with the bending of its hinges. Launch (F, W).
+def measure_triangles(x: wp.array2d[wp.vec3], tissue: Tissue, shell: ShellElements):
+    """Write ``shell.scaled_normal`` and ``shell.corner_force`` at ``x`` [m], shape (V, W). Launch (F, W).
 
     A hinge turns its triangle by pulling at the corners along the normal: at the corner opposite with its moment over
     the height, and back at the others by where the foot of the height is.

@@ -108,5 +108,7 @@ class Shell:
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data = self.data
-        wp.launch(shell_kernels.measure_hinges, data.angle_change.shape, [data, x], device=self.device)
-        wp.launch(shell_kernels.measure_triangles, data.scaled_normal.shape, [data, tissue, x], device=self.device)
+        shape = data.angle_change.shape
+        wp.launch(shell_kernels.measure_hinges, shape, inputs=[x], outputs=[data], device=self.device)
+        shape = data.scaled_normal.shape
+        wp.launch(shell_kernels.measure_triangles, shape, inputs=[x, tissue], outputs=[data], device=self.device)

@@ -61,8 +61,13 @@ class WallReadout:
 
     def measure(self, x: wp.array) -> None:
         """Take the wall positions ``x`` [m], shape (V, W), of one physics step in."""
-        results = [self.strain, self.strain_peak, self.tension, self.tension_peak]
-        wp.launch(measure_rings, self._shape, [x, self._rings, self._anchor_scale, *results], device=self._device)
+        wp.launch(
+            measure_rings,
+            self._shape,
+            inputs=[x, self._rings, self._anchor_scale],
+            outputs=[self.strain, self.strain_peak, self.tension, self.tension_peak],
+            device=self._device,
+        )
 
     def finish(self, steps: int) -> None:
         """End a control step of ``steps`` physics steps: sums become means."""
