@@ -95,5 +95,6 @@ class RunArguments(TaskArguments):
         "run folder, or a regular expression for it (default: the newest)", None, group="run"
     )
     checkpoint: str | None = argument("path, file name, 'latest' or 'best' (default: latest)", None, group="run")
+    no_params: bool = argument("use the registered configurations, not those of the run", False, group="run")
     video: bool = argument("record MP4 videos", False, group="video")
     video_length: int = argument("control steps of a video (default: 200)", 200, type=positive, group="video")

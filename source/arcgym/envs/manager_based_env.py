@@ -20,6 +20,7 @@ from arcgym.managers import ActionManager, EventManager, ObservationManager, Rec
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.configclass import validate
 from arcgym.utils.garbage import paused_collection
+from arcgym.utils.progress import report
 from arcgym.utils.seed import set_seed
 from arcgym.utils.string import resolve_callable
 from arcgym.utils.threads import one_thread
@@ -82,11 +83,14 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
             logger.warning("No seed is set: runs will differ. Set env.seed for runs that can be repeated.")
         else:
             cfg.seed = self.seed(cfg.seed)
+        report("reading stages")
         self.scene: InteractiveScene = _class_of(cfg.scene)(cfg.scene, cfg.sim)
         self.sim = self.scene.sim
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
+        report("compiling kernels (first run only)")
         self._refresh_all()
         self._init_buffers()
+        report("starting managers")
         self.load_managers()
         self.event_manager.apply("startup")
         self._refresh_all()

@@ -37,12 +37,18 @@ class MetricsManager(ManagerBase):
         self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
         self._num_steps = torch.zeros(self.num_envs, device=self.device)
         self._step_values: dict[str, torch.Tensor] = {}
+        self._finished = torch.zeros_like(self._values)
         self._sort_rows()
 
     @property
     def step_values(self) -> dict[str, torch.Tensor]:
         """Value of each term in the last step, shape (N,); empty before the first."""
         return self._step_values
+
+    @property
+    def finished(self) -> dict[str, torch.Tensor]:
+        """Each term over the last episode that a world finished, shape (N,); zero before the first one."""
+        return {name: self._finished[index] for index, name in enumerate(self._terms)}
 
     def compute(self) -> None:
         """Takes the values of this control step in; one that is not finite counts as zero."""
@@ -77,6 +83,8 @@ class MetricsManager(ManagerBase):
         mean = self._rows_of("mean")
         reduced = torch.cat((values[: mean.start], values[mean] / steps.clamp(min=1)))
         means = (reduced * has_run).sum(dim=1) / has_run.sum().clamp(min=1)
+        rows = [self._order.index(name) for name in self._terms]
+        self._finished[:, selected] = torch.where(steps > 0, reduced[rows], self._finished[:, selected])
         fill_worlds(self._values, env_ids, 0.0, dim=1)
         fill_worlds(self._num_steps, env_ids, 0.0)
         by_name = dict(zip(self._order, means, strict=True))

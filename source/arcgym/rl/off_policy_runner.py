@@ -35,9 +35,13 @@ class OffPolicyRunner(OnPolicyRunner):
         super().save(path, infos)
         if self.saves_replay and Path(path).name != "model_best.pt":
             file = Path(path).with_name(REPLAY_FILE)
-            temporary = f"{file}.tmp"
-            torch.save(self.alg.replay.state_dict(), temporary)  # type: ignore[attr-defined]
-            os.replace(temporary, file)
+            temporary = Path(f"{file}.tmp")
+            try:
+                torch.save(self.alg.replay.state_dict(), temporary)  # type: ignore[attr-defined]
+                os.replace(temporary, file)
+            except (OSError, RuntimeError) as error:  # torch raises either on a full disk
+                temporary.unlink(missing_ok=True)
+                print(f"replay memory {file} not written: {error}; training goes on", flush=True)
 
     def load(
         self, path: str, load_cfg: dict | None = None, strict: bool = True, map_location: str | None = None

@@ -12,6 +12,26 @@ import dataclasses
 from typing import Any
 
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import FieldError, Range, require, require_at_least, require_fraction, require_positive
+
+ACTIVATIONS = (
+    "elu",
+    "selu",
+    "relu",
+    "crelu",
+    "lrelu",
+    "tanh",
+    "sigmoid",
+    "softplus",
+    "gelu",
+    "swish",
+    "mish",
+    "identity",
+)
+"""Activations that rsl_rl resolves."""
+
+LOG_WRITERS = {"wandb": "WandbLogWriter", "neptune": "NeptuneLogWriter"}
+"""rsl_rl's writer by the name of the logger; ``tensorboard`` is its own."""
 
 
 @configclass
@@ -48,6 +68,23 @@ class CnnCfg:
     global_pool: str = "none"
     """One of ``none``, ``max``, ``avg``: pools the last layer to one value a channel. Loses where the lumen is."""
 
+    def validate_config(self) -> None:
+        """Check sizes and names, and that each sequence has an entry for every layer.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "output_channels", "kernel_size", "stride", "dilation")
+        require(self, "padding", ("none", "zeros", "reflect", "replicate", "circular"))
+        require(self, "norm", ("none", "batch", "layer"))
+        require(self, "activation", ACTIVATIONS)
+        require(self, "global_pool", ("none", "max", "avg"))
+        layers = len(self.output_channels)
+        for name in ("kernel_size", "stride", "dilation", "norm", "max_pool"):
+            value = getattr(self, name)
+            if isinstance(value, list) and len(value) != layers:
+                raise FieldError(self, name, f"has {len(value)} entries, expected {layers}, as output_channels has.")
+
 
 @configclass
 class GaussianDistributionCfg:
@@ -67,6 +104,15 @@ class GaussianDistributionCfg:
 
     learn_std: bool = True
     """Whether the standard deviation is learnt. Turn off for a fixed exploration noise."""
+
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_positive(self, "init_std", "std_range")
+        require(self, "std_type", ("scalar", "log"))
 
 
 @configclass
@@ -98,6 +144,17 @@ class RslRlMlpModelCfg:
 
     distribution_cfg: GaussianDistributionCfg | BetaDistributionCfg | None = None
     """Distribution over actions; None for a critic."""
+
+    def validate_config(self) -> None:
+        """Check widths and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "hidden_dims")
+        require(self, "activation", ACTIVATIONS)
+        if not self.hidden_dims:
+            raise FieldError(self, "hidden_dims", "is empty, expected one width or more.")
 
 
 @configclass
@@ -162,6 +219,20 @@ class RslRlPpoAlgorithmCfg:
 
     share_cnn_encoders: bool = False
     """Whether the critic uses the actor's encoders; both sets must then name the same image groups."""
+
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "num_learning_epochs", "num_mini_batches")
+        require_positive(self, "learning_rate", "desired_kl", "clip_param", "max_grad_norm")
+        require_fraction(self, "gamma", "lam")
+        require(self, "schedule", ("adaptive", "fixed"))
+        require(self, "optimizer", ("adam", "adamw", "sgd", "rmsprop"))
+        require(self, "entropy_coef", Range(0.0))
+        require(self, "value_loss_coef", Range(0.0))
 
 
 @configclass
@@ -231,6 +302,22 @@ class RslRlOnPolicyRunnerCfg:
     load_checkpoint: str = "latest"
     """Checkpoint to resume from: a file name, ``latest`` or ``best``."""
 
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "num_steps_per_env", "max_iterations", "save_interval")
+        require(self, "logger", ("tensorboard", *LOG_WRITERS))
+        require_positive(self, "clip_actions")
+        for name in ("experiment_name", "run_name"):
+            value = getattr(self, name)
+            if "/" in value or value.startswith("."):
+                raise FieldError(self, name, f"is '{value}', expected a name without '/' and no '.' in front.")
+        if not self.experiment_name:
+            raise FieldError(self, "experiment_name", "is empty, expected a name.")
+
     def to_dict(self) -> dict[str, Any]:
         """Return the training dictionary that rsl_rl 5.5 accepts: None entries left out, logger in its own format."""
         result = _strip(self)
@@ -252,9 +339,8 @@ def _strip(value: Any) -> Any:
 
 def _logger(name: str, project: str) -> str | dict[str, str]:
     """Return rsl_rl's logger entry."""
-    writers = {"wandb": "WandbLogWriter", "neptune": "NeptuneLogWriter"}
     if name == "tensorboard":
         return name
-    if name not in writers:
-        raise ValueError(f"agent.logger is '{name}', expected one of: tensorboard, {', '.join(writers)}.")
-    return {"class_name": writers[name], "project_name": project}
+    if name not in LOG_WRITERS:
+        raise ValueError(f"agent.logger is '{name}', expected one of: tensorboard, {', '.join(LOG_WRITERS)}.")
+    return {"class_name": LOG_WRITERS[name], "project_name": project}
