@@ -14,7 +14,7 @@ from arcgym.utils.registry import CFG_SUFFIX, load_cfg
 from arcgym.utils.string import did_you_mean
 
 ARGUMENTS = ("cfg", "render_mode", "num_envs", "device", "seed")
-"""What an environment and ``gymnasium.make`` take; ``gymnasium.make_vec`` adds ``to_numpy``."""
+"""Arguments of environments and of ``gymnasium.make``; ``gymnasium.make_vec`` adds ``to_numpy``."""
 
 RESET_OPTIONS = ("env_ids", "reset_mask")
 """Options of ``reset``."""

@@ -37,7 +37,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     It is a :class:`gymnasium.vector.VectorEnv`, and a :class:`gymnasium.Env` because ``gymnasium.make`` asks for one.
     Actions are NumPy arrays or torch tensors. Observations, rewards and flags are torch tensors on :attr:`device` that
     no later step writes to: they may be kept, but not written to, because the next frame stack is made of the last.
-    Steps and resets leave torch's inference mode, so that the state of terms made inside can be changed outside.
+    Steps and resets leave torch's inference mode: the state of terms made inside can be changed outside.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.DISABLED}
@@ -157,7 +157,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         return self
 
     def load_managers(self) -> None:
-        """Builds the managers; terms may look at the managers built before them."""
+        """Build the managers; terms may look at the managers built before them."""
         self.event_manager = EventManager(self.cfg.events, self)
         self.action_manager = ActionManager(self.cfg.actions, self)
         self.observation_manager = ObservationManager(self.cfg.observations, self)
@@ -243,7 +243,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self._view = None
 
     def _init_buffers(self) -> None:
-        """Makes what terms may read while the managers are built."""
+        """Make what terms may read while the managers are built."""
 
     def _managers(self) -> list[Any]:
         return [self.event_manager, self.action_manager, self.observation_manager, self.recorder_manager]
@@ -263,7 +263,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.common_step_counter += 1
 
     def _reset_idx(self, env_ids: torch.Tensor) -> None:
-        """Puts worlds back to the start of an episode and collects the logs.
+        """Put worlds back to the start of an episode and collect the logs.
 
         Args:
             env_ids: World indices, int64, shape (n,).
@@ -282,7 +282,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.recorder_manager.record_post_reset(env_ids)
 
     def _refresh_all(self) -> None:
-        """Recomputes what follows from positions, and draws every world again."""
+        """Recompute what follows from positions, and draw every world again."""
         self.sim.forward()
         self.scene.update(0.0)
 

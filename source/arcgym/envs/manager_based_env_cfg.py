@@ -33,7 +33,7 @@ class ManagerBasedEnvCfg:
     """Event terms: a configuration class, or a dict, of :class:`EventTermCfg`; None for none."""
 
     recorders: RecorderManagerBaseCfg | None = None
-    """What to record and where to, such as :class:`arcgym.envs.mdp.TrajectoryRecorderCfg`; None for nothing, which
+    """Records and where they go, such as :class:`arcgym.envs.mdp.TrajectoryRecorderCfg`; None for nothing, which
     costs nothing."""
 
     viewer: ViewerCfg = ViewerCfg()
@@ -50,7 +50,7 @@ class ManagerBasedEnvCfg:
     """Folder for files that terms write; set by the training script."""
 
     def validate_config(self) -> None:
-        """Checks numbers.
+        """Check numbers.
 
         Raises:
             ValueError: If the decimation is below one, or the viewer's world is not among those of the scene.

@@ -36,7 +36,7 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
     """Metrics terms: a configuration class, or a dict, of :class:`MetricsTermCfg`; None for none."""
 
     scale_rewards_by_dt: bool = True
-    """Whether rewards and costs are rates, multiplied by the control step, so that their episode sums do not depend on
+    """Whether rewards and costs are rates, multiplied by the control step: then their episode sums do not depend on
     the control frequency. Set it to False to reproduce work that adds up one value a step."""
 
     compute_final_obs: bool = False
@@ -55,7 +55,7 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
         return self.episode_length_s
 
     def validate_config(self) -> None:
-        """Checks numbers.
+        """Check numbers.
 
         Raises:
             ValueError: If the decimation is below one or the episode has no length.

@@ -19,11 +19,11 @@ class NoiseCfg:
     """Whether the noise is added, multiplied, or put in place of the value."""
 
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draws noise of the shape of ``value``."""
+        """Draw noise of the shape of ``value``."""
         raise NotImplementedError(f"{type(self).__name__} does not define sample.")
 
     def apply(self, value: torch.Tensor) -> torch.Tensor:
-        """Returns the corrupted value, in new memory."""
+        """Return the corrupted value, in new memory."""
         noise = self.sample(value)
         if self.operation == "add":
             return value + noise
@@ -38,7 +38,7 @@ class ConstantNoiseCfg(NoiseCfg):
     """Offset, in the unit of the observation."""
 
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Returns the offset in the shape of ``value``."""
+        """Return the offset in the shape of ``value``."""
         return torch.full_like(value, self.bias)
 
 
@@ -53,7 +53,7 @@ class UniformNoiseCfg(NoiseCfg):
     """Upper bound, in the unit of the observation."""
 
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draws noise of the shape of ``value``."""
+        """Draw noise of the shape of ``value``."""
         return self.n_min + (self.n_max - self.n_min) * torch.rand_like(value)
 
 
@@ -68,5 +68,5 @@ class GaussianNoiseCfg(NoiseCfg):
     """Standard deviation, in the unit of the observation."""
 
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draws noise of the shape of ``value``."""
+        """Draw noise of the shape of ``value``."""
         return self.mean + self.std * torch.randn_like(value)

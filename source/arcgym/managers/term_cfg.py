@@ -60,7 +60,7 @@ class TerminationTermCfg(ManagerTermBaseCfg):
     """A reason to end an episode: ``func`` returns one bool a world, shape (N,)."""
 
     time_out: bool = False
-    """Whether the episode is cut short rather than lost, so that its value is bootstrapped. True for time limits."""
+    """Whether the episode is cut short rather than lost: its value is then bootstrapped. True for time limits."""
 
     success: bool = False
     """Whether an episode that this term ends has reached its goal. Success rates and recorders count these."""
@@ -176,7 +176,7 @@ class ObservationGroupCfg:
     """Replaces the terms' own ``flatten_history_dim`` where ``history_length`` is given here."""
 
     nan_policy: Literal["disabled", "warn", "sanitize", "error"] = "sanitize"
-    """What happens to a value that is not finite: nothing, a message, a zero, or an exception. ``warn`` and ``error``
+    """Treatment of values that are not finite: nothing, a message, a zero, or an exception. ``warn`` and ``error``
     wait for the device every step: use them to find the term that produces it."""
 
     terms: dict[str, ObservationTermCfg] = {}

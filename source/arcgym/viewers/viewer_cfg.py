@@ -28,7 +28,7 @@ class OutsideViewCfg:
     outside_length: float = 0.07
     """Part of the scope below the anus that is kept in the picture [m]."""
     wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
-    """What the wall's colour shows: how far it has moved, its strain, the pull of its anchors, or the force of the
+    """Quantity that the wall's color shows: how far it moved, its strain, the pull of its anchors, or the force of the
     links beside it."""
     scope_color: Literal["force", "plain"] = "force"
     """Whether the scope is coloured by the force of the wall on each link."""
