@@ -72,3 +72,18 @@ def test_rollout_memory(counting_env):
     obs = RslRlVecEnvWrapper(counting_env).get_observations()
     assert rollout_bytes(obs, num_actions=2, num_steps=5) == 2 * 5 * (1200 + 4 + 4 * 12)
     assert "2 worlds x 5 steps" in describe_rollout(obs, 2, 5)
+
+
+def test_memory_is_cleared_where_episodes_end(counting_env):
+    """Episodes of 4 steps: in 6 steps the policy hears of ends once, in the fourth."""
+    heard = []
+
+    class Policy:
+        def __call__(self, obs):
+            return torch.zeros(2, 2)
+
+        def reset(self, dones):
+            heard.append(dones.tolist())
+
+    run_policy(wrap(counting_env), Policy(), steps=6)
+    assert heard == [[0, 0]] * 3 + [[1, 1]] + [[0, 0]] * 2

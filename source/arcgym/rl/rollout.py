@@ -91,7 +91,7 @@ def run_policy(
 
     Args:
         env: Environment whose worlds all begin an episode.
-        policy: Maps observations to raw actions.
+        policy: Maps observations to raw actions; one with memory is given ``reset(dones)`` after each step.
         steps: Control steps; None ends when each world's first episode has ended, which the time limit bounds.
         on_step: Called after every step with the number of steps done.
     """
@@ -101,6 +101,8 @@ def run_policy(
     with torch.inference_mode():
         while tally.steps < (steps or env.max_episode_length) and (steps or not tally.is_complete()):
             obs, rewards, dones, _ = env.step(policy(obs))
+            if hasattr(policy, "reset"):
+                policy.reset(dones)
             tally.add(rewards, dones > 0)
             if on_step is not None:
                 on_step(tally.steps)
