@@ -13,7 +13,7 @@ import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode, VectorEnv
 
-from arcgym.envs.env_arguments import check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
+from arcgym.envs.env_arguments import check_device, check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
@@ -74,6 +74,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         check_render_mode(render_mode, self.metadata["render_modes"])
         cfg = choose_cfg(cfg, env_cfg_entry_point, num_envs=num_envs, device=device, seed=seed)
         validate(cfg)
+        check_device(cfg.sim.device)
         self.cfg = cfg
         self.render_mode = render_mode
         self.common_step_counter = 0

@@ -53,8 +53,10 @@ class ManagerBasedEnvCfg:
         """Check numbers.
 
         Raises:
-            ValueError: If the decimation is below one, or the viewer's world is not among those of the scene.
+            ValueError: If there is no world, the decimation is below one, or the viewer's world does not exist.
         """
+        if self.scene.num_envs < 1:
+            raise ValueError(f"scene.num_envs is {self.scene.num_envs}, expected 1 or more worlds.")
         if self.decimation < 1:
             raise ValueError(
                 f"decimation is the number of physics steps in a control step: >= 1, got {self.decimation}."
