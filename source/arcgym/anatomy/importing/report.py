@@ -14,7 +14,7 @@ from arcgym.anatomy.importing.pipeline import ImportedColon
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage.types import ColonStage
 from arcgym.anatomy.validation.stage_checks import inspect_stage
-from arcgym.anatomy.validation.validate import ring_radii
+from arcgym.anatomy.validation.wall_checks import ring_radii
 
 REPORT_NAME = "report.json"
 PAGE_NAME = "report.png"
