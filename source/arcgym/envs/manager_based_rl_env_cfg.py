@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.utils import MISSING, configclass
+from arcgym.utils.validation import require_positive
 
 
 @configclass
@@ -55,11 +56,10 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
         return self.episode_length_s
 
     def validate_config(self) -> None:
-        """Check numbers.
+        """Check bounds.
 
         Raises:
-            ValueError: If the decimation is below one or the episode has no length.
+            ValueError: If a value is out of its bounds.
         """
         super().validate_config()
-        if self.max_episode_length_s <= 0.0:
-            raise ValueError(f"episode_length_s must be positive, got {self.max_episode_length_s}.")
+        require_positive(self, "episode_length_s", "max_episode_length_s", unit="s")

@@ -9,6 +9,7 @@ from typing import Literal
 import torch
 
 from arcgym.utils import configclass
+from arcgym.utils.validation import FINITE, require, require_non_negative, require_order
 
 
 @configclass
@@ -37,6 +38,14 @@ class ConstantNoiseCfg(NoiseCfg):
     bias: float = 0.0
     """Offset, in the unit of the observation."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "bias", FINITE)
+
     def sample(self, value: torch.Tensor) -> torch.Tensor:
         """Return the offset in the shape of ``value``."""
         return torch.full_like(value, self.bias)
@@ -52,6 +61,16 @@ class UniformNoiseCfg(NoiseCfg):
     n_max: float = 1.0
     """Upper bound, in the unit of the observation."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "n_min", FINITE)
+        require(self, "n_max", FINITE)
+        require_order(self, "n_min", "n_max")
+
     def sample(self, value: torch.Tensor) -> torch.Tensor:
         """Draw noise of the shape of ``value``."""
         return self.n_min + (self.n_max - self.n_min) * torch.rand_like(value)
@@ -66,6 +85,15 @@ class GaussianNoiseCfg(NoiseCfg):
 
     std: float = 1.0
     """Standard deviation, in the unit of the observation."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "mean", FINITE)
+        require_non_negative(self, "std")
 
     def sample(self, value: torch.Tensor) -> torch.Tensor:
         """Draw noise of the shape of ``value``."""

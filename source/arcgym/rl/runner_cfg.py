@@ -12,7 +12,17 @@ import dataclasses
 from typing import Any
 
 from arcgym.utils.configclass import configclass
-from arcgym.utils.validation import FieldError, Range, require, require_at_least, require_fraction, require_positive
+from arcgym.utils.validation import (
+    FINITE,
+    FieldError,
+    Range,
+    require,
+    require_ascending,
+    require_at_least,
+    require_fraction,
+    require_non_negative,
+    require_positive,
+)
 
 ACTIVATIONS = (
     "elu",
@@ -112,6 +122,7 @@ class GaussianDistributionCfg:
             FieldError: A value is out of range.
         """
         require_positive(self, "init_std", "std_range")
+        require_ascending(self, "std_range")
         require(self, "std_type", ("scalar", "log"))
 
 
@@ -124,6 +135,15 @@ class BetaDistributionCfg:
 
     action_range: list[float] = [-1.0, 1.0]
     """Lowest and highest raw action."""
+
+    def validate_config(self) -> None:
+        """Check that the range is one.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require(self, "action_range", FINITE)
+        require_ascending(self, "action_range")
 
 
 @configclass
@@ -228,11 +248,11 @@ class RslRlPpoAlgorithmCfg:
         """
         require_at_least(self, 1, "num_learning_epochs", "num_mini_batches")
         require_positive(self, "learning_rate", "desired_kl", "clip_param", "max_grad_norm")
-        require_fraction(self, "gamma", "lam")
+        require_fraction(self, "lam")
+        require(self, "gamma", Range(0.0, 1.0, above=True))
         require(self, "schedule", ("adaptive", "fixed"))
         require(self, "optimizer", ("adam", "adamw", "sgd", "rmsprop"))
-        require(self, "entropy_coef", Range(0.0))
-        require(self, "value_loss_coef", Range(0.0))
+        require_non_negative(self, "entropy_coef", "value_loss_coef")
 
 
 @configclass
@@ -308,6 +328,7 @@ class RslRlOnPolicyRunnerCfg:
         Raises:
             FieldError: A value is out of range.
         """
+        require_at_least(self, -1, "seed")
         require_at_least(self, 1, "num_steps_per_env", "max_iterations", "save_interval")
         require(self, "logger", ("tensorboard", *LOG_WRITERS))
         require_positive(self, "clip_actions")

@@ -17,6 +17,7 @@ from arcgym.sensors.sensor_base import SensorBase
 from arcgym.sensors.skinned_surface import SkinnedSurface
 from arcgym.sensors.surface_renderer import Optics, SurfaceRenderer, WorldLooks
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.configclass import validate
 from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from arcgym.assets.endoscope_spec import CameraSpec
     from arcgym.scene.interactive_scene import InteractiveScene
     from arcgym.sensors.endoscope_camera_cfg import EndoscopeCameraCfg
-
-OUTPUTS = ("rgb", "depth")
-"""Data types that the camera can give."""
 
 
 @dataclass
@@ -56,16 +54,9 @@ class EndoscopeCamera(SensorBase):
     cfg: EndoscopeCameraCfg
 
     def __init__(self, cfg: EndoscopeCameraCfg) -> None:
-        """Checks the configuration."""
+        """Check the configuration."""
         super().__init__(cfg)
-        unknown = [name for name in cfg.data_types if name not in OUTPUTS]
-        if unknown:
-            raise ValueError(f"EndoscopeCameraCfg.data_types: {unknown} unknown. Available: {list(OUTPUTS)}.")
-        if min(cfg.width, cfg.height, cfg.samples) < 1:
-            raise ValueError(
-                "EndoscopeCameraCfg: width, height and samples must be at least 1,"
-                f" got {cfg.width}, {cfg.height}, {cfg.samples}."
-            )
+        validate(cfg, "camera")
 
     def initialize(self, scene: InteractiveScene) -> None:
         """Binds the camera to ``scene["colon"]`` and ``scene["endoscope"]`` and allocates its buffers."""

@@ -191,9 +191,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """Longest episode [s]; None takes the time limit of segment and start, see
     :data:`arcgym_tasks.navigation.segments.TIME_LIMIT_S`."""
 
-    lumen: str | mdp.LumenCfg = "paper"
+    lumen: mdp.LumenCfg | str = mdp.PAPER
     """Constants of the lumen reward: ``paper``, ``metric`` or your own :class:`arcgym.envs.mdp.LumenCfg`. ``metric``
-    tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's."""
+    tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's. A name and changes to it may
+    follow each other: ``env.lumen=metric env.lumen.far=0.2``."""
 
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
