@@ -58,6 +58,8 @@ class ManagerBasedEnvCfg:
         """
         require_at_least(self, 1, "decimation")
         require_at_least(self, -1, "seed")
+        if self.scene.num_envs < 1:  # a scene of one's own may lack this check
+            raise FieldError(self, "scene.num_envs", f"is {self.scene.num_envs}, expected 1 or more worlds.")
         if self.viewer.env_id >= self.scene.num_envs:
             text = f"is {self.viewer.env_id}, but scene.num_envs is {self.scene.num_envs}: worlds count from 0."
             raise FieldError(self, "viewer.env_id", text)
