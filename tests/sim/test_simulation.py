@@ -16,7 +16,7 @@ SOFT = {"youngs_modulus": 5.0e5}
 
 @pytest.fixture(scope="module")
 def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
-    """A tube of 11 mm radius, in which a bent tip soon meets the wall."""
+    """Return a tube of 11 mm radius, in which a bent tip soon meets the wall."""
     return TinySim(tmp_path_factory.mktemp("narrow"), radius=0.011)
 
 

@@ -34,7 +34,13 @@ class LumenSurface:
 
 @wp.kernel
 def ring_centers(x: wp.array2d[wp.vec3], surface: LumenSurface, centers: wp.array2d[wp.vec3]):
-    """Mean of each ring's inner vertices. Launch (W, R)."""
+    """Compute the mean of each ring's inner vertices. Launch (W, R).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        surface: Inner faces of one world.
+        centers: Ring centres [m], shape (W, R); written.
+    """
     w, r = wp.tid()
     n = surface.rings.shape[1]
     total = wp.vec3(0.0)
@@ -56,6 +62,13 @@ def track_rings(
     Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1.
 
     A link whose centre is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
+
+    Args:
+        centers: Ring centres [m], shape (W, R).
+        body_q: Link poses, shape (W*L,).
+        max_shift: Rings that a link may cross since the last call.
+        ring: Ring of each link or -1, shape (W, L); updated.
+        ring_distance: Distance from its centre [m], shape (W, L); written.
     """
     w, link = wp.tid()
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
@@ -80,7 +93,7 @@ def track_rings(
 
 @wp.func
 def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> bool:
-    """Whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
+    """Return whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
     gap = wp.abs(wp.dot(normal, a)) - wp.abs(wp.dot(normal, axis))
     return gap <= 0.0 or gap * gap <= limit * limit * wp.length_sq(normal)
 
@@ -96,7 +109,18 @@ def face_distances(
     ring_distance: wp.array2d[float],
     distance: wp.array3d[float],
 ):
-    """Distance from each link's axis to each candidate face, or FAR. Launch (W, L, M)."""
+    """Compute the distance from each link's axis to each candidate face. Launch (W, L, M).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        law: Contact law.
+        ring: Ring of each link, shape (W, L).
+        ring_distance: Distance from its centre [m], shape (W, L).
+        distance: Distance, or FAR where there is no contact [m], shape (W, L, M); written.
+    """
     w, link, m = wp.tid()
     if ring_distance[w, link] > law.max_distance + links.half_length[link] + links.radius[link]:
         distance[w, link, m] = FAR
@@ -125,7 +149,7 @@ def face_distances(
 
 @wp.func
 def face_normal(surface: LumenSurface, face: int, x: wp.array2d[wp.vec3], w: int) -> wp.vec3:
-    """Unit normal of a face, from the lumen into the wall."""
+    """Return the unit normal of a face, from the lumen into the wall."""
     a = x[surface.faces[face, 0], w]
     return wp.normalize(wp.cross(x[surface.faces[face, 1], w] - a, x[surface.faces[face, 2], w] - a))
 
@@ -138,7 +162,7 @@ def edge_proximity(u: float) -> float:
 
 @wp.func
 def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d[wp.vec3], w: int) -> wp.vec3:
-    """Normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
+    """Return the normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
 
     At a sharp fold the face's own normal may be at more than a right angle to the direction to the link, and its sign
     would be wrong
@@ -154,7 +178,7 @@ def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d[w
 
 @wp.func
 def face_corners(surface: LumenSurface, face: int) -> wp.vec3i:
-    """Vertices of a face."""
+    """Return the vertices of a face."""
     return wp.vec3i(surface.faces[face, 0], surface.faces[face, 1], surface.faces[face, 2])
 
 
@@ -192,7 +216,7 @@ def closest_point(
 
 @wp.func
 def free_slot(records: ContactRecords, distance: wp.array3d[float], w: int, link: int, n: int, d: float) -> int:
-    """Slot for a contact at distance ``d``: the next one, or the farthest contact's if all are taken, or -1."""
+    """Return the slot for a contact at distance ``d``: the next one, else that of the farthest contact, or -1."""
     row = w * distance.shape[1] + link
     if n < records.capacity:
         return row * records.capacity + n
@@ -207,7 +231,14 @@ def free_slot(records: ContactRecords, distance: wp.array3d[float], w: int, link
 
 @wp.kernel
 def select_contacts(surface: LumenSurface, ring: wp.array2d[int], distance: wp.array3d[float], records: ContactRecords):
-    """Make a record of every face near a link, the nearest where there are too many. Launch (W, L)."""
+    """Make a record of every face near a link, the nearest where there are too many. Launch (W, L).
+
+    Args:
+        surface: Inner faces of one world.
+        ring: Ring of each link, shape (W, L).
+        distance: Distance of each candidate face or FAR [m], shape (W, L, M).
+        records: Contacts; ``count``, ``face`` and ``distance`` are written.
+    """
     w, link = wp.tid()
     row = w * ring.shape[1] + link
     first = surface.ring_start[wp.max(0, ring[w, link] - surface.reach)]
@@ -231,7 +262,15 @@ def locate_contacts(
     surface: LumenSurface,
     records: ContactRecords,
 ):
-    """Find where every recorded face comes closest to its link. Launch (W, L, capacity)."""
+    """Find where every recorded face comes closest to its link. Launch (W, L, capacity).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        records: Contacts; ``corners``, ``bary``, ``weight``, ``normal`` and ``direction`` are written.
+    """
     w, link, k = wp.tid()
     row = w * links.radius.shape[0] + link
     if k >= records.count[row]:
@@ -273,6 +312,11 @@ def build_contact_lists(vertex_ring: wp.array[int], links: int, records: Contact
     """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
 
     One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
+
+    Args:
+        vertex_ring: Ring of each wall vertex, shape (V,).
+        links: Links a world, L.
+        records: Contacts; the lists, emptied before, are written.
     """
     w = wp.tid()
     for step in range(links):

@@ -59,13 +59,14 @@ class TwoLevelCoupling:
         wp.copy(self.body_q_prev, state.body_q)
         sim.contact.detect(sim.nodal_pos, state.body_q)
         for _ in range(count):
-            self._load_contacts(dt)
+            self.load_contacts(dt)
             sim.actuation.apply(state, sim.control, sim.contact.ring, dt)
             self.solver.step(state, state, sim.control, None, dt)
             self._record(1.0 / count)
         sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
 
-    def _load_contacts(self, dt: float) -> None:
+    def load_contacts(self, dt: float) -> None:
+        """Write the loads of the contacts at hand on the links for a substep of ``dt`` [s]."""
         sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
         inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
         inputs += [contact.links, contact.records, contact.law, contact.friction, dt]

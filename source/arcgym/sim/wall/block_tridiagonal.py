@@ -52,7 +52,7 @@ class BlockTridiagonalSolver:
         self._launch(kernels.reduce_even, (even, MODES), [h, *sides], [self.diagonal, self.upper, self.rhs])
 
     def _odd(self, h: int) -> int:
-        """Number of rows h, 3h, 5h, ... that exist."""
+        """Return the number of rows h, 3h, 5h, ... that exist."""
         return (self.rows - 1 + h) // (2 * h)
 
     def _launch(self, kernel: wp.Kernel, rows: tuple[int, ...], inputs: list, outputs: list) -> None:

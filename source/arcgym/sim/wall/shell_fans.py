@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What kernels need of a shell at rest, in numpy: cotangents, and the fan of triangles around each vertex."""
+"""Rest geometry of a shell for its kernels, in numpy: cotangents, and the fan of triangles around each vertex."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from arcgym.assets.shell_geometry import ShellGeometry
 
 
 def triangle_rest(geometry: ShellGeometry) -> np.ndarray:
-    """Cotangent of each corner over twice the area [1/m^2] and the area [m^2] of every triangle, shape (F, 4).
+    """Return each corner's cotangent over twice the area [1/m^2] and the area [m^2] of every triangle, shape (F, 4).
 
     The cotangents are minus the products of the other two corners' shape gradients.
     """
@@ -22,7 +22,7 @@ def triangle_rest(geometry: ShellGeometry) -> np.ndarray:
 
 
 def hinge_of_edges(geometry: ShellGeometry) -> np.ndarray:
-    """Hinge at the edge opposite to each corner of each triangle, -1 at a border, shape (F, 3)."""
+    """Return the hinge at the edge opposite to each corner of each triangle, -1 at a border, shape (F, 3)."""
     out = np.full(geometry.triangles.shape, -1, np.int32)
     for side in range(2):
         triangle = geometry.sides[:, side]
@@ -32,7 +32,7 @@ def hinge_of_edges(geometry: ShellGeometry) -> np.ndarray:
 
 
 def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
-    """Each corner's view of its triangle and of two of the hinges there.
+    """Return each corner's view of its triangle and of two of the hinges there.
 
     Args:
         geometry: Rest geometry.

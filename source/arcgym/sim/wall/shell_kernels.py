@@ -9,9 +9,9 @@ b mu / 6 (I - 2)^3 that stiffens large stretches. Its area cannot shrink to noth
 membrane of Newton's ``SolverVBD`` can; at small strain the two are the same.
 Bending: discrete shells (Grinspun et al. 2003, "Discrete Shells", SCA), with the Gauss-Newton part of the Hessian.
 
-What several vertices need is measured once a step for each element: the normals and corner forces of the triangles, and
-the angles of the hinges. A hinge's angle is then linear in the moves of its vertices for the rest of the step, which
-spares the sweep its normals and inverse tangents.
+Quantities that several vertices share are measured once a step for each element: the normals and corner forces of the
+triangles, and the angles of the hinges. A hinge's angle is then linear in the moves of its vertices for the rest of the
+step, which spares the sweep its normals and inverse tangents.
 """
 
 import warp as wp
@@ -81,7 +81,7 @@ class Stretch:
 
 @wp.func
 def membrane_stretch(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> Stretch:
-    """Stress S = shear Id + spread C^-1 of a triangle with the edges ``d1`` and ``d2`` from its first triangle.
+    """Return the stress S = shear Id + spread C^-1 of a triangle with edges ``d1`` and ``d2`` from its first corner.
 
     I is the sum of the squared edges, each times the cotangent of the corner opposite over 2 A.
     """
@@ -102,7 +102,7 @@ def membrane_stretch(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -
 
 @wp.func
 def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
-    """The membrane pulls its corners together like springs along its edges: force over length of each [N/m]."""
+    """Return force over length [N/m] of the springs along the edges that the membrane acts like."""
     s = rest[3] * now.shear
     k = rest[3] * now.spread * now.inverse
     return wp.vec3(s * rest[0] + k * now.dots[0], s * rest[1] + k * now.dots[1], s * rest[2] + k * now.dots[2])
@@ -110,7 +110,7 @@ def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
 
 @wp.func
 def direction_angle(sine: float, cosine: float) -> float:
-    """Angle whose sine and cosine are in the ratio given [rad].
+    """Return the angle whose sine and cosine are in the ratio given [rad].
 
     Up to 45 degrees from the tangent of its half by the polynomial of ``atanf`` in Cephes (Moshier 1989), which takes
     a CPU a third of the time of ``atan2``.
@@ -126,7 +126,7 @@ def direction_angle(sine: float, cosine: float) -> float:
 
 @wp.func
 def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) -> float:
-    """Dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
+    """Return the dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
     corners = shell.hinges[h]
     start = x[corners[2], w]
     edge = x[corners[3], w] - start
@@ -146,7 +146,7 @@ def measure_hinges(x: wp.array2d[wp.vec3], shell: ShellElements):
 
 @wp.func
 def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
-    """Moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
+    """Return the moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
     if h < 0:
         return 0.0
     return shell.hinge_stiffness[h] * shell.angle_change[h, w]

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Elements of a wall on the device: what its kernels need, and which kernels those are."""
+"""Elements of a wall on the device, with their kernels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class WallElements(Protocol):
 
 
 def wall_elements(wall: WallParameters, num_envs: int, device: str) -> WallElements:
-    """Elements of the wall's kind for ``num_envs`` worlds."""
+    """Return elements of the wall's kind for ``num_envs`` worlds."""
     if isinstance(wall.elements, ShellParameters):
         return Shell(wall.elements.geometry, len(wall.points), num_envs, device)
     return Solid(wall.points, wall.elements.tets, device)

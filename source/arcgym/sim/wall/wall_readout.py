@@ -60,7 +60,7 @@ class WallReadout:
             array.zero_()
 
     def measure(self, x: wp.array) -> None:
-        """Take the wall positions ``x`` [m], shape (V, W), of one physics step in."""
+        """Add one physics step with wall positions ``x`` [m], shape (V, W), vec3."""
         wp.launch(
             measure_rings,
             self._shape,
@@ -98,7 +98,7 @@ def _rest_rings(
 
 
 def inverse_rest(corners: np.ndarray) -> np.ndarray:
-    """What :func:`arcgym.sim.wall.strain_kernels.face_strain` needs of triangles at rest.
+    """Return the rest shape of triangles for :func:`arcgym.sim.wall.strain_kernels.face_strain`.
 
     Args:
         corners: Corners [m], shape (F, 3, 3).

@@ -27,7 +27,7 @@ REGULARISATION = 1.0e-5
 def wall_contacts(
     contact: ContactSearch, dt: float, x_prev: wp.array, body_q: wp.array, body_q_prev: wp.array
 ) -> wall_kernels.WallContacts:
-    """What kernels need of the contacts in one wall step.
+    """Return the contacts of one wall step as a struct.
 
     Args:
         contact: Contacts found at the start of the step.
@@ -157,7 +157,7 @@ class WallSolver:
             )
 
     def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
-        """Force on every mobile vertex at rest [N], shape (V, W), vec3: elements, anchors and contacts, no friction.
+        """Return the force on every mobile vertex at rest [N], shape (V, W), vec3, without friction.
 
         Args:
             x: Wall positions [m], shape (V, W), vec3.
