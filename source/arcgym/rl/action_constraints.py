@@ -107,7 +107,7 @@ class ActionConstraint:
             self._backing = torch.where(dones.to(self._backing.device) > 0, 0, self._backing)
 
     def _axis(self, index: int, axis: str, actions: torch.Tensor, offset: torch.Tensor) -> torch.Tensor:
-        """Allowed commands of one axis, shape (N,)."""
+        """Return the allowed commands of one axis, shape (N,)."""
         action = actions[:, index]
         if axis == "forward":
             return torch.full_like(action, self.rules.forward)
