@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What every sensor of the scene does."""
+"""Interface of every sensor of the scene."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class Optics:
 
 @dataclass(frozen=True)
 class WorldLooks:
-    """What differs between worlds."""
+    """Values that differ between worlds."""
 
     light_gain: wp.array
     """Brightness relative to the exposure's aim, shape (num_envs,), float."""

@@ -30,7 +30,7 @@ class Snapshot:
         return Snapshot({name: array[env_id].cpu().numpy().copy() for name, array in sim.world_arrays().items()})
 
     def at_rest(self) -> Snapshot:
-        """The same place with all velocities zero."""
+        """Return the same place with all velocities zero."""
         still = {"joint_qd", "nodal_vel"}
         return Snapshot({name: np.zeros_like(a) if name in still else a for name, a in self.arrays.items()})
 
@@ -46,7 +46,7 @@ class SnapshotSet:
     fingerprint: str
     """Identifies wall mesh and scope, see :func:`fingerprint`."""
     about: dict[str, Any] = field(default_factory=dict)
-    """What the file says about the states: plain values, such as how far a drive came."""
+    """Notes of the file on the states: plain values, such as how far a drive came."""
 
     def index(self, name: str) -> int:
         """Place of a state in the set.
@@ -113,7 +113,7 @@ class SnapshotSet:
 
 
 def fingerprint(sim: Simulation) -> str:
-    """Short hash of what a state depends on: the wall's rest points and rings, the scope's links and joints."""
+    """Return a short hash of the wall's rest points and rings and of the scope's links and joints."""
     wall, scope = sim.colon.wall, sim.endoscope.stage
     digest = hashlib.sha256(" ".join(sim.endoscope.joint_names).encode())
     for array in (wall.points, wall.ring, scope.link_length, scope.link_radius):

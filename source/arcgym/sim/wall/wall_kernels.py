@@ -34,7 +34,7 @@ class WallNodes:
 
 @wp.struct
 class Tissue:
-    """What may differ from world to world."""
+    """Values that may differ from world to world."""
 
     moduli: wp.array[wp.vec3]  # shear, second Lame parameter, bending: solid [Pa, Pa, -], shell [N/m, N/m, N m]
     anchor: wp.array[float]  # factor on the anchor springs, shape (W,)

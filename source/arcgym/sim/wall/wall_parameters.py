@@ -43,7 +43,7 @@ class WallParameters:
     points: np.ndarray
     """Rest positions [m], shape (V, 3)."""
     elements: SolidParameters | ShellParameters
-    """What it is made of."""
+    """Its elements."""
     moduli: tuple[float, float, float]
     """Shear, second Lamé parameter, bending: solid [Pa, Pa, -] or shell [N/m, N/m, N m]."""
     mass: np.ndarray
