@@ -88,6 +88,11 @@ def test_make_vec_builds_one_environment_of_all_worlds() -> None:
     assert env.unwrapped.np_random_seed == 0
 
 
+def test_specification_of_an_environment_makes_it_again() -> None:
+    assert gym.make(gym.make(TASK, num_envs=3).spec).num_envs == 3
+    assert gym.make_vec(gym.make_vec(TASK, num_envs=3).spec).num_envs == 3
+
+
 def test_make_vec_returns_the_environment_itself_on_request() -> None:
     env = gym.make_vec(TASK, num_envs=3, to_numpy=False)
     assert isinstance(env, ManagerBasedRLEnv)

@@ -11,6 +11,7 @@ from typing import Any
 import torch
 import warp as wp
 
+from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.configclass import is_config
 from arcgym.utils.registry import CFG_SUFFIX, load_cfg
 from arcgym.utils.string import did_you_mean
