@@ -6,8 +6,9 @@ Colon 1 has some beside its stage. All others are made when they are first neede
 kept in the cache folder under a hash of all that they depend on.
 """
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.start_states.drive import Drive
@@ -24,9 +25,4 @@ _LAZY = {
 
 __all__ = ["Drive", "StartStateError", "ensure", "make"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Newton only when something is asked for."""
-    if name in _LAZY:
-        return getattr(importlib.import_module(_LAZY[name]), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, _LAZY)
