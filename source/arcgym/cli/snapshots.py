@@ -68,7 +68,7 @@ def _env_cfg(args: SnapshotArguments) -> Any:
     try:
         cfg = load_cfg_from_registry(args.task, "env_cfg_entry_point")
         apply_overrides({"env": cfg}, args.overrides)
-        validate(cfg)
+        validate(cfg, "env")
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
     device = args.device or ("cuda:0" if torch.cuda.is_available() else "cpu")

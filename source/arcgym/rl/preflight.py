@@ -30,7 +30,7 @@ def check_environment(env_cfg: Any, device: str | None, outputs: Sequence[Path] 
     """
     if env_cfg.scene.num_envs < 1:
         raise UsageError(f"env.scene.num_envs is {env_cfg.scene.num_envs}, expected 1 or more worlds.")
-    _in_one_line(validate, env_cfg)
+    _in_one_line(validate, env_cfg, "env")
     choose_device(device)
     _check_scene(env_cfg)
     for path in outputs:
@@ -46,7 +46,7 @@ def check_run(
         UsageError: The first thing that is wrong, in one line.
     """
     check_environment(env_cfg, device, outputs)
-    _in_one_line(validate, agent_cfg)
+    _in_one_line(validate, agent_cfg, "agent")
     check_agent(env_cfg, agent_cfg, trains)
 
 
