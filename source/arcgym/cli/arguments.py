@@ -80,7 +80,7 @@ class TaskArguments:
     num_envs: int | None = argument("number of worlds (default: the task's)", None, type=positive)
     seed: int | None = argument("seed of environment and networks (default: the agent's)", None, type=int)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
-    agent: str = argument("registry key of the agent's configuration", "rsl_rl_cfg_entry_point")
+    agent: str = argument("agent: ppo (default), sac, a2c, ... or a registry key", "rsl_rl_cfg_entry_point")
     headless: bool = argument("accepted for Isaac Lab's sake: there is no window", False)
     overrides: list[str] = dataclasses.field(default_factory=list)
     """Texts ``env.path=value`` and ``agent.path=value``."""

@@ -29,6 +29,13 @@ def load_cfgs(args: TaskArguments) -> tuple[Any, Any]:
     return env_cfg, agent_cfg
 
 
+def agent_key(name: str) -> str:
+    """Return the registry key of an agent: ``sac`` is ``rsl_rl_sac_cfg_entry_point``, ``ppo`` the default agent's."""
+    if name.endswith("cfg_entry_point"):
+        return name
+    return "rsl_rl_cfg_entry_point" if name == "ppo" else f"rsl_rl_{name}_cfg_entry_point"
+
+
 def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     """Return configurations as a run had them, changed by overrides and arguments, and the checkpoint of that run.
 
@@ -69,7 +76,8 @@ def _registered(task: str, agent: str) -> tuple[Any, Any]:
     from arcgym.utils.registry import load_cfg_from_registry
 
     try:
-        return load_cfg_from_registry(task, "env_cfg_entry_point"), load_cfg_from_registry(task, agent)
+        env_cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
+        return env_cfg, load_cfg_from_registry(task, agent_key(agent))
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
 

@@ -30,6 +30,12 @@ class OffPolicyRunner(OnPolicyRunner):
         super().__init__(env, train_cfg, log_dir, device)
         self.saves_replay = bool(train_cfg.get("save_replay", False))
 
+    def describe_models(self) -> str:
+        """Return one line for the networks and one for the memory."""
+        replay = self.alg.replay  # type: ignore[attr-defined]
+        size = replay.num_bytes / 2**20
+        return f"{super().describe_models()}\nreplay: {replay.num_rows} rows x {replay.num_envs} worlds, {size:.1f} MiB"
+
     def save(self, path: str, infos: dict | None = None) -> None:
         """Write a checkpoint, and the memory if the configuration asks for it."""
         super().save(path, infos)

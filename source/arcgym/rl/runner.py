@@ -62,6 +62,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             TrainingInterrupted: A signal came; a checkpoint has been saved.
             TrainingDiverged: A loss or a weight is not finite; the checkpoints are from before.
         """
+        if self.cfg.get("init_policy") and self.completed_iterations == 0:
+            self._start_from(self.cfg["init_policy"])
         update = self.alg.update
         init_writer = self.logger.init_logging_writer
         self.logger.init_logging_writer = lambda: self._init_writer(init_writer)  # type: ignore[method-assign]
@@ -115,6 +117,14 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         self.best_reward = infos.get("best_reward", self.best_reward)
         self.env.unwrapped.common_step_counter = infos.get("common_step_counter", 0)  # type: ignore[attr-defined]
         return infos
+
+    def _start_from(self, path: str) -> None:
+        """Take the policy, and nothing else, from another run's checkpoint."""
+        try:
+            self.alg.load(read_checkpoint(path, self.device), {"actor": True}, strict=True)
+        except (KeyError, RuntimeError, ValueError) as error:
+            raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error
+        print(f"policy: starts from {path}")
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():

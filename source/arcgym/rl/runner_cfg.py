@@ -313,6 +313,9 @@ class RslRlOnPolicyRunnerCfg:
     torch_compile_mode: str | None = None
     """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
 
+    init_policy: str | None = None
+    """Checkpoint whose policy a new run starts from, such as one of behaviour cloning; None starts from scratch."""
+
     resume: bool = False
     """Whether to go on from ``load_run``/``load_checkpoint``; set by ``--resume``."""
 

@@ -86,7 +86,6 @@ class BehaviorCloning:
                 f"The demonstrations in '{folder}' have {demonstrations.actions.shape[1]} actions, expected the task's "
                 f"{env.num_actions}."
             )
-        print(f"demonstrations: {demonstrations.num_episodes} episodes, {len(demonstrations)} steps from {folder}")
         actor = actor_class(obs, groups, "actor", env.num_actions, **actor_cfg)
         return alg_class(actor, demonstrations, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
 
