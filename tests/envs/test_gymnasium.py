@@ -68,6 +68,7 @@ def test_class_in_place_of_a_configuration_is_named(cfg) -> None:
         gym.make(TASK, cfg=type(cfg))
 
 
+@pytest.mark.filterwarnings("ignore:.*that is not in the possible render_modes")
 def test_unknown_render_mode_is_refused() -> None:
     with pytest.raises(ValueError, match="render_mode is 'ascii', expected None or one of rgb_array"):
         gym.make(TASK, render_mode="ascii")

@@ -24,6 +24,7 @@ from arcgym.utils.progress import report
 from arcgym.utils.seed import set_seed
 from arcgym.utils.string import resolve_callable
 from arcgym.utils.threads import one_thread
+from arcgym.utils.worlds import replace_worlds
 
 if TYPE_CHECKING:
     from arcgym.scene import InteractiveScene
@@ -203,7 +204,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         elif len(env_ids):
             self._start(env_ids, torch.isin(torch.arange(self.num_envs, device=self.device), env_ids))
             started = self.observation_manager.compute(update_history=env_ids)
-            self.obs_buf = _replaced(self.obs_buf, started, env_ids)
+            self.obs_buf = replace_worlds(self.obs_buf, started, env_ids)
         return self.obs_buf, self.extras
 
     @one_thread()
@@ -286,16 +287,6 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         """Recompute what follows from positions, and draw every world again."""
         self.sim.forward()
         self.scene.update(0.0)
-
-
-def _replaced(old: dict[str, Any], new: dict[str, Any], env_ids: torch.Tensor) -> dict[str, Any]:
-    """Return a copy of observations in which some worlds have others."""
-    return {
-        name: _replaced(value, new[name], env_ids)
-        if isinstance(value, dict)
-        else value.index_copy(0, env_ids, new[name][env_ids])
-        for name, value in old.items()
-    }
 
 
 def _class_of(cfg: Any) -> Any:
