@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 TASK = "ARC-Splenic-Proximal"
 TRAIN = ["--num_envs", "2", "--max_iterations", "3", "--run_name", "demo", "agent.num_steps_per_env=16"]
-PLAY = ["--num_envs", "1", "--video", "--video_length", "60"]
+PLAY = ["--num_envs", "1", "--steps", "60", "--video", "--video_length", "60"]
 
 
 def main() -> None:

@@ -19,7 +19,7 @@ import sys
 import time
 from typing import Any
 
-from arcgym.benchmarks.hardware import best_device, full_name
+from arcgym.benchmarks.hardware import full_name
 from arcgym.benchmarks.paper import CONTROL_DT, EPISODE_S, PAPER_RATE, PAPER_TRANSITIONS
 from arcgym.cli.arguments import counts, positive
 from arcgym.cli.parser import CommandParser
@@ -54,7 +54,6 @@ def main() -> None:
         check(args)
     except UsageError as error:
         parser.error(str(error))
-    args.device = args.device or best_device()
     end = time.monotonic() + 60.0 * args.minutes
     rows = []
     for place, num_envs in enumerate(args.num_envs):
@@ -71,7 +70,7 @@ def main() -> None:
 
 
 def check(args: argparse.Namespace) -> None:
-    """Find mistakes before anything is built.
+    """Find mistakes before anything is built, and choose the device.
 
     Raises:
         UsageError: If there is one.
@@ -79,7 +78,13 @@ def check(args: argparse.Namespace) -> None:
     least = min(args.num_envs)
     if args.rollout * least < args.batch:
         raise UsageError(f"--batch {args.batch} is more than a rollout of {args.rollout} steps in {least} worlds")
-    load_cfgs(args, least)
+    env_cfg, agent_cfg = load_cfgs(args, least)
+
+    from arcgym.rl.device import choose_device
+    from arcgym.rl.preflight import check_run
+
+    check_run(env_cfg, agent_cfg, args.device, trains=True)
+    args.device = choose_device(args.device)
 
 
 def settings(args: argparse.Namespace) -> dict[str, float]:

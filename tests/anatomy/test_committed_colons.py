@@ -17,7 +17,8 @@ from scipy.sparse.csgraph import connected_components
 from arcgym.anatomy import ColonStage, inner_faces, read_colon, write_colon
 from arcgym.anatomy.generator.generate import make_colon
 from arcgym.anatomy.generator.patients import PATIENTS
-from arcgym.anatomy.validation.validate import failed, validate_stage
+from arcgym.anatomy.validation.checks import failed
+from arcgym.anatomy.validation.stage_checks import inspect_stage
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 
@@ -45,7 +46,7 @@ def test_committed_colon_is_what_the_generator_makes(name: str, tmp_path: Path) 
 
 
 def test_all_checks_pass(colon_1: ColonStage) -> None:
-    assert failed(validate_stage(colon_1)) == []
+    assert failed(inspect_stage(colon_1)) == []
 
 
 def test_usd_validators_find_nothing() -> None:

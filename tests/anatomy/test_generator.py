@@ -19,7 +19,8 @@ from arcgym.anatomy.measures import tet_quality
 from arcgym.anatomy.meshing.surface_grid import skin_to_rings
 from arcgym.anatomy.meshing.wall import polygon_triangles
 from arcgym.anatomy.mucosa.texture import make_textures
-from arcgym.anatomy.validation.validate import Check, loop_gap, ring_radii
+from arcgym.anatomy.validation.checks import Check
+from arcgym.anatomy.validation.wall_checks import loop_gap, ring_radii
 
 
 def test_spec_names_the_value_out_of_range() -> None:

@@ -14,13 +14,15 @@ from scipy.stats import kstest, truncnorm
 
 from arcgym.anatomy import ColonSpec
 from arcgym.anatomy.bends import acute_bends
+from arcgym.anatomy.generator.acceptance import check_course, wall_bounds
 from arcgym.anatomy.generator.generate import AnatomyError, draw_surface
 from arcgym.anatomy.generator.population import LENGTH_RANGE, draw_spec, segment_lengths
 from arcgym.anatomy.generator.spec import FoldSpec, PolypSpec
 from arcgym.anatomy.generator.spec_file import SpecError, read_spec
 from arcgym.anatomy.generator.surface import Surface
 from arcgym.anatomy.generator.wall import sample_wall
-from arcgym.anatomy.validation.validate import failed, validate_curve, validate_wall
+from arcgym.anatomy.validation.checks import failed
+from arcgym.anatomy.validation.wall_checks import check_wall
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -148,7 +150,7 @@ def first_valid_surface(spec: ColonSpec) -> Surface:
             surface, lesions = draw_surface(spec, spec.seed + 1000 * attempt)
         except AnatomyError:
             continue
-        if not failed([*validate_curve(spec, surface), *validate_wall(sample_wall(surface, lesions), spec)]):
+        if not failed([*check_course(spec, surface), *check_wall(sample_wall(surface, lesions), wall_bounds(spec))]):
             return surface
     raise AssertionError(f"no valid anatomy for {spec.name}")
 

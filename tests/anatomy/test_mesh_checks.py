@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tiny import tiny_colon_stage
 
+from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.mesh_checks import (
     boundary_faces,
     cap_openings,
@@ -18,7 +19,6 @@ from arcgym.anatomy.validation.mesh_checks import (
     winding_numbers,
 )
 from arcgym.anatomy.validation.stage_checks import inspect_stage
-from arcgym.anatomy.validation.validate import failed
 
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
 FACES = boundary_faces(np.array([[0, 1, 2, 3]]))

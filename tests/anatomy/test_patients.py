@@ -18,8 +18,9 @@ from arcgym.anatomy.generator.generate import draw_surface
 from arcgym.anatomy.generator.patients import COLON_5_POLYPS, PATIENTS
 from arcgym.anatomy.generator.spec import ColonSpec, PolypSpec
 from arcgym.anatomy.segments import RETROPERITONEAL
+from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.stage_checks import inspect_stage
-from arcgym.anatomy.validation.validate import failed, ring_distance
+from arcgym.anatomy.validation.wall_checks import ring_distance
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets" / "usd"
 

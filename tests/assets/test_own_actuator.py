@@ -159,9 +159,9 @@ def test_two_drives_that_give_the_same_reading_are_refused(tiny: TinySim) -> Non
         ("capsule", {"base": BaseDriveCfg()}, "slide and a roll with stiffness; the root of capsule"),
         ("magnetic", {"base": BaseDriveCfg()}, "slide and a roll with stiffness; the root of magnetic"),
         ("magnetic", {"bending": BendingDriveCfg()}, "bending section, and magnetic_6.usda has none"),
-        ("magnetic", {"tip": TipPullCfg(stiffness=0.0)}, "TipPullCfg.stiffness is 0.0; expected more than 0"),
-        ("proximal", {"base": BaseDriveCfg(force_limit=-1.0)}, "BaseDriveCfg.force_limit is -1.0"),
-        ("proximal", {"bending": BendingDriveCfg(rate=0.0)}, "BendingDriveCfg.rate is 0.0"),
+        ("magnetic", {"tip": TipPullCfg(stiffness=0.0)}, "tip.stiffness is 0.0 N/m, expected a number above 0"),
+        ("proximal", {"base": BaseDriveCfg(force_limit=-1.0)}, "base.force_limit is -1.0 N"),
+        ("proximal", {"bending": BendingDriveCfg(rate=0.0)}, "bending.rate is 0.0 rad/s"),
     ],
 )
 def test_a_drive_that_does_not_suit_the_stage_is_refused(tiny: TinySim, kind: str, drives: Any, message: str) -> None:

@@ -19,6 +19,7 @@ from arcgym.managers import (
     RewardTermCfg,
     TerminationTermCfg,
 )
+from arcgym.sim import SimulationCfg
 from arcgym.utils import configclass
 
 
@@ -151,6 +152,14 @@ class CounterObservationsCfg:
 
 
 @configclass
+class CounterSimCfg(SimulationCfg):
+    dt: float = 0.05
+
+    def validate_config(self) -> None:
+        """A counter takes steps of any length."""
+
+
+@configclass
 class CounterEnvCfg(ManagerBasedRLEnvCfg):
     """Two physics steps of 0.05 s make a control step of 0.1 s; an episode has 5 of them."""
 
@@ -166,10 +175,7 @@ class CounterEnvCfg(ManagerBasedRLEnvCfg):
     decimation: int = 2
     episode_length_s: float = 0.5
     seed: int | None = 0
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.sim.dt = 0.05
+    sim: SimulationCfg = CounterSimCfg()
 
 
 @pytest.fixture

@@ -190,6 +190,29 @@ def test_wrong_action_shape_names_both(env) -> None:
         env.step(torch.zeros(2, 3))
 
 
+class OneColor:
+    """A view that draws the world's index."""
+
+    def __init__(self, env, cfg) -> None:
+        self.size = cfg.samples
+
+    def frame(self, env_id: int) -> np.ndarray:
+        return np.full((self.size, self.size, 3), env_id, np.uint8)
+
+
+def test_view_is_the_class_that_the_configuration_names(cfg) -> None:
+    cfg.viewer.class_type, cfg.viewer.env_id, cfg.viewer.samples = OneColor, 1, 4
+    env = ManagerBasedRLEnv(cfg, render_mode="rgb_array")
+    assert env.render().shape == (4, 4, 3) and env.render().max() == 1
+    assert ManagerBasedRLEnv(cfg).render() is None
+
+
+def test_viewer_looks_at_a_world_that_exists(cfg) -> None:
+    cfg.viewer.env_id = 2
+    with pytest.raises(ValueError, match="viewer.env_id is 2, but scene.num_envs is 2"):
+        ManagerBasedRLEnv(cfg)
+
+
 def test_tables_list_every_manager(env) -> None:
     text = env.summary()
     assert "RewardManager (1 terms)" in text and "policy.rgb: (9, 2, 2) torch.uint8" in text

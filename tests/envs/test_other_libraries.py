@@ -30,7 +30,12 @@ def counter_task(cfg):
 
 
 def test_page_has_an_example_for_each_library() -> None:
-    assert [title for title, _ in EXAMPLES] == ["Plain torch", "Stable-Baselines3", "skrl"]
+    assert [title for title, _ in EXAMPLES] == [
+        "Plain torch",
+        "Gymnasium's vector wrappers",
+        "Stable-Baselines3",
+        "skrl",
+    ]
 
 
 @pytest.mark.parametrize(("title", "code"), EXAMPLES, ids=[title for title, _ in EXAMPLES])

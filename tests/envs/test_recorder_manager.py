@@ -178,7 +178,7 @@ def test_configuration_mistakes_are_named(cfg) -> None:
     with pytest.raises(IndexError, match="from 0 to 1"):
         ManagerBasedRLEnv(cfg)
     cfg.recorders = RecorderCfg(dataset_export_mode="some")
-    with pytest.raises(ValueError, match="expected all, succeeded_only or none"):
+    with pytest.raises(TypeError, match="dataset_export_mode. expects.*Available: all, none, succeeded_only"):
         ManagerBasedRLEnv(cfg)
 
 

@@ -17,8 +17,8 @@ from arcgym.anatomy.importing import ImportSettings, import_to_folder
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.volumes import read_volume
 from arcgym.anatomy.mucosa.vessel_styles import STYLES
+from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.stage_checks import inspect_file
-from arcgym.anatomy.validation.validate import failed
 from arcgym.sim.wall.wall_topology import lumen_topology
 
 COARSE = ImportSettings(voxel=0.0025, visual_spacing=0.006, visual_columns=32, proxy_spacing=0.01, proxy_columns=16)

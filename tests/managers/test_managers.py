@@ -33,6 +33,23 @@ def above(env, limit: float) -> torch.Tensor:
     return env.value > limit
 
 
+class TestSuccess:
+    def test_terms_that_reach_the_goal_are_marked(self, env) -> None:
+        """Values 1 and 3: world 1 is above 2 and has reached the goal; both are above 0, which is none."""
+        terms = {
+            "late": TerminationTermCfg(func=above, params={"limit": 0.0}, time_out=True),
+            "there": TerminationTermCfg(func=above, params={"limit": 2.0}, success=True),
+        }
+        manager = TerminationManager(terms, env)
+        manager.compute()
+        assert manager.success.tolist() == [False, True]
+
+    def test_without_such_a_term_no_world_succeeds(self, env) -> None:
+        manager = TerminationManager({"low": TerminationTermCfg(func=above, params={"limit": 0.0})}, env)
+        manager.compute()
+        assert manager.success.tolist() == [False, False]
+
+
 class TestRewards:
     def test_sum_of_weight_value_and_time(self, env) -> None:
         manager = RewardManager(

@@ -6,13 +6,13 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 import torch
 
 from arcgym.envs import mdp
+from arcgym.envs.mdp import events
 from arcgym.managers import EventTermCfg
 
 
@@ -30,29 +30,39 @@ class FakeSim:
         self.written.append((int(index), env_ids.tolist()))
 
 
-def make_reset(env, segment: str, names: list[str] | None, folder: Path = Path()):
+def make_reset(env, segment: str, names: list[str] | None, **params: str):
     env.sim, env.cfg.segment = FakeSim(names), segment
-    env.scene["colon"].path, env.scene["endoscope"].path = folder / "colon.usda", folder / "proximal.usda"
-    env.scene["colon"].cfg = SimpleNamespace(material="paper")
-    return mdp.reset_to_segment_start(EventTermCfg(func=mdp.reset_to_segment_start, mode="reset"), env)
+    cfg = EventTermCfg(func=mdp.reset_to_segment_start, mode="reset", params=params)
+    return mdp.reset_to_segment_start(cfg, env)
 
 
 @pytest.mark.parametrize(
-    ("segment", "names", "index"),
-    [("sigmoid", ["rectum", "sigmoid"], 1), ("rectum", ["rectum"], 0), ("rectum", ["sigmoid"], -1)],
+    ("segment", "names", "index"), [("sigmoid", ["rectum", "sigmoid"], 1), ("rectum", ["rectum"], 0)]
 )
 def test_reset_writes_the_snapshot_of_the_segment(env, segment: str, names: list[str], index: int) -> None:
     make_reset(env, segment, names)(env, torch.tensor([1]))
     assert env.sim.written == [(index, [1])]
 
 
-def test_missing_snapshots_name_the_tool(env, tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="snapshots/proximal.npz.*make_snapshots"):
-        make_reset(env, "sigmoid", None, tmp_path)
+def test_missing_start_states_are_made(env, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = ["rectum", "sigmoid"]
+    made = SimpleNamespace(names=names, index=names.index)
+    monkeypatch.setattr(events, "ensure", lambda scene, segment: made)
+    make_reset(env, "sigmoid", None)(env, torch.tensor([1]))
+    assert env.sim.written == [(1, [1])] and env.sim.snapshots is made
 
 
-def test_the_first_segment_starts_from_rest_without_snapshots(env, tmp_path: Path) -> None:
-    make_reset(env, "rectum", None, tmp_path)(env, torch.tensor([0]))
+def test_the_first_segment_starts_from_rest_without_snapshots(env, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "find_stored", lambda scene, segment: None)
+    make_reset(env, "rectum", ["sigmoid"])(env, torch.tensor([0]))
+    assert env.sim.written == [(-1, [0])]
+
+
+@pytest.mark.parametrize("by", ["task", "term"])
+def test_an_episode_may_begin_at_rest_whatever_the_segment(env, by: str) -> None:
+    env.cfg.start = "rest" if by == "task" else "segment"
+    params = {"start": "rest"} if by == "term" else {}
+    make_reset(env, "sigmoid", ["sigmoid"], **params)(env, torch.tensor([0]))
     assert env.sim.written == [(-1, [0])]
 
 

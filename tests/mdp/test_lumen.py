@@ -123,5 +123,5 @@ def test_unknown_preset_lists_the_known() -> None:
 
 
 def test_falling_ramp_is_refused() -> None:
-    with pytest.raises(ValueError, match="tau_wall = 0.1 m must be below tau_lumen"):
-        LumenCfg(tau_wall=0.1)
+    with pytest.raises(ValueError, match=r"tau_wall \(0.1 m\) < tau_lumen \(0.02 m\) must hold"):
+        LumenCfg(tau_wall=0.1).validate_config()

@@ -47,7 +47,7 @@ class CountingEnv(gym.Env):
         return self._obs(), action[:, 0], torch.zeros_like(truncated), truncated, extras
 
     def _obs(self):
-        self.image = self.episode_length_buf.to(torch.uint8)[:, None, None, None].repeat(1, 3, 20, 20)
+        self.image = self.episode_length_buf.to(torch.uint8)[:, None, None, None].expand_as(self.image).clone()
         return {"policy": self.image, "critic": self.episode_length_buf.float()[:, None]}
 
 

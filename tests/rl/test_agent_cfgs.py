@@ -6,21 +6,70 @@ from __future__ import annotations
 import gymnasium as gym
 import pytest
 import torch
+from rsl_rl.utils import resolve_callable
 
-from arcgym.rl import OnPolicyRunner, RslRlVecEnvWrapper
+from arcgym.cli.task import agent_key
+from arcgym.rl import RslRlVecEnvWrapper, constrained_runner
 from arcgym.utils.registry import list_tasks, load_cfg_from_registry
+from arcgym.utils.threads import one_thread
+
+TASK = "ARC-Rectum-Magnetic"
+KEYS = ("ppo", "ppo_recurrent", "ppo_masked", "ppo_lagrangian", "a2c", "sac", "sac_paper", "ppo_teacher")
+"""Agents that learn from the environment alone."""
 
 
-def distinct_agents() -> list[str]:
-    """One task for each agent configuration that is registered."""
-    tasks = {gym.registry[task].kwargs.get("rsl_rl_cfg_entry_point"): task for task in list_tasks()}
-    return sorted(task for entry_point, task in tasks.items() if entry_point)
-
-
-@pytest.mark.parametrize("task", distinct_agents())
-def test_agent_builds_and_acts(task, counting_env):
+def make_runner(key: str, counting_env, monkeypatch):
     counting_env.image = torch.zeros(2, 15, 84, 84, dtype=torch.uint8)
-    env = RslRlVecEnvWrapper(counting_env)
-    cfg = load_cfg_from_registry(task, "rsl_rl_cfg_entry_point")
-    runner = OnPolicyRunner(env, cfg.replace(num_steps_per_env=2).to_dict(), device="cpu")
-    assert runner.alg.act(env.get_observations()).shape == (2, 2)
+    monkeypatch.setattr(constrained_runner, "action_axes", lambda env: ("pitch", "yaw"))
+    monkeypatch.setattr(constrained_runner, "make_depth", lambda env, cfg: lambda: torch.ones(2, 5, 5))
+    cfg = load_cfg_from_registry(TASK, agent_key(key)).replace(num_steps_per_env=4)
+    if hasattr(cfg.algorithm, "replay_size"):
+        cfg.algorithm.replay_size, cfg.algorithm.learning_starts, cfg.algorithm.batch_size = 64, 8, 4
+    if hasattr(cfg.algorithm, "num_mini_batches"):
+        cfg.algorithm.num_mini_batches = min(cfg.algorithm.num_mini_batches, 2)
+    return resolve_callable(cfg.class_name)(RslRlVecEnvWrapper(counting_env), cfg.to_dict(), device="cpu")
+
+
+@pytest.mark.parametrize("key", KEYS)
+@one_thread()
+def test_agent_learns_and_acts(key, counting_env, monkeypatch):
+    step = counting_env.step
+
+    def step_with_costs(action):
+        obs, reward, terminated, truncated, extras = step(action)
+        extras["costs"] = {"tip_force": torch.zeros(2), "view_blocked": torch.ones(2)}
+        extras["final_obs"] = counting_env._obs()
+        return obs, reward, terminated, truncated, extras
+
+    counting_env.step = step_with_costs
+    runner = make_runner(key, counting_env, monkeypatch)
+    runner.learn(2)
+    policy = runner.get_inference_policy()
+    policy.reset()
+    with torch.inference_mode():
+        assert policy(runner.env.get_observations()).shape == (2, 2)
+
+
+def test_every_task_has_every_agent():
+    """Those that learn from the environment, and the two that need a teacher or recordings."""
+    for task in list_tasks():
+        assert {agent_key(key) for key in (*KEYS, "distillation", "bc")} <= set(gym.registry[task].kwargs)
+
+
+def test_each_agent_has_a_folder_of_its_own():
+    names = {key: load_cfg_from_registry(TASK, agent_key(key)).experiment_name for key in KEYS}
+    assert names["ppo"] == "arc_rectum_magnetic"
+    assert names["sac"] == "arc_rectum_magnetic_sac"
+    assert len(set(names.values())) == len(KEYS)
+
+
+def test_limits_are_costs_of_the_task():
+    limits = load_cfg_from_registry(TASK, agent_key("ppo_lagrangian")).algorithm.limits
+    costs = load_cfg_from_registry(TASK, "env_cfg_entry_point").costs
+    assert all(getattr(costs, name) is not None for name in limits)
+
+
+def test_frame_stacks_are_those_of_the_task():
+    stacks = load_cfg_from_registry(TASK, agent_key("sac")).algorithm.frame_stacks
+    policy = load_cfg_from_registry(TASK, "env_cfg_entry_point").observations.policy
+    assert stacks == {"policy": policy.rgb.history_length}

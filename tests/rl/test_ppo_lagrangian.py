@@ -19,6 +19,7 @@ from arcgym.rl.agent_cfgs.ppo_lagrangian import (
     RslRlPpoLagrangianRunnerCfg,
 )
 from arcgym.rl.episode_costs import EpisodeCosts
+from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
 LIMIT = 0.25
@@ -135,6 +136,6 @@ def test_plain_checkpoint_is_refused(tmp_path):
     plain = OnPolicyRunner(SteerToDot(4), runner_cfg().to_dict(), device="cpu")
     plain.save(str(tmp_path / "model_0.pt"))
     runner = make_runner(SteerToDot(4))
-    with pytest.raises(KeyError, match="not one of PPOLagrangian"):
+    with pytest.raises(UsageError, match="not one of PPOLagrangian"):
         runner.load(str(tmp_path / "model_0.pt"))
     runner.load(str(tmp_path / "model_0.pt"), load_cfg={"actor": True})

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import pytest
 import yaml
 
 from arcgym.rl import create_run_folder, find_checkpoint, write_params
+from arcgym.rl.run_folder import removed_on_failure
+from arcgym.utils.errors import UsageError
 
 
 @pytest.fixture
@@ -38,13 +38,37 @@ def test_path_is_taken_as_it_is(runs):
 
 
 def test_missing_checkpoint_lists_what_is_there(runs):
-    with pytest.raises(FileNotFoundError, match="'best'.*model_10.pt.*model_5.pt"):
+    with pytest.raises(UsageError, match="'best'.*model_10.pt.*model_5.pt"):
         find_checkpoint("splenic", checkpoint="best", root=runs)
+
+
+def test_unknown_experiment_lists_the_known(runs):
+    with pytest.raises(UsageError, match="splenc.*Available: none.*splenic"):
+        find_checkpoint("splenc", root=runs)
+
+
+def test_bad_pattern_is_named(runs):
+    with pytest.raises(UsageError, match="load_run '\\[' is no regular expression"):
+        find_checkpoint("splenic", "[", root=runs)
+
+
+def test_runs_of_one_second_have_folders_of_their_own(tmp_path):
+    folders = [create_run_folder("splenic", "a", root=tmp_path) for _ in range(20)]
+    assert len(set(folders)) == 20
+    assert all(folder.is_dir() for folder in folders)
+
+
+def test_failed_start_leaves_no_folder(tmp_path):
+    folder = create_run_folder("splenic", root=tmp_path)
+    with pytest.raises(RuntimeError), removed_on_failure(folder):
+        write_params(folder, env={"a": 1})
+        raise RuntimeError
+    assert not folder.exists()
 
 
 def test_params_name_functions(tmp_path):
     folder = create_run_folder("splenic", "trial", root=tmp_path)
-    write_params(folder, env=SimpleNamespace(to_dict=lambda: {"func": pytest.raises, "range": (1, 2), "off": None}))
+    write_params(folder, env={"func": pytest.raises, "range": (1, 2), "off": None})
     assert folder.name.endswith("_trial")
     params = yaml.safe_load((folder / "params" / "env.yaml").read_text())
     assert params == {"func": "_pytest.raises:raises", "range": [1, 2], "off": None}

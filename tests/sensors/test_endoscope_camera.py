@@ -231,5 +231,5 @@ def test_snapshot_shows_the_world_asked_for(tmp_path):
 
 
 def test_unknown_data_type_names_the_alternatives():
-    with pytest.raises(ValueError, match="normals.*rgb.*depth"):
+    with pytest.raises(ValueError, match="normals.*depth, rgb"):
         EndoscopeCamera(EndoscopeCameraCfg(data_types=("rgb", "normals")))

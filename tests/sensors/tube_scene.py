@@ -30,7 +30,7 @@ def tube_points(rings: int, sectors: int, radius: float = RADIUS) -> np.ndarray:
 
 
 def tube_wall(rings: int = 31, sectors: int = 16, radius: float = RADIUS) -> WallMesh:
-    """The simulated surface (one layer, no tetrahedra: the camera reads neither)."""
+    """Return the simulated surface (one layer, no tetrahedra: the camera reads neither)."""
     ring, sector = (a.ravel() for a in np.mgrid[:rings, :sectors])
     neighbors = np.stack(
         [
@@ -55,7 +55,7 @@ def tube_wall(rings: int = 31, sectors: int = 16, radius: float = RADIUS) -> Wal
 
 
 def tube_visual(wall: WallMesh, fine: int = 3, sectors: int = 16, radius: float = RADIUS) -> VisualMesh:
-    """The surface that the camera sees: `fine` times as many sectors, bound to the two wall vertices beside each."""
+    """Return the surface for the camera: `fine` times as many sectors, bound to the two wall vertices beside each."""
     rings, around = wall.num_rings, fine * sectors
     points = tube_points(rings, around, radius)
     ring, column = (a.ravel() for a in np.mgrid[:rings, :around])
@@ -77,7 +77,7 @@ def tube_visual(wall: WallMesh, fine: int = 3, sectors: int = 16, radius: float 
 
 
 def write_textures(folder: Path, plain: bool = False) -> tuple[Path, Path]:
-    """Writes albedo and detail images of 16 px: noise on pink, or one even colour without relief."""
+    """Write albedo and detail images of 16 px: noise on pink, or one even colour without relief."""
     rng = np.random.default_rng(0)
     albedo = np.tile(np.array([217, 120, 100, 255], dtype=np.uint8), (16, 16, 1))
     detail = np.full((16, 16, 4), (128, 128, 128, 255), dtype=np.uint8)
@@ -115,11 +115,11 @@ class TubeScene(dict):
         )
 
     def move_wall(self, world: int, points: np.ndarray) -> None:
-        """Puts the wall of one world at `points` [m], shape (V, 3)."""
+        """Put the wall of one world at `points` [m], shape (V, 3)."""
         wp.to_torch(self["colon"].nodal_pos_wp)[:, world] = torch.as_tensor(points, dtype=torch.float32)
 
     def move_camera(self, world: int, pose: Sequence[float]) -> None:
-        """Puts the camera of one world at `pose`: position [m] and quaternion (x, y, z, w)."""
+        """Put the camera of one world at `pose`: position [m] and quaternion (x, y, z, w)."""
         wp.to_torch(self["endoscope"].camera_pose_wp)[world] = torch.as_tensor(pose, dtype=torch.float32)
 
     @property

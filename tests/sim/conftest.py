@@ -10,5 +10,5 @@ from tiny_sim import TinySim
 
 @pytest.fixture(scope="session")
 def tiny_sim(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
-    """Simulations in the straight tube: radius 20 mm, 17 rings of 8 vertices, 12.5 mm apart."""
+    """Make simulations in the straight tube: radius 20 mm, 17 rings of 8 vertices, 12.5 mm apart."""
     return TinySim(tmp_path_factory.mktemp("tiny_sim"))

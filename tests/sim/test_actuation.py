@@ -32,7 +32,7 @@ def bend(sim: Simulation, pitch: float, yaw: float, seconds: float) -> None:
 
 
 def inside(tiny_sim: TinySim) -> Simulation:
-    """A scope with its bending section in the lumen, clear of the introducer and of the wall."""
+    """Return a scope with its bending section in the lumen, clear of the introducer and of the wall."""
     sim = tiny_sim()
     push(sim, 0.1, seconds=0.5)
     push(sim, 0.0)

@@ -9,12 +9,11 @@ import math
 import numpy as np
 import pytest
 import torch
-import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.assets import TipPullCfg
 from arcgym.sim import ContactCfg, Simulation
-from arcgym.sim.contact.link_load_kernels import load_contacts
+from arcgym.utils.math import quat_apply
 
 APOTHEM = 0.020 * math.cos(math.pi / 8)
 """Distance of the tube's flat sides from its axis [m]."""
@@ -35,26 +34,16 @@ def place(sim: Simulation, depth: float, direction: np.ndarray = SIDE, z: float 
     sim.endoscope.data.joint_pos[0] = torch.tensor([*position, 0.0, 0.0, 0.0, 1.0])
     sim.endoscope.data.joint_vel.zero_()
     sim.forward()
-    sim.contact.detect(sim.nodal_pos, sim.state.body_q)
+    sim.contact.memory["contact_slide"].zero_()
+    sim.coupling.find_contacts()
 
 
 def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.ndarray:
-    """Force of the wall on the capsule [N]."""
-    twist = wp.array([[*link_velocity, 0.0, 0.0, 0.0]], dtype=wp.spatial_vector, device="cpu")
-    contact, loads, now = sim.contact, sim.coupling.solver.loads, 1.0e-9
-    args = [sim.state.body_q, twist, sim.model.body_com, sim.nodal_pos, sim.nodal_vel, contact.links]
-    args += [
-        contact.records,
-        contact.law,
-        contact.friction,
-        sim.state.body_q,
-        0.0,
-        now,
-        loads,
-        sim.scope_readout.penetrated,
-    ]
-    wp.launch(load_contacts, loads.wrench.shape, args, device="cpu")
-    return loads.wrench.numpy()[0, 0, :3]
+    """Force of the wall on the capsule [N], at the start of a substep."""
+    sim.endoscope.data.joint_vel[0, :3] = torch.tensor(link_velocity)
+    sim.forward()
+    sim.coupling.load_contacts(0.0, 1.0e-9)
+    return sim.coupling.solver.loads.wrench.numpy()[0, 0, :3]
 
 
 def force_on_wall(sim: Simulation) -> np.ndarray:
@@ -109,7 +98,7 @@ def test_force_does_not_jump_as_a_capsule_tilts(sim: Simulation) -> None:
         axis = np.cross(SIDE, [0.0, 0.0, 1.0])
         sim.endoscope.data.joint_pos[0, 3:] = torch.tensor([*(np.sin(half) * axis), np.cos(half)])
         sim.forward()
-        sim.contact.detect(sim.nodal_pos, sim.state.body_q)
+        sim.coupling.find_contacts()
         forces.append(np.linalg.norm(wall_force(sim)))
     assert np.abs(np.diff(forces)).max() < 0.05 * np.mean(forces)
 
@@ -162,7 +151,7 @@ def test_a_capsule_outside_comes_back(tiny_sim: TinySim) -> None:
 def slid(sim: Simulation, by: float) -> np.ndarray:
     """Force of the wall on a capsule that has come ``by`` [m] along it since it touched [N]."""
     place(sim, depth=1.0e-5)
-    sim.contact.records.slide.fill_(wp.vec3(0.0, 0.0, by))
+    sim.contact.memory["contact_slide"].view(-1, 3)[:] = torch.tensor([0.0, 0.0, by])
     return wall_force(sim)
 
 
@@ -181,7 +170,7 @@ def test_friction_holds_elastically_before_it_slides(sim: Simulation) -> None:
 def test_a_link_without_a_ring_is_searched_along_the_whole_colon(sim: Simulation) -> None:
     place(sim, depth=1.0e-4, z=0.15)
     sim.contact.ring.fill_(-1)
-    sim.contact.detect(sim.nodal_pos, sim.state.body_q)
+    sim.coupling.find_contacts()
     assert sim.contact.ring.numpy()[0, 0] == 12  # 150 mm / 12.5 mm
     assert count(sim) >= 1
 
@@ -190,7 +179,7 @@ def brute_force(sim: Simulation, limit: float) -> set[int]:
     """Faces within ``limit`` [m] of the capsule's axis, by sampling both densely; the axis is in the lumen."""
     pose = sim.state.body_q.numpy()[0]
     half = float(sim.contact.links.half_length.numpy()[0])
-    turn = np.array(wp.quat_rotate(wp.quat(*pose[3:].tolist()), wp.vec3(0.0, 0.0, 1.0)))
+    turn = quat_apply(torch.tensor(pose[None, 3:]), torch.tensor([[0.0, 0.0, 1.0]]))[0].numpy()
     axis = pose[:3] + np.linspace(-half, half, 41)[:, None] * turn
     grid = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, 41)] * 2), axis=2).reshape(-1, 2)
     grid = grid[grid.sum(axis=1) <= 1.0 + 1e-9]
@@ -231,7 +220,7 @@ def test_contacts_beyond_the_capacity_are_counted(tiny_sim: TinySim) -> None:
 
 
 def resting(tiny_sim: TinySim, along: float) -> Simulation:
-    """A capsule on a rigid wall after 0.25 s under its weight across the side and ``along`` times it along the tube.
+    """Return a capsule on a rigid wall after 0.25 s under its weight across the side and ``along`` times that along it.
 
     It cannot turn: it has one contact, at its deeper end, and would rock.
     """
@@ -267,6 +256,6 @@ def test_a_link_penetrates_the_wall_where_its_axis_comes_close_to_it(
     sim: Simulation, depth: float, penetrated: bool
 ) -> None:
     place(sim, depth * REACH)
-    sim.scope_readout.penetrated.zero_()
+    sim.scope_readout.clear()
     wall_force(sim)
     assert sim.wall_penetrated.tolist() == [penetrated]

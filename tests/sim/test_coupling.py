@@ -18,7 +18,7 @@ SOLID = {**SOFT, "wall_model": "solid"}
 
 @pytest.fixture(scope="module")
 def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
-    """A tube of 16 mm radius."""
+    """Return a tube of 16 mm radius."""
     return TinySim(tmp_path_factory.mktemp("narrow"), radius=0.016)
 
 

@@ -110,7 +110,7 @@ def test_action_is_reaction(sim_in: HairpinSim) -> None:
 
 
 def two_tubes(distance: float) -> tuple[np.ndarray, np.ndarray]:
-    """A tube of 20 mm radius up and another down beside it, 8 rings of 12 vertices each: points and their rings."""
+    """Return points and rings of a tube of 20 mm radius up and one down beside it, 8 rings of 12 vertices each."""
     angle = np.arange(12) * np.pi / 6.0
     ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
     centers = [[side * distance, 0.0, z] for side, way in ((0, 1), (1, -1)) for z in 0.0125 * np.arange(8)[::way]]

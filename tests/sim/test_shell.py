@@ -24,7 +24,7 @@ TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
 
 
 def folded(angle: float) -> np.ndarray:
-    """The square with vertex 3 turned out of the plane by ``angle`` about the diagonal."""
+    """Return the square with vertex 3 turned out of the plane by ``angle`` about the diagonal."""
     points = SQUARE.copy()
     middle, out = np.array([0.5, 0.5, 0.0]), np.array([-0.5, 0.5, 0.0])
     points[3] = middle + np.cos(angle) * out + np.sin(angle) * np.array([0.0, 0.0, np.sqrt(0.5)])

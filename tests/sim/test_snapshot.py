@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ import torch
 from tiny_sim import TinySim
 
 from arcgym.sim import Simulation, Snapshot, SnapshotSet
-from arcgym.sim.snapshot import find_snapshots, fingerprint, snapshot_path
+from arcgym.sim.snapshot import fingerprint
 
 
 def moved(sim: Simulation, steps: int) -> Simulation:
@@ -76,7 +75,9 @@ def test_a_stored_state_keeps_its_bending(tiny_sim: TinySim) -> None:
 
 
 def test_states_of_another_scope_are_refused(stored: SnapshotSet, tiny_sim: TinySim) -> None:
-    with pytest.raises(ValueError, match="another wall mesh or endoscope than .*colon.usda with .*make_snapshots.py"):
+    with pytest.raises(
+        ValueError, match="do not fit .*colon.usda with .*another wall mesh or endoscope .*arcgym snapshots"
+    ):
         tiny_sim(links=8).load_snapshots(stored)
 
 
@@ -84,6 +85,16 @@ def test_states_of_another_wall_are_refused(stored: SnapshotSet, tiny_sim: TinyS
     other = replace(stored, fingerprint="0" * 16)
     with pytest.raises(ValueError, match="fingerprint 0000000000000000"):
         tiny_sim().load_snapshots(other)
+
+
+def test_states_of_other_actuators_are_refused(stored: SnapshotSet, tiny_sim: TinySim) -> None:
+    with pytest.raises(ValueError, match="other actuators .differing in bending.angle"):
+        tiny_sim(scope={"drives": {}, "actuators": {}}).load_snapshots(stored)
+
+
+def test_what_a_file_says_about_its_states_is_kept(stored: SnapshotSet, tmp_path: Path) -> None:
+    replace(stored, about={"arc": 0.5, "key": {"robot": "ab"}}).save(tmp_path / "scope.npz")
+    assert SnapshotSet.load(tmp_path / "scope.npz").about == {"arc": 0.5, "key": {"robot": "ab"}}
 
 
 def test_index_finds_a_state_by_name(stored: SnapshotSet) -> None:
@@ -101,7 +112,7 @@ def test_a_state_that_is_not_there_is_refused(stored: SnapshotSet, tiny_sim: Tin
 
 
 def test_a_missing_file_names_the_command_that_makes_it(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="make_snapshots.py"):
+    with pytest.raises(FileNotFoundError, match="arcgym snapshots"):
         SnapshotSet.load(tmp_path / "none.npz")
 
 
@@ -109,18 +120,3 @@ def test_at_rest_stops_everything_where_it_is() -> None:
     arrays = {"joint_q": np.ones(2), "joint_qd": np.ones(2), "nodal_vel": np.ones((3, 3))}
     still = Snapshot(arrays).at_rest().arrays
     assert still["joint_q"].all() and not still["joint_qd"].any() and not still["nodal_vel"].any()
-
-
-def test_snapshots_lie_beside_the_colon() -> None:
-    path = snapshot_path(Path("usd/colon_1/colon.usda"), Path("usd/endoscopes/magnetic.usda"))
-    assert path == Path("usd/colon_1/snapshots/magnetic.npz")
-
-
-def test_snapshots_of_the_own_tissue_come_first(tmp_path: Path) -> None:
-    colon = SimpleNamespace(path=tmp_path / "colon.usda", cfg=SimpleNamespace(material="in_situ"))
-    scope = SimpleNamespace(path=Path("magnetic.usda"))
-    assert find_snapshots(colon, scope).name == "magnetic.npz"
-    own = snapshot_path(colon.path, scope.path, "in_situ")
-    own.parent.mkdir()
-    own.touch()
-    assert find_snapshots(colon, scope) == own and own.name == "magnetic_in_situ.npz"

@@ -26,6 +26,15 @@ TASKS = [
 ]
 
 
+def test_plain_newton_needs_three_terms_switched_off() -> None:
+    cfg = load_cfg_from_registry("ARC-Rectum-Capsule", "env_cfg_entry_point")
+    cfg.sim.solver = "newton"
+    with pytest.raises(ValueError, match="solver.*env.terminations.wall_penetrated=null env.events.stiffness=null"):
+        validate(cfg)
+    cfg.terminations.wall_penetrated = cfg.events.stiffness = cfg.events.friction = None
+    validate(cfg)
+
+
 def test_all_tasks_are_registered() -> None:
     assert set(TASKS) <= set(list_tasks())
 

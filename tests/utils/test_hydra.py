@@ -35,7 +35,19 @@ class SceneCfg:
 
 
 @configclass
+class ViewCfg:
+    angle: float = 0.0
+
+    @classmethod
+    def from_name(cls, name: str) -> ViewCfg:
+        if name != "side":
+            raise ValueError(f"There is no view '{name}'.")
+        return ViewCfg(angle=90.0)
+
+
+@configclass
 class EnvCfg:
+    view: ViewCfg = ViewCfg()
     scene: SceneCfg = SceneCfg()
     rewards: RewardsCfg = RewardsCfg()
     terms: dict[str, TermCfg] = {"first": TermCfg()}
@@ -88,6 +100,9 @@ def test_value_is_fitted_to_its_field(cfg: EnvCfg, path: str, text: str, expecte
         ("env.rewards.contact.params.sigmo=1", "Did you mean 'sigma'"),
         ("env.rewards.contact.func=math:sqr", "'math:sqr': no attribute 'sqr'. Did you mean 'sqrt'"),
         ("env=3", "name a field inside it"),
+        ("use_graph=false", "The command has no field 'use_graph'. Did you mean 'env.use_graph'"),
+        ("speed=3", "The command has no field 'speed': begin with 'env.'"),
+        ("env.view=sidee", "'env.view': There is no view 'sidee'"),
         ("env.use_graph", "expected path=value"),
         ("~env.rewards.contact", "use path=null"),
         ("env.scene.num_envs=1,2", "deletes or sweeps"),
@@ -140,3 +155,10 @@ def test_each_configuration_has_its_own_first_word(cfg: EnvCfg) -> None:
     agent = SceneCfg()
     apply_overrides({"env": cfg, "agent": agent}, ["agent.num_envs=1", "env.use_graph=false"])
     assert agent.num_envs == 1 and cfg.use_graph is False
+
+
+def test_a_name_replaces_a_configuration_that_has_presets(cfg: EnvCfg) -> None:
+    apply_overrides({"env": cfg}, ["env.view=side"])
+    assert cfg.view == ViewCfg(angle=90.0)
+    apply_overrides({"env": cfg}, ["env.view.angle=80"])
+    assert cfg.view.angle == 80.0

@@ -6,7 +6,10 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
+from arcgym.anatomy.segments import SEGMENTS
 from arcgym.utils.configclass import configclass
+from arcgym.utils.string import did_you_mean
+from arcgym.utils.validation import FieldError, Range, require, require_non_negative, require_positive
 
 
 @configclass
@@ -47,3 +50,23 @@ class ColonCfg:
     :func:`arcgym.envs.mdp.randomize_anchors`, to see how much a policy depends on how firmly the colon is held."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds, or a preset or segment is unknown.
+        """
+        from arcgym.assets.materials import TISSUE_PRESETS
+
+        require(self, "material", TISSUE_PRESETS)
+        require_positive(self, "wall_thickness", "mobile_until", unit="m")
+        require_positive(self, "youngs_modulus", unit="Pa")
+        require(self, "poissons_ratio", Range(0.0, 0.5, below=True))
+        require_positive(self, "density", unit="kg/m^3")
+        require_non_negative(self, "anchor_stiffness", unit="N/m^2")
+        require_non_negative(self, "anchor_slack", unit="m")
+        for field in ("anchor_stiffness", "anchor_slack"):
+            for segment in getattr(self, field):
+                if segment not in SEGMENTS:
+                    raise FieldError(self, field, f"names '{segment}'. {did_you_mean(segment, SEGMENTS)}")

@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.assets.actuators import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, TipPullCfg
 from arcgym.utils.configclass import MISSING, configclass
+from arcgym.utils.validation import require_non_negative, require_positive
 
 
 @configclass
@@ -24,6 +25,16 @@ class IntroducerCfg:
     """Height above the anal verge up to which links are guided [m]."""
     slack: float = 0.01
     """How much lower than in a straight shaft, and than the anal verge, a link may be before it is lifted [m]."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        require_non_negative(self, "stiffness", unit="N/m")
+        require_non_negative(self, "damping", unit="N s/m")
+        require_non_negative(self, "height", "slack", unit="m")
 
 
 @configclass
@@ -48,6 +59,15 @@ class EndoscopeCfg:
     """Torsional rigidity GJ of the whole scope [N m^2/rad], over the stage's."""
     introducer: IntroducerCfg = IntroducerCfg()
     """Guide outside the anus."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        require_positive(self, "shaft_rigidity", "tip_rigidity", unit="N m^2")
+        require_positive(self, "torsional_rigidity", unit="N m^2/rad")
 
 
 PROXIMAL_CFG = EndoscopeCfg(

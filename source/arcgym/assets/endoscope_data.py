@@ -103,7 +103,7 @@ class EndoscopeData:
 
 
 def _readings(endoscope: Endoscope) -> dict[str, torch.Tensor]:
-    """Readings of the actuators by name of the field.
+    """Return the readings of the actuators by name of the field.
 
     Raises:
         ValueError: If two actuators give the same one.

@@ -190,14 +190,14 @@ class _Reader:
         return mass
 
     def _hinge(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim:
-        """The prim of hinge number `hinge`, checked to join its two links end to end about the right axis."""
+        """Return the prim of hinge number `hinge`, checked to join its two links end to end about the right axis."""
         prim = self._turn(links, length, hinge, hinge_name(hinge))
         if self._value(prim, "physics:axis") != hinge_axis(hinge):
             raise self._error(prim, "physics:axis", "breaks the alternation", f"Set it to '{hinge_axis(hinge)}'.")
         return prim
 
     def _twist(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim | None:
-        """The prim of the twist at hinge number `hinge`, or None if it does not twist."""
+        """Return the prim of the twist at hinge number `hinge`, or None if it does not twist."""
         if not self.usd.GetPrimAtPath(f"{JOINTS_PATH}/{twist_name(hinge)}"):
             return None
         prim = self._turn(links, length, hinge, twist_name(hinge))
@@ -206,7 +206,7 @@ class _Reader:
         return prim
 
     def _turn(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int, name: str) -> Usd.Prim:
-        """A joint of hinge number `hinge`, checked to join its two links end to end."""
+        """Return a joint of hinge number `hinge`, checked to join its two links end to end."""
         prim = self._prim(f"{JOINTS_PATH}/{name}", UsdPhysics.RevoluteJoint)
         self._expect_body(prim, "physics:body0", links[hinge - 1])
         self._expect_body(prim, "physics:body1", links[hinge])
@@ -266,7 +266,7 @@ class _Reader:
         return UsdGeom.Xformable(prim).GetLocalTransformation()
 
     def _prim(self, prim_path: str, schema: Any = None) -> Usd.Prim:
-        """The prim at `prim_path`, checked to have the API schema or to be of the type `schema`."""
+        """Return the prim at `prim_path`, checked to have the API schema or to be of the type `schema`."""
         prim = self.usd.GetPrimAtPath(prim_path)
         if not prim:
             raise self._error(prim_path, "", "no such prim", "Write the stage with arcgym's write_endoscope.")

@@ -274,7 +274,7 @@ def capsule_spec() -> EndoscopeSpec:
 
 
 def endoscope_specs() -> tuple[EndoscopeSpec, ...]:
-    """The endoscopes that ARCGym ships."""
+    """Return the endoscopes that ARCGym ships."""
     return capsule_spec(), magnetic_spec(), proximal_spec()
 
 

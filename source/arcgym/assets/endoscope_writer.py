@@ -140,7 +140,7 @@ def _write_optics(stage: Usd.Stage, spec: EndoscopeSpec) -> None:
 
 
 def _write_root(stage: Usd.Stage, spec: EndoscopeSpec, height: float) -> None:
-    """The joint of the first link to the world, free to slide along and roll about Z."""
+    """Return the joint of the first link to the world, free to slide along and roll about Z."""
     joint = UsdPhysics.Joint.Define(stage, ROOT_JOINT_PATH)
     prim = joint.GetPrim()
     joint.CreateBody1Rel().SetTargets([f"{LINKS_PATH}/{link_name(0)}"])
@@ -154,7 +154,7 @@ def _write_root(stage: Usd.Stage, spec: EndoscopeSpec, height: float) -> None:
 
 
 def _write_hinge(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int) -> None:
-    """The hinge between links `hinge` - 1 and `hinge`, whose drives carry the elasticity of the shaft.
+    """Return the hinge between links `hinge` - 1 and `hinge`, whose drives carry the elasticity of the shaft.
 
     A twist is a second joint of the same links, which Newton's importer merges with the hinge.
     """

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from arcgym.utils.configclass import configclass
 from arcgym.utils.string import did_you_mean
+from arcgym.utils.validation import require_order, require_positive
 
 
 @configclass
@@ -34,11 +35,8 @@ class ForceTiersCfg:
         Raises:
             ValueError: If the limits do not rise from a positive one.
         """
-        if not 0.0 < self.comfort < self.unsafe < self.perforation:
-            raise ValueError(
-                "ForceTiersCfg: 0 < comfort < unsafe < perforation must hold, got "
-                f"{self.comfort}, {self.unsafe} and {self.perforation} N."
-            )
+        require_positive(self, "comfort", "unsafe", "perforation", unit="N")
+        require_order(self, "comfort", "unsafe", "perforation", unit="N")
 
 
 FORCE_TIERS = ForceTiersCfg()

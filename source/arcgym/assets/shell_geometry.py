@@ -162,7 +162,7 @@ def fold_angles(points: np.ndarray, hinges: np.ndarray) -> np.ndarray:
 
 
 def fold_gradients(points: np.ndarray, hinges: np.ndarray) -> np.ndarray:
-    """Derivative of each hinge's angle with respect to its vertices [rad/m], shape (H, 4, 3)."""
+    """Return the derivative of each hinge's angle with respect to its vertices [rad/m], shape (H, 4, 3)."""
     x0, x1, x2, x3 = (points[hinges[:, k]].astype(np.float64) for k in range(4))
     edge = x3 - x2
     squared = (edge**2).sum(1, keepdims=True)

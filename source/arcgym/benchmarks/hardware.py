@@ -1,19 +1,12 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The device that a benchmark runs on, and memory in use. Importing this loads neither torch nor Warp."""
+"""The name of a device, and memory in use. Importing this loads neither torch nor Warp."""
 
 from __future__ import annotations
 
 import resource
 import sys
 from pathlib import Path
-
-
-def best_device() -> str:
-    """Return the first GPU, or the CPU where there is none."""
-    import torch
-
-    return "cuda:0" if torch.cuda.is_available() else "cpu"
 
 
 def full_name(device: str) -> str:

@@ -80,7 +80,7 @@ class TaskArguments:
     num_envs: int | None = argument("number of worlds (default: the task's)", None, type=positive)
     seed: int | None = argument("seed of environment and networks (default: the agent's)", None, type=int)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
-    agent: str = argument("registry key of the agent's configuration", "rsl_rl_cfg_entry_point")
+    agent: str = argument("agent: ppo (default), sac, a2c, ... or a registry key", "rsl_rl_cfg_entry_point")
     headless: bool = argument("accepted for Isaac Lab's sake: there is no window", False)
     overrides: list[str] = dataclasses.field(default_factory=list)
     """Texts ``env.path=value`` and ``agent.path=value``."""
@@ -95,5 +95,6 @@ class RunArguments(TaskArguments):
         "run folder, or a regular expression for it (default: the newest)", None, group="run"
     )
     checkpoint: str | None = argument("path, file name, 'latest' or 'best' (default: latest)", None, group="run")
+    no_params: bool = argument("use the registered configurations, not those of the run", False, group="run")
     video: bool = argument("record MP4 videos", False, group="video")
     video_length: int = argument("control steps of a video (default: 200)", 200, type=positive, group="video")

@@ -33,8 +33,10 @@ def run(args: argparse.Namespace) -> None:
     from arcgym.anatomy import StageError, read_colon
     from arcgym.benchmarks.camera.measure import time_updates
     from arcgym.benchmarks.hardware import full_name
+    from arcgym.rl.device import choose_device
     from arcgym.utils.paths import resolve_asset
 
+    device = choose_device(args.device)
     try:
         stage = read_colon(resolve_asset(args.colon))
     except (StageError, FileNotFoundError) as error:
@@ -42,8 +44,8 @@ def run(args: argparse.Namespace) -> None:
     results = []
     for num_envs in args.num_envs:
         for size in args.size:
-            results.append(time_updates(stage, num_envs, size, args.device, args.samples, args.repeats))
+            results.append(time_updates(stage, num_envs, size, device, args.samples, args.repeats))
             print("  ".join(f"{key} {value}" for key, value in results[-1].items()), flush=True)
     if args.json:
-        device = full_name(args.device)
-        print(json.dumps({"benchmark": "camera", "colon": args.colon, "device": device, "results": results}))
+        report = {"benchmark": "camera", "colon": args.colon, "device": full_name(device), "results": results}
+        print(json.dumps(report))

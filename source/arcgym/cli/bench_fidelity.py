@@ -48,8 +48,10 @@ def run(args: argparse.Namespace) -> int:
     if args.list:
         print("\n".join(name for check in chosen for name in check.rows))
         return 0
+    from arcgym.rl.device import choose_device
+
     logging.basicConfig(level=logging.WARNING)
-    rows = measure(chosen, args.device, args.rows, args.plots)
+    rows = measure(chosen, choose_device(args.device), args.rows, args.plots)
     if args.json:
         print(json.dumps({"rows": [as_json(row) for row in rows]}))
     return 0 if all(row.ok for row in rows) else 1

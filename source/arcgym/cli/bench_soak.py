@@ -21,7 +21,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from arcgym.benchmarks.hardware import best_device, full_name
+from arcgym.benchmarks.hardware import full_name
 from arcgym.benchmarks.soak.journal import Journal
 from arcgym.benchmarks.soak.report import findings
 from arcgym.benchmarks.worlds import load_env_cfg
@@ -63,10 +63,15 @@ def names(text: str) -> list[str]:
 def run(args: argparse.Namespace) -> int:
     """Soak one task after the other, judge what was found and return 1 if any of it is a violation."""
     tasks = [f"ARC-{segment}-{robot}" for segment in args.segments for robot in args.robots]
-    for task in tasks:
-        task_cfg(task, args)
+    cfgs = [task_cfg(task, args) for task in tasks]
+
+    from arcgym.rl.device import choose_device
+    from arcgym.rl.preflight import check_environment
+
+    for cfg in cfgs:
+        check_environment(cfg, args.device, outputs=[args.resume or args.out])
+    args.device = choose_device(args.device)
     journal = open_journal(args.out, args.resume)
-    args.device = args.device or best_device()
     on_cpu = args.device == "cpu"
     args.num_envs = args.num_envs or (CPU_WORLDS if on_cpu else GPU_WORLDS)
     args.minutes = args.minutes or (CPU_MINUTES if on_cpu and args.steps is None else math.inf)

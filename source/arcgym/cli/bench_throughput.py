@@ -16,7 +16,6 @@ import json
 import tempfile
 from pathlib import Path
 
-from arcgym.benchmarks.hardware import best_device
 from arcgym.benchmarks.throughput import launch, report
 from arcgym.benchmarks.throughput.settings import Row, Settings
 from arcgym.benchmarks.worlds import load_env_cfg
@@ -46,8 +45,13 @@ def run(args: argparse.Namespace) -> None:
     """Measure every number of worlds and print the table."""
     from rich.console import Console
 
-    load_env_cfg(args.task, args.overrides, args.seed)
-    device = args.device or best_device()
+    cfg = load_env_cfg(args.task, args.overrides, args.seed)
+
+    from arcgym.rl.device import choose_device
+    from arcgym.rl.preflight import check_environment
+
+    check_environment(cfg, args.device)
+    device = choose_device(args.device)
     num_envs = args.num_envs or (CPU_COUNTS if device == "cpu" else GPU_COUNTS)
     names = ("task", "steps", "repeats", "seed", "start", "stages", "bandwidth", "timeout")
     settings = Settings(device=device, **{name: getattr(args, name) for name in names})

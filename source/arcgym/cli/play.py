@@ -5,7 +5,9 @@
 
     arcgym play --task ARC-Splenic-Proximal --video --record logs/episodes
 
-Uses the -Play variant of the task. The video goes to videos/play of the run, the policy to exported. --policy zero and
+Uses the -Play variant of the task with the run's own configurations; the command line's changes come on top and are
+printed. It ends when each world's first episode has ended: these are the episodes that the success rate counts. The
+video goes to videos/play of the run, the policy to exported. --policy zero and
 --policy random need no checkpoint. --record writes every episode's trajectory to a file.
 """
 
@@ -15,7 +17,7 @@ import argparse
 from dataclasses import dataclass, replace
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
-from arcgym.cli.task import load_cfgs
+from arcgym.cli.task import PLAY, load_cfgs, load_run_cfgs
 
 TAKES_OVERRIDES = True
 
@@ -25,7 +27,9 @@ class PlayArguments(RunArguments):
     """Arguments of ``arcgym play``."""
 
     policy: str = argument("source of the actions (default: trained)", "trained", choices=("trained", "zero", "random"))
-    steps: int | None = argument("control steps (default: the video's, else one episode)", None, type=positive)
+    steps: int | None = argument(
+        "control steps (default: until each world's first episode has ended)", None, type=positive
+    )
     record: str | None = argument("record trajectories: a folder, or a file ending in .hdf5", None, metavar="PATH")
     json: bool = argument("print the figures as JSON on the last line", False)
 
@@ -40,16 +44,23 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.utils.registry import list_tasks
 
     args = read_fields(PlayArguments, namespace)
-    if f"{args.task}-Play" in list_tasks(prefix=""):
-        args = replace(args, task=f"{args.task}-Play")
-    env_cfg, agent_cfg = load_cfgs(args)
+    if f"{args.task}{PLAY}" in list_tasks(prefix=""):
+        args = replace(args, task=f"{args.task}{PLAY}")
+    checkpoint = None
+    if args.policy == "trained":
+        env_cfg, agent_cfg, checkpoint = load_run_cfgs(args)
+    else:
+        env_cfg, agent_cfg = load_cfgs(args)
 
     from arcgym.rl.playing import PlayOptions, play
 
-    video_length = args.video_length if args.video else None
-    play(
-        args.task,
-        env_cfg,
-        agent_cfg,
-        PlayOptions(args.policy, args.device, args.steps, video_length, args.record, args.json),
+    options = PlayOptions(
+        args.policy,
+        checkpoint,
+        args.device,
+        args.steps,
+        args.video_length if args.video else None,
+        args.record,
+        args.json,
     )
+    play(args.task, env_cfg, agent_cfg, options)

@@ -1,17 +1,21 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Configurations of a task as the command line wants them."""
+"""Configurations of a task as the command line wants them, on top of a run's where there is one."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
-from arcgym.cli.arguments import TaskArguments
+from arcgym.cli.arguments import RunArguments, TaskArguments
 from arcgym.utils.errors import UsageError
 
 AGENT_FIELDS = ("seed", "max_iterations", "experiment_name", "run_name", "load_run", "logger", "log_project_name")
 """Arguments that are fields of the agent's configuration."""
+
+PLAY = "-Play"
+"""End of the names of tasks that are made for watching."""
 
 
 def load_cfgs(args: TaskArguments) -> tuple[Any, Any]:
@@ -20,12 +24,69 @@ def load_cfgs(args: TaskArguments) -> tuple[Any, Any]:
     Raises:
         UsageError: The task, the agent or an override is wrong.
     """
-    from arcgym.utils.hydra import apply_overrides
+    env_cfg, agent_cfg = _registered(args.task, args.agent)
+    _write(args, env_cfg, agent_cfg)
+    return env_cfg, agent_cfg
+
+
+def agent_key(name: str) -> str:
+    """Return the registry key of an agent: ``sac`` is ``rsl_rl_sac_cfg_entry_point``, ``ppo`` the default agent's."""
+    if name.endswith("cfg_entry_point"):
+        return name
+    return "rsl_rl_cfg_entry_point" if name == "ppo" else f"rsl_rl_{name}_cfg_entry_point"
+
+
+def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
+    """Return configurations as a run had them, changed by overrides and arguments, and the checkpoint of that run.
+
+    Prints where they come from and what the command line changes. A run of another task gives the agent alone.
+
+    Raises:
+        UsageError: The task, an override, the checkpoint or the run's parameters are wrong.
+    """
+    from arcgym.rl.params import differences, read_params, restore
+    from arcgym.rl.run_folder import find_checkpoint
+    from arcgym.utils.coerce import to_plain
+
+    _, asked = load_cfgs(args)
+    checkpoint = find_checkpoint(asked.experiment_name, asked.load_run, asked.load_checkpoint)
+    env_cfg, agent_cfg = _registered(args.task, args.agent)
+    saved = None if args.no_params else read_params(checkpoint.parent)
+    if saved is None:
+        print(f"params: the registered ones; none of {checkpoint.parent / 'params'} are used")
+    else:
+        restore(agent_cfg, saved.agent, "agent")
+        task, trained = args.task.removesuffix(PLAY), saved.task.removesuffix(PLAY)
+        if task == trained:
+            plain, _ = _registered(task, args.agent)
+            restore(env_cfg, saved.env, "env", keep=list(differences(to_plain(plain), to_plain(env_cfg))))
+            print(f"params: {saved.folder}")
+        else:
+            print(f"params: agent of {saved.folder}; it was trained in {trained}, and {task} is as registered")
+    before = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
+    _write(args, env_cfg, agent_cfg)
+    after = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
+    for path, (old, new) in differences(before, after).items():
+        print(f"changed: {path}: {old} -> {new}")
+    return env_cfg, agent_cfg, checkpoint
+
+
+def _registered(task: str, agent: str) -> tuple[Any, Any]:
+    """Return the environment's and the agent's configuration as they are registered."""
     from arcgym.utils.registry import load_cfg_from_registry
 
     try:
-        env_cfg = load_cfg_from_registry(args.task, "env_cfg_entry_point")
-        agent_cfg = load_cfg_from_registry(args.task, args.agent)
+        env_cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
+        return env_cfg, load_cfg_from_registry(task, agent_key(agent))
+    except (TypeError, ValueError) as error:
+        raise UsageError(str(error)) from error
+
+
+def _write(args: TaskArguments, env_cfg: Any, agent_cfg: Any) -> None:
+    """Write overrides, then arguments, into the configurations."""
+    from arcgym.utils.hydra import apply_overrides
+
+    try:
         apply_overrides({"env": env_cfg, "agent": agent_cfg}, args.overrides)
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
@@ -36,4 +97,3 @@ def load_cfgs(args: TaskArguments) -> tuple[Any, Any]:
     agent_cfg.resume = agent_cfg.resume or getattr(args, "resume", False)
     if args.num_envs is not None:
         env_cfg.scene.num_envs = args.num_envs
-    return env_cfg, agent_cfg

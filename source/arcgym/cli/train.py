@@ -6,7 +6,7 @@
     arcgym train --task ARC-Splenic-Proximal --num_envs 64 --max_iterations 300
 
 The run goes to logs/rsl_rl/<experiment>/<time>[_<run name>]. Ctrl-C or a kill leaves a checkpoint there; go on with
---resume.
+--resume, which starts from that run's configurations and writes the command line's changes on top.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import argparse
 from dataclasses import dataclass
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
-from arcgym.cli.task import load_cfgs
+from arcgym.cli.task import load_cfgs, load_run_cfgs
 
 TAKES_OVERRIDES = True
 
@@ -41,10 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(namespace: argparse.Namespace) -> int:
     """Train, and return the exit status: 0, or 128 and the signal's number after Ctrl-C or a kill."""
     args = read_fields(TrainArguments, namespace)
+    checkpoint = None
     env_cfg, agent_cfg = load_cfgs(args)
+    if agent_cfg.resume:
+        env_cfg, agent_cfg, checkpoint = load_run_cfgs(args)
 
     from arcgym.rl.training import TrainOptions, train
 
     interval = args.video_interval if args.video else None
-    options = TrainOptions(args.device, args.distributed, interval, args.video_length)
+    options = TrainOptions(args.device, args.distributed, checkpoint, interval, args.video_length)
     return train(args.task, env_cfg, agent_cfg, options)

@@ -30,15 +30,6 @@ def run_untrained(namespace: argparse.Namespace, policy: str) -> None:
     args = read_fields(UntrainedArguments, namespace)
     env_cfg, agent_cfg = load_cfgs(args)
 
-    from arcgym.rl import make_env, place
-    from arcgym.rl.rollout import UNTRAINED, run_policy
+    from arcgym.rl.playing import PlayOptions, play
 
-    place(env_cfg, agent_cfg, args.device)
-    env = make_env(args.task, env_cfg, agent_cfg)
-    try:
-        result = run_policy(env, UNTRAINED[policy](env), args.steps)
-    finally:
-        env.close()
-    print(result)
-    if args.json:
-        print(result.to_json())
+    play(args.task, env_cfg, agent_cfg, PlayOptions(policy, None, args.device, args.steps, json=args.json))

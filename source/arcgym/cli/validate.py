@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from arcgym.anatomy.validation.validate import Check
+    from arcgym.anatomy.validation.checks import Check
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -4,31 +4,42 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Collection
 from typing import Any
 
 import torch
+import warp as wp
 
+from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.configclass import is_config
 from arcgym.utils.registry import CFG_SUFFIX, load_cfg
 from arcgym.utils.string import did_you_mean
 
 ARGUMENTS = ("cfg", "render_mode", "num_envs", "device", "seed")
-"""What an environment and ``gymnasium.make`` take; ``gymnasium.make_vec`` adds ``to_numpy``."""
+"""Arguments of environments and of ``gymnasium.make``; ``gymnasium.make_vec`` adds ``to_numpy``."""
 
 RESET_OPTIONS = ("env_ids", "reset_mask")
 """Options of ``reset``."""
+
+
+class ArgumentError(TypeError):
+    """A wrong argument, in one line: what ``gymnasium.make`` adds, the ``repr`` of all arguments, is left out."""
+
+    def __init__(self, message: str) -> None:
+        """Keep the message up to the addition."""
+        super().__init__(message.partition(" was raised from the environment creator")[0])
 
 
 def refuse_unknown(arguments: Collection[str]) -> None:
     """Check arguments that no parameter took; further configurations of a registered task pass.
 
     Raises:
-        TypeError: If there is an unknown one, naming the nearest.
+        ArgumentError: If there is an unknown one, naming the nearest.
     """
     for name in arguments:
         if not name.endswith(CFG_SUFFIX):
-            raise TypeError(f"The environment has no argument '{name}'. {did_you_mean(name, ARGUMENTS)}")
+            raise ArgumentError(f"The environment has no argument '{name}'. {did_you_mean(name, ARGUMENTS)}")
 
 
 def choose_cfg(cfg: Any, entry_point: str | None, *, num_envs: int | None, device: str | None, seed: int | None) -> Any:
@@ -42,22 +53,33 @@ def choose_cfg(cfg: Any, entry_point: str | None, *, num_envs: int | None, devic
         seed: Seed of all random numbers; None leaves that of the configuration.
 
     Raises:
-        TypeError: If there is no configuration, or it is none.
+        ArgumentError: If there is no configuration, it is none, or a number is no whole number.
     """
     if cfg is None and entry_point is None:
-        raise TypeError("An environment needs a cfg, or gymnasium.make with the name of a registered task.")
+        raise ArgumentError("An environment needs a cfg, or gymnasium.make with the name of a registered task.")
     if cfg is not None and not is_config(cfg):
         given = f"the class {cfg.__name__}; call it" if isinstance(cfg, type) else f"of type {type(cfg).__name__}"
-        raise TypeError(f"The environment's cfg is {given}, expected an instance of a configuration class.")
+        raise ArgumentError(f"The environment's cfg is {given}, expected an instance of a configuration class.")
     if cfg is None or not num_envs is device is seed is None:
         cfg = load_cfg(entry_point if cfg is None else cfg)
     if num_envs is not None:
-        cfg.scene.num_envs = num_envs
+        cfg.scene.num_envs = _whole_number("num_envs", num_envs)
     if device is not None:
         cfg.sim.device = str(device)
     if seed is not None:
-        cfg.seed = seed
+        cfg.seed = _whole_number("seed", seed)
     return cfg
+
+
+def check_device(device: str) -> None:
+    """Check that this machine has a device.
+
+    Raises:
+        ValueError: If it has not, with those it has.
+    """
+    known = [str(found.alias) for found in wp.get_devices()]
+    if device not in known and not (device == "cuda" and wp.is_cuda_available()):
+        raise ValueError(f"The device is '{device}'; this machine has {', '.join(known)}.")
 
 
 def check_render_mode(mode: str | None, known: Collection[str]) -> None:
@@ -95,6 +117,13 @@ def worlds_to_reset(options: dict[str, Any] | None, num_envs: int, device: str) 
     if len(env_ids) and not 0 <= int(env_ids[0]) <= int(env_ids[-1]) < num_envs:
         raise IndexError(f"reset's env_ids are {env_ids.tolist()}; worlds go from 0 to {num_envs - 1}.")
     return env_ids
+
+
+def _whole_number(name: str, value: Any) -> int:
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise ArgumentError(f"{name} is {value!r} of type {type(value).__name__}, expected a whole number.") from None
 
 
 def _masked_worlds(mask: torch.Tensor, num_envs: int) -> torch.Tensor:

@@ -13,16 +13,18 @@ import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode, VectorEnv
 
-from arcgym.envs.env_arguments import check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
+from arcgym.envs.env_arguments import check_device, check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.configclass import validate
 from arcgym.utils.garbage import paused_collection
+from arcgym.utils.progress import report
 from arcgym.utils.seed import set_seed
 from arcgym.utils.string import resolve_callable
 from arcgym.utils.threads import one_thread
+from arcgym.utils.worlds import replace_worlds
 
 if TYPE_CHECKING:
     from arcgym.scene import InteractiveScene
@@ -36,7 +38,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     It is a :class:`gymnasium.vector.VectorEnv`, and a :class:`gymnasium.Env` because ``gymnasium.make`` asks for one.
     Actions are NumPy arrays or torch tensors. Observations, rewards and flags are torch tensors on :attr:`device` that
     no later step writes to: they may be kept, but not written to, because the next frame stack is made of the last.
-    Steps and resets leave torch's inference mode, so that the state of terms made inside can be changed outside.
+    Steps and resets leave torch's inference mode: the state of terms made inside can be changed outside.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.DISABLED}
@@ -73,6 +75,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         check_render_mode(render_mode, self.metadata["render_modes"])
         cfg = choose_cfg(cfg, env_cfg_entry_point, num_envs=num_envs, device=device, seed=seed)
         validate(cfg)
+        check_device(cfg.sim.device)
         self.cfg = cfg
         self.render_mode = render_mode
         self.common_step_counter = 0
@@ -82,11 +85,14 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
             logger.warning("No seed is set: runs will differ. Set env.seed for runs that can be repeated.")
         else:
             cfg.seed = self.seed(cfg.seed)
+        report("reading stages")
         self.scene: InteractiveScene = _class_of(cfg.scene)(cfg.scene, cfg.sim)
         self.sim = self.scene.sim
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
+        report("compiling kernels (first run only)")
         self._refresh_all()
         self._init_buffers()
+        report("starting managers")
         self.load_managers()
         self.event_manager.apply("startup")
         self._refresh_all()
@@ -153,7 +159,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         return self
 
     def load_managers(self) -> None:
-        """Builds the managers; terms may look at the managers built before them."""
+        """Build the managers; terms may look at the managers built before them."""
         self.event_manager = EventManager(self.cfg.events, self)
         self.action_manager = ActionManager(self.cfg.actions, self)
         self.observation_manager = ObservationManager(self.cfg.observations, self)
@@ -198,7 +204,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         elif len(env_ids):
             self._start(env_ids, torch.isin(torch.arange(self.num_envs, device=self.device), env_ids))
             started = self.observation_manager.compute(update_history=env_ids)
-            self.obs_buf = _replaced(self.obs_buf, started, env_ids)
+            self.obs_buf = replace_worlds(self.obs_buf, started, env_ids)
         return self.obs_buf, self.extras
 
     @one_thread()
@@ -239,7 +245,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self._view = None
 
     def _init_buffers(self) -> None:
-        """Makes what terms may read while the managers are built."""
+        """Make what terms may read while the managers are built."""
 
     def _managers(self) -> list[Any]:
         return [self.event_manager, self.action_manager, self.observation_manager, self.recorder_manager]
@@ -259,7 +265,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.common_step_counter += 1
 
     def _reset_idx(self, env_ids: torch.Tensor) -> None:
-        """Puts worlds back to the start of an episode and collects the logs.
+        """Put worlds back to the start of an episode and collect the logs.
 
         Args:
             env_ids: World indices, int64, shape (n,).
@@ -278,19 +284,9 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.recorder_manager.record_post_reset(env_ids)
 
     def _refresh_all(self) -> None:
-        """Recomputes what follows from positions, and draws every world again."""
+        """Recompute what follows from positions, and draw every world again."""
         self.sim.forward()
         self.scene.update(0.0)
-
-
-def _replaced(old: dict[str, Any], new: dict[str, Any], env_ids: torch.Tensor) -> dict[str, Any]:
-    """Return a copy of observations in which some worlds have others."""
-    return {
-        name: _replaced(value, new[name], env_ids)
-        if isinstance(value, dict)
-        else value.index_copy(0, env_ids, new[name][env_ids])
-        for name, value in old.items()
-    }
 
 
 def _class_of(cfg: Any) -> Any:

@@ -10,6 +10,7 @@ from arcgym.managers import RecorderManagerBaseCfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.sim import SimulationCfg
 from arcgym.utils import MISSING, configclass
+from arcgym.utils.validation import FieldError, require_at_least
 from arcgym.viewers.viewer_cfg import ViewerCfg
 
 
@@ -33,7 +34,7 @@ class ManagerBasedEnvCfg:
     """Event terms: a configuration class, or a dict, of :class:`EventTermCfg`; None for none."""
 
     recorders: RecorderManagerBaseCfg | None = None
-    """What to record and where to, such as :class:`arcgym.envs.mdp.TrajectoryRecorderCfg`; None for nothing, which
+    """Records and where they go, such as :class:`arcgym.envs.mdp.TrajectoryRecorderCfg`; None for nothing, which
     costs nothing."""
 
     viewer: ViewerCfg = ViewerCfg()
@@ -50,15 +51,15 @@ class ManagerBasedEnvCfg:
     """Folder for files that terms write; set by the training script."""
 
     def validate_config(self) -> None:
-        """Checks numbers.
+        """Check bounds.
 
         Raises:
-            ValueError: If the decimation is below one, or the viewer's world is not among those of the scene.
+            ValueError: If a value is out of its bounds.
         """
-        if self.decimation < 1:
-            raise ValueError(
-                f"decimation is the number of physics steps in a control step: >= 1, got {self.decimation}."
-            )
+        require_at_least(self, 1, "decimation")
+        require_at_least(self, -1, "seed")
+        if self.scene.num_envs < 1:  # a scene of one's own may lack this check
+            raise FieldError(self, "scene.num_envs", f"is {self.scene.num_envs}, expected 1 or more worlds.")
         if self.viewer.env_id >= self.scene.num_envs:
-            last = self.scene.num_envs - 1
-            raise ValueError(f"viewer.env_id is {self.viewer.env_id}; the scene's worlds go from 0 to {last}.")
+            text = f"is {self.viewer.env_id}, but scene.num_envs is {self.scene.num_envs}: worlds count from 0."
+            raise FieldError(self, "viewer.env_id", text)

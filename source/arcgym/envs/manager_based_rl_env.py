@@ -57,7 +57,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         return int(self._world_failures)
 
     def load_managers(self) -> None:
-        """Builds the managers; terms may look at the managers built before them."""
+        """Build the managers; terms may look at the managers built before them."""
         super().load_managers()
         self.termination_manager = TerminationManager(self.cfg.terminations, self)
         self.reward_manager = RewardManager(self.cfg.rewards, self)
@@ -69,7 +69,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
     @torch.inference_mode(False)
     @torch.no_grad()
     def step(self, action: torch.Tensor | np.ndarray) -> StepReturn:  # type: ignore[override]
-        """Advances every world by one control step and resets those that are done.
+        """Advance every world by one control step and reset those that are done.
 
         Rewards belong to the state before the reset, observations to the state after it.
 
@@ -114,7 +114,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         ]
 
     def _judge(self) -> None:
-        """Computes terminations, reward, costs and metrics of the step."""
+        """Compute terminations, reward, costs and metrics of the step."""
         self.termination_manager.compute()
         self._failed = self.sim.non_finite.clone()
         self._world_failures += self._failed.sum()
@@ -158,5 +158,5 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
 
 
 def _finite(obs: dict[str, Any]) -> dict[str, Any]:
-    """Replaces what is not finite by zero, whatever the groups' policies: the observed world has failed."""
+    """Replace what is not finite by zero, whatever the groups' policies: the observed world has failed."""
     return {name: _finite(value) if isinstance(value, dict) else finite(value) for name, value in obs.items()}

@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.utils import MISSING, configclass
+from arcgym.utils.validation import require_positive
 
 
 @configclass
@@ -36,7 +37,7 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
     """Metrics terms: a configuration class, or a dict, of :class:`MetricsTermCfg`; None for none."""
 
     scale_rewards_by_dt: bool = True
-    """Whether rewards and costs are rates, multiplied by the control step, so that their episode sums do not depend on
+    """Whether rewards and costs are rates, multiplied by the control step: then their episode sums do not depend on
     the control frequency. Set it to False to reproduce work that adds up one value a step."""
 
     compute_final_obs: bool = False
@@ -55,11 +56,10 @@ class ManagerBasedRLEnvCfg(ManagerBasedEnvCfg):
         return self.episode_length_s
 
     def validate_config(self) -> None:
-        """Checks numbers.
+        """Check bounds.
 
         Raises:
-            ValueError: If the decimation is below one or the episode has no length.
+            ValueError: If a value is out of its bounds.
         """
         super().validate_config()
-        if self.max_episode_length_s <= 0.0:
-            raise ValueError(f"episode_length_s must be positive, got {self.max_episode_length_s}.")
+        require_positive(self, "episode_length_s", "max_episode_length_s", unit="s")

@@ -13,7 +13,7 @@ from arcgym.managers.observation_group import ObservationPipeline
 
 
 def observation_space(manager: ObservationManager) -> gym.spaces.Dict:
-    """Returns the space of one world: a box for each group, or a dict of boxes where terms are not concatenated."""
+    """Return the space of one world: a box for each group, or a dict of boxes where terms are not concatenated."""
     spaces: dict[str, gym.Space] = {}
     for name, group in manager.groups.items():
         first = next(iter(group.pipelines.values()))
@@ -25,7 +25,7 @@ def observation_space(manager: ObservationManager) -> gym.spaces.Dict:
 
 
 def batched(space: gym.Space, num_envs: int) -> gym.Space:
-    """Returns the space of all worlds."""
+    """Return the space of all worlds."""
     return gym.vector.utils.batch_space(space, num_envs)
 
 

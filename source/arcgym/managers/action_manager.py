@@ -23,7 +23,7 @@ class ActionTerm(ManagerTermBase, ABC):
     """Turns some entries of the action vector into commands of one asset."""
 
     def __init__(self, cfg: ActionTermCfg, env: ManagerBasedEnv) -> None:
-        """Finds the asset that ``cfg.asset_name`` names."""
+        """Find the asset that ``cfg.asset_name`` names."""
         super().__init__(cfg, env)
         if cfg.asset_name not in env.scene.keys():  # noqa: SIM118 - a scene is not a dict
             raise ValueError(
@@ -48,7 +48,7 @@ class ActionTerm(ManagerTermBase, ABC):
 
     @abstractmethod
     def process_actions(self, actions: torch.Tensor) -> None:
-        """Computes the commands of the coming control step.
+        """Compute the commands of the coming control step.
 
         Args:
             actions: Entries of this term, shape (N, action_dim).
@@ -56,7 +56,7 @@ class ActionTerm(ManagerTermBase, ABC):
 
     @abstractmethod
     def apply_actions(self) -> None:
-        """Hands the commands to the asset, after every :meth:`process_actions`."""
+        """Hand the commands to the asset, after every :meth:`process_actions`."""
 
 
 class ActionManager(ManagerBase):
@@ -65,7 +65,7 @@ class ActionManager(ManagerBase):
     term_cfg_type = ActionTermCfg
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Constructs the terms; see :class:`ManagerBase`."""
+        """Construct the terms; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._action = torch.zeros(self.num_envs, self.total_action_dim, device=self.device)
         self._prev_action = torch.zeros_like(self._action)
@@ -91,11 +91,11 @@ class ActionManager(ManagerBase):
         return self._prev_action
 
     def get_term(self, name: str) -> ActionTerm:
-        """Returns a term by name."""
+        """Return a term by name."""
         return self.get_term_cfg(name)
 
     def process_action(self, action: torch.Tensor) -> None:
-        """Takes the action of the coming control step and lets the terms compute their commands.
+        """Take the action of the coming control step and let the terms compute their commands.
 
         Args:
             action: Action of every world, shape (N, A).
@@ -112,12 +112,12 @@ class ActionManager(ManagerBase):
             term.process_actions(part)
 
     def apply_action(self) -> None:
-        """Hands the commands of every term to its asset."""
+        """Hand the commands of every term to its asset."""
         for term in self._terms.values():
             term.apply_actions()
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
-        """Sets the actions of some worlds to zero and resets the terms."""
+        """Set the actions of some worlds to zero and reset the terms."""
         fill_worlds(self._action, env_ids, 0.0)
         fill_worlds(self._prev_action, env_ids, 0.0)
         for term in self._terms.values():
@@ -125,11 +125,11 @@ class ActionManager(ManagerBase):
         return {}
 
     def set_term_cfg(self, name: str, cfg: Any) -> None:
-        """Raises: the action vector is fixed at construction."""
+        """Raise: the action vector is fixed at construction."""
         raise TypeError(f"The action term '{name}' cannot be replaced: the action vector is fixed at construction.")
 
     def _resolve(self, name: str, term: Any) -> None:
-        """Leaves the configuration as it is; :meth:`_prepare_terms` constructs the term."""
+        """Leave the configuration as it is; :meth:`_prepare_terms` constructs the term."""
         if isinstance(term.class_type, str):
             term.class_type = resolve_callable(term.class_type)
         if not (isinstance(term.class_type, type) and issubclass(term.class_type, ActionTerm)):

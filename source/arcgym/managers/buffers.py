@@ -80,7 +80,7 @@ class DelayBuffer:
         hold_prob: float = 0.0,
         update_period: int = 0,
     ) -> None:
-        """Draws the first lags.
+        """Draw the first lags.
 
         Args:
             lag_range: Smallest and largest lag [control steps].
@@ -119,7 +119,7 @@ class DelayBuffer:
         return frames[self._worlds, self._lag_range[1] - self._lag]
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
-        """Forgets the past of some worlds; those with lags of their own draw new ones."""
+        """Forget the past of some worlds; those with lags of their own draw new ones."""
         self._frames.reset(env_ids)
         fill_worlds(self._age, env_ids, 0)
         if self._per_env:

@@ -22,12 +22,12 @@ class CurriculumManager(ManagerBase):
     leading_arguments = ("env", "env_ids")
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Resolves the terms; see :class:`ManagerBase`."""
+        """Resolve the terms; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._states: dict[str, Any] = dict.fromkeys(self._terms)
 
     def compute(self, env_ids: torch.Tensor) -> None:
-        """Calls every term with the worlds that are about to be reset.
+        """Call every term with the worlds that are about to be reset.
 
         Args:
             env_ids: World indices, int64, shape (n,).
@@ -36,7 +36,7 @@ class CurriculumManager(ManagerBase):
             self._states[name] = term.func(self._env, env_ids, **term.params)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
-        """Returns what the terms answered last."""
+        """Return what the terms answered last."""
         super().reset(env_ids)
         logs: dict[str, Any] = {}
         for name, state in self._states.items():

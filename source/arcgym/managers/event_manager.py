@@ -28,7 +28,7 @@ class EventManager(ManagerBase):
     modes: ClassVar[tuple[str, ...]] = ("startup", "reset", "interval")
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Resolves the terms and starts the interval timers; see :class:`ManagerBase`."""
+        """Resolve the terms and start the interval timers; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._time_left: dict[str, torch.Tensor] = {}
         self._last_step: dict[str, torch.Tensor] = {}
@@ -43,7 +43,7 @@ class EventManager(ManagerBase):
                 self._last_step[name] = torch.full((self.num_envs,), -term.min_step_count_between_reset)
 
     def mode_terms(self, mode: str) -> list[str]:
-        """Returns the names of the terms of a mode."""
+        """Return the names of the terms of a mode."""
         return [name for name, term in self._terms.items() if term.mode == mode]
 
     def apply(
@@ -53,7 +53,7 @@ class EventManager(ManagerBase):
         dt: float | None = None,
         global_env_step_count: int | None = None,
     ) -> None:
-        """Applies the terms of a mode.
+        """Apply the terms of a mode.
 
         Args:
             mode: ``startup``, ``reset`` or ``interval``.
@@ -78,7 +78,7 @@ class EventManager(ManagerBase):
                 term.func(self._env, selected, **term.params)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
-        """Starts the interval timers of some worlds again, but for global ones."""
+        """Start the interval timers of some worlds again, but for global ones."""
         super().reset(env_ids)
         for name, time_left in self._time_left.items():
             if not self._terms[name].is_global_time:
@@ -87,7 +87,7 @@ class EventManager(ManagerBase):
         return {}
 
     def _due(self, name: str, dt: float) -> torch.Tensor:
-        """Advances a timer and returns the worlds for which it ran out."""
+        """Advance a timer and return the worlds for which it ran out."""
         time_left = self._time_left[name]
         time_left -= dt
         is_due = time_left < 1e-6
@@ -98,7 +98,7 @@ class EventManager(ManagerBase):
         return due.to(self.device)
 
     def _rested(self, name: str, env_ids: torch.Tensor, step: int) -> torch.Tensor:
-        """Returns those of some worlds whose last event is long enough ago, and notes the step for them."""
+        """Return those of some worlds whose last event is long enough ago, and note the step for them."""
         last, ids = self._last_step[name], env_ids.cpu()
         ids = ids[step - last[ids] >= self._terms[name].min_step_count_between_reset]
         last[ids] = step

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What all managers share."""
+"""Base of all managers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class ManagerBase:
     """Holds named terms and evaluates them.
 
-    A manager without terms does nothing and answers with neutral values, so that environments need not ask.
+    A manager without terms does nothing and answers with neutral values: environments need not ask.
     """
 
     term_cfg_type: ClassVar[type] = ManagerTermBaseCfg
@@ -31,10 +31,10 @@ class ManagerBase:
     """Positional arguments that a term function takes before its parameters."""
 
     unit: ClassVar[str] = "terms"
-    """What the table counts."""
+    """Word for what the table counts."""
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Copies the configuration and resolves its terms.
+        """Copy the configuration and resolve its terms.
 
         Args:
             cfg: Configuration instance or dict whose members are terms; None for no terms.
@@ -49,7 +49,7 @@ class ManagerBase:
         self._terms = self._prepare_terms()
 
     def __str__(self) -> str:
-        """Lists the terms."""
+        """List the terms."""
         return format_table(f"{type(self).__name__} ({len(self._terms)} {self.unit})", self._columns(), self._rows())
 
     @property
@@ -68,11 +68,11 @@ class ManagerBase:
         return list(self._terms)
 
     def find_terms(self, patterns: str | list[str]) -> list[str]:
-        """Returns the names of the terms that regular expressions match."""
+        """Return the names of the terms that regular expressions match."""
         return resolve_matching_names(patterns, self.active_terms)[1]
 
     def get_term_cfg(self, name: str) -> Any:
-        """Returns the resolved configuration of a term; changes to it take effect at once.
+        """Return the resolved configuration of a term; changes to it take effect at once.
 
         Raises:
             ValueError: If there is no such term, with those there are.
@@ -82,14 +82,14 @@ class ManagerBase:
         return self._terms[name]
 
     def set_term_cfg(self, name: str, cfg: Any) -> None:
-        """Replaces a term by another configuration, which is resolved here."""
+        """Replace a term by another configuration, which is resolved here."""
         self.get_term_cfg(name)
         collect_terms({name: cfg}, self.term_cfg_type, type(self).__name__)
         self._terms[name] = copy.deepcopy(cfg)
         self._resolve(name, self._terms[name])
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
-        """Forgets the past of some worlds.
+        """Forget the past of some worlds.
 
         Args:
             env_ids: World indices, int64, shape (n,); None for all.
@@ -116,7 +116,7 @@ class ManagerBase:
         return term.func(self._env, **term.params)
 
     def _check_values(self, dtype: torch.dtype | None = None) -> None:
-        """Evaluates every term once to check shape and type, then lets them forget it.
+        """Evaluate every term once to check shape and type, then let them forget it.
 
         Raises:
             TypeError: If a value is no tensor or of another dtype.
@@ -143,7 +143,7 @@ class ManagerBase:
 
 
 def format_table(title: str, columns: list[str], rows: list[list[Any]]) -> str:
-    """Returns a table in plain text with a title and a line of headings; the title alone if there are no rows."""
+    """Return a table in plain text with a title and a line of headings; the title alone if there are no rows."""
     if not rows:
         return title
     cells = [columns] + [[str(cell) for cell in row] for row in rows]

@@ -24,19 +24,20 @@ REDUCTIONS = ("last", "max", "sum", "mean")
 class MetricsManager(ManagerBase):
     """Reduces each term over the episode and logs the mean over the worlds that end.
 
-    Values stand in one row a term, sorted by reduction, so that each reduction is one operation on all its terms.
+    Values stand in one row a term, sorted by reduction: each reduction is one operation on all its terms.
     """
 
     term_cfg_type = MetricsTermCfg
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
+        """Resolve the terms and evaluate each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values()
         self._order: list[str] = list(self._terms)
         self._values = torch.zeros(len(self._terms), self.num_envs, device=self.device)
         self._num_steps = torch.zeros(self.num_envs, device=self.device)
         self._step_values: dict[str, torch.Tensor] = {}
+        self._finished = torch.zeros_like(self._values)
         self._sort_rows()
 
     @property
@@ -44,8 +45,13 @@ class MetricsManager(ManagerBase):
         """Value of each term in the last step, shape (N,); empty before the first."""
         return self._step_values
 
+    @property
+    def finished(self) -> dict[str, torch.Tensor]:
+        """Each term over the last episode that a world finished, shape (N,); zero before the first one."""
+        return {name: self._finished[index] for index, name in enumerate(self._terms)}
+
     def compute(self) -> None:
-        """Takes the values of this control step in; one that is not finite counts as zero."""
+        """Take the values of this control step in; one that is not finite counts as zero."""
         if not self._terms:
             return
         self._sort_rows()
@@ -61,14 +67,14 @@ class MetricsManager(ManagerBase):
         self._values[added] += values[added]
 
     def get_value(self, name: str) -> torch.Tensor:
-        """Returns a term reduced over the episode so far, shape (N,)."""
+        """Return a term reduced over the episode so far, shape (N,)."""
         is_mean = self.get_term_cfg(name).reduce == "mean"
         self._sort_rows()
         value = self._values[self._order.index(name)]
         return value / self._num_steps.clamp(min=1) if is_mean else value
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
-        """Returns the mean of each term over those of some worlds that made a step, and starts them again."""
+        """Return the mean of each term over those of some worlds that made a step, and start them again."""
         super().reset(env_ids)
         self._sort_rows()
         selected = slice(None) if env_ids is None else env_ids
@@ -77,13 +83,15 @@ class MetricsManager(ManagerBase):
         mean = self._rows_of("mean")
         reduced = torch.cat((values[: mean.start], values[mean] / steps.clamp(min=1)))
         means = (reduced * has_run).sum(dim=1) / has_run.sum().clamp(min=1)
+        rows = [self._order.index(name) for name in self._terms]
+        self._finished[:, selected] = torch.where(steps > 0, reduced[rows], self._finished[:, selected])
         fill_worlds(self._values, env_ids, 0.0, dim=1)
         fill_worlds(self._num_steps, env_ids, 0.0)
         by_name = dict(zip(self._order, means, strict=True))
         return {f"Episode_Metrics/{name}": by_name[name] for name in self._terms}
 
     def _sort_rows(self) -> None:
-        """Sorts the rows by reduction again if one was changed."""
+        """Sort the rows by reduction again if one was changed."""
         order = sorted(self._terms, key=self._place)
         if order != self._order:
             self._values = self._values[[self._order.index(name) for name in order]]

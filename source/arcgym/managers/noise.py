@@ -9,6 +9,7 @@ from typing import Literal
 import torch
 
 from arcgym.utils import configclass
+from arcgym.utils.validation import FINITE, require, require_non_negative, require_order
 
 
 @configclass
@@ -19,11 +20,11 @@ class NoiseCfg:
     """Whether the noise is added, multiplied, or put in place of the value."""
 
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draws noise of the shape of ``value``."""
+        """Draw noise of the shape of ``value``."""
         raise NotImplementedError(f"{type(self).__name__} does not define sample.")
 
     def apply(self, value: torch.Tensor) -> torch.Tensor:
-        """Returns the corrupted value, in new memory."""
+        """Return the corrupted value, in new memory."""
         noise = self.sample(value)
         if self.operation == "add":
             return value + noise
@@ -37,8 +38,16 @@ class ConstantNoiseCfg(NoiseCfg):
     bias: float = 0.0
     """Offset, in the unit of the observation."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "bias", FINITE)
+
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Returns the offset in the shape of ``value``."""
+        """Return the offset in the shape of ``value``."""
         return torch.full_like(value, self.bias)
 
 
@@ -52,8 +61,18 @@ class UniformNoiseCfg(NoiseCfg):
     n_max: float = 1.0
     """Upper bound, in the unit of the observation."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "n_min", FINITE)
+        require(self, "n_max", FINITE)
+        require_order(self, "n_min", "n_max")
+
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draws noise of the shape of ``value``."""
+        """Draw noise of the shape of ``value``."""
         return self.n_min + (self.n_max - self.n_min) * torch.rand_like(value)
 
 
@@ -67,6 +86,15 @@ class GaussianNoiseCfg(NoiseCfg):
     std: float = 1.0
     """Standard deviation, in the unit of the observation."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "mean", FINITE)
+        require_non_negative(self, "std")
+
     def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draws noise of the shape of ``value``."""
+        """Draw noise of the shape of ``value``."""
         return self.mean + self.std * torch.randn_like(value)

@@ -24,7 +24,7 @@ class ObservationPipeline:
     """A term's way from its function to the learner: noise, clip, scale, delay, history."""
 
     def __init__(self, label: str, cfg: ObservationTermCfg, group: ObservationGroupCfg, env: ManagerBasedEnv) -> None:
-        """Evaluates the term once to learn its shape.
+        """Evaluate the term once to learn its shape.
 
         Args:
             label: Group and term, for messages.
@@ -90,7 +90,7 @@ class ObservationPipeline:
         return value if is_copied else value.clone(memory_format=torch.contiguous_format)
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
-        """Forgets the past of some worlds."""
+        """Forget the past of some worlds."""
         for buffer in (self._delay, self._history):
             if buffer is not None:
                 buffer.reset(env_ids)
@@ -119,7 +119,7 @@ class ObservationPipeline:
             raise TypeError(f"{self._label} returned {value.dtype}: noise and scale need floating point values.")
 
     def _finite(self, value: torch.Tensor) -> torch.Tensor:
-        """Applies the group's policy to values that are not finite, in new memory."""
+        """Apply the group's policy to values that are not finite, in new memory."""
         if self._nan_policy == "sanitize":
             return finite(value)
         if self._nan_policy in ("warn", "error") and not bool(torch.isfinite(value).all()):
@@ -136,7 +136,7 @@ class ObservationGroup:
     def __init__(
         self, name: str, cfg: ObservationGroupCfg, terms: dict[str, ObservationTermCfg], env: ManagerBasedEnv
     ) -> None:
-        """Makes the pipelines and checks that they can be joined.
+        """Make the pipelines and check that they can be joined.
 
         Args:
             name: Name of the group.
@@ -182,7 +182,7 @@ class ObservationGroup:
         return tensors[0] if len(tensors) == 1 else torch.cat(tensors, dim=self._dim)
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
-        """Forgets the past of some worlds."""
+        """Forget the past of some worlds."""
         for pipeline in self.pipelines.values():
             pipeline.reset(env_ids)
 
@@ -194,7 +194,7 @@ class ObservationGroup:
         return torch.cat(values, dim=self._dim, out=joined)
 
     def _check_concatenation(self) -> None:
-        """Compares each term with the first: same type, same shape but for the joined dimension."""
+        """Compare each term with the first: same type, same shape but for the joined dimension."""
         first_name, first = next(iter(self.pipelines.items()))
         dim = self.cfg.concatenate_dim
         if not -len(first.shape) <= dim < len(first.shape):

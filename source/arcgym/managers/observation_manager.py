@@ -26,7 +26,7 @@ class ObservationManager(ManagerBase):
     unit = "groups"
 
     def __str__(self) -> str:
-        """Lists groups and terms with shapes and types."""
+        """List groups and terms with shapes and types."""
         return "\n".join([super().__str__(), *self._term_lines()])
 
     @property
@@ -52,18 +52,18 @@ class ObservationManager(ManagerBase):
         return {name: group.compute(update_history) for name, group in self.groups.items()}
 
     def compute_group(self, name: str, update_history: Store = False) -> Observation:
-        """Returns one group; see :meth:`compute`."""
+        """Return one group; see :meth:`compute`."""
         self.get_term_cfg(name)
         return self.groups[name].compute(update_history)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
-        """Empties delays and histories of some worlds."""
+        """Empty delays and histories of some worlds."""
         for group in self.groups.values():
             group.reset(slice(None) if env_ids is None else env_ids)
         return {}
 
     def set_term_cfg(self, name: str, cfg: Any) -> None:
-        """Raises: the shapes of observations are fixed at construction."""
+        """Raise: the shapes of observations are fixed at construction."""
         raise TypeError(f"The observation group '{name}' cannot be replaced: its shape is fixed at construction.")
 
     def _prepare_terms(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ class EpisodeBuffer:
     """
 
     def __init__(self, num_worlds: int) -> None:
-        """Starts an episode in each of K worlds."""
+        """Start an episode in each of K worlds."""
         self._rows: deque[Values] = deque()
         self._first = 0
         self._start = [0] * num_worlds
@@ -28,11 +28,11 @@ class EpisodeBuffer:
         self._open: Values = {}
 
     def add(self, values: Values) -> None:
-        """Adds values of shape (K, ...) to the step under way."""
+        """Add values of shape (K, ...) to the step under way."""
         self._open.update(values)
 
     def end_step(self) -> None:
-        """Ends the step under way.
+        """End the step under way.
 
         Raises:
             ValueError: If it does not hold the same names as the steps before it.
@@ -44,21 +44,21 @@ class EpisodeBuffer:
         self._open = {}
 
     def drop_step(self) -> None:
-        """Forgets the step under way."""
+        """Forget the step under way."""
         self._open = {}
 
     def add_once(self, worlds: Sequence[int], values: Values) -> None:
-        """Adds values of shape (k, ...), one entry for each of ``worlds``, to their episodes."""
+        """Add values of shape (k, ...), one entry for each of ``worlds``, to their episodes."""
         for name, value in values.items():
             for world, entry in zip(worlds, value, strict=True):
                 self._once[world][name] = entry
 
     def length(self, world: int) -> int:
-        """Steps in the episode of a world."""
+        """Return the steps in the episode of a world."""
         return self._first + len(self._rows) - self._start[world]
 
     def take(self, world: int) -> Values:
-        """Returns the episode of a world, values of steps with shape (T, ...), and starts its next one."""
+        """Return the episode of a world, values of steps with shape (T, ...), and start its next one."""
         rows = [self._rows[k] for k in range(self._start[world] - self._first, len(self._rows))]
         episode = {name: np.stack([row[name][world] for row in rows]) for name in (rows[0] if rows else ())}
         episode |= self._once[world]

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from arcgym.utils import MISSING, configclass
+from arcgym.utils.validation import require_at_least
 
 if TYPE_CHECKING:
     from arcgym.managers.recorder_term import RecorderTerm
@@ -41,12 +42,9 @@ class RecorderManagerBaseCfg:
     """Worlds to record; None for all. Name a few when training with thousands."""
 
     def validate_config(self) -> None:
-        """Check the mode.
+        """Check bounds.
 
         Raises:
-            ValueError: If there is no such mode.
+            ValueError: If a value is out of its bounds.
         """
-        if self.dataset_export_mode not in ("all", "succeeded_only", "none"):
-            raise ValueError(
-                f"dataset_export_mode is '{self.dataset_export_mode}', expected all, succeeded_only or none."
-            )
+        require_at_least(self, 0, "env_ids")

@@ -28,7 +28,7 @@ class Episode:
     (termination terms) and ``metrics`` by name."""
 
     def save(self, path: str | Path) -> None:
-        """Writes the file, whole or not at all."""
+        """Write the file, whole or not at all."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         partial = path.with_suffix(".partial")
@@ -40,30 +40,30 @@ class Episode:
 
     @staticmethod
     def load(path: str | Path) -> Episode:
-        """Reads a file written by :meth:`save`."""
+        """Read a file written by :meth:`save`."""
         with np.load(path) as file:
             data = {name: file[name] for name in file.files}
         return Episode(info=json.loads(str(data.pop(_INFO))), data=data)
 
 
 def episode_paths(folder: str | Path) -> list[Path]:
-    """Returns the episodes in a folder, in the order in which they were written."""
+    """Return the episodes in a folder, in the order in which they were written."""
     return sorted(Path(folder).glob("*_[0-9]*.npz"))
 
 
 def load_episodes(folder: str | Path) -> Iterator[Episode]:
-    """Reads the episodes in a folder one by one."""
+    """Read the episodes in a folder one by one."""
     return (Episode.load(path) for path in episode_paths(folder))
 
 
 def next_path(folder: str | Path, name: str) -> Path:
-    """Returns the first path ``<name>_000000.npz``, ``<name>_000001.npz``, ... after all that exist in a folder."""
+    """Return the first path ``<name>_000000.npz``, ``<name>_000001.npz``, ... after all that exist in a folder."""
     taken = [int(path.stem.rpartition("_")[2]) for path in Path(folder).glob(f"{name}_[0-9]*.npz")]
     return Path(folder) / f"{name}_{max(taken, default=-1) + 1:06d}.npz"
 
 
 def export_hdf5(folder: str | Path, path: str | Path, env_args: dict[str, Any] | None = None) -> int:
-    """Copies the episodes in a folder into one HDF5 file with the layout of Isaac Lab and robomimic.
+    """Copy the episodes in a folder into one HDF5 file with the layout of Isaac Lab and robomimic.
 
     Episode k is the group ``data/demo_<k>`` with the attributes ``num_samples`` and ``success``; its names become
     groups and datasets. Needs h5py (``pip install arcgym[recorder]``).

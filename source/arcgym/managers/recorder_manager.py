@@ -36,7 +36,7 @@ class RecorderManager(ManagerBase):
     term_cfg_type = RecorderTermCfg
 
     def __init__(self, cfg: RecorderManagerBaseCfg | None, env: ManagerBasedEnv) -> None:
-        """Constructs the terms.
+        """Construct the terms.
 
         Raises:
             TypeError: If ``cfg`` is no recorder configuration or a member is not a recorder term.
@@ -60,40 +60,40 @@ class RecorderManager(ManagerBase):
         return bool(self._terms) and self._settings.dataset_export_mode != "none"
 
     def record_pre_step(self) -> None:
-        """Opens a step: the action is known, nothing has moved yet."""
+        """Open a step: the action is known, nothing has moved yet."""
         if self.active:
             self._buffer.drop_step()
             self._record_step(lambda term: term.record_pre_step())
 
     def record_post_step(self) -> None:
-        """Closes a step: rewards and terminations are known, no world has been reset yet."""
+        """Close a step: rewards and terminations are known, no world has been reset yet."""
         if self.active:
             self._record_step(lambda term: term.record_post_step())
             self._buffer.end_step()
 
     def record_pre_reset(self, env_ids: torch.Tensor) -> None:
-        """Ends the episodes of the worlds ``env_ids``, int64, shape (n,), and writes them."""
+        """End the episodes of the worlds ``env_ids``, int64, shape (n,), and write them."""
         if self.active:
             worlds = self._record_once(env_ids, lambda term, ids: term.record_pre_reset(ids))
             self._export(worlds)
 
     def record_post_reset(self, env_ids: torch.Tensor) -> None:
-        """Starts the episodes of the worlds ``env_ids``, int64, shape (n,)."""
+        """Start the episodes of the worlds ``env_ids``, int64, shape (n,)."""
         if self.active:
             self._record_once(env_ids, lambda term, ids: term.record_post_reset(ids))
 
     def close(self) -> None:
-        """Writes the episodes under way as incomplete ones. A step that failed half-way is not among theirs."""
+        """Write the episodes under way as incomplete ones. A step that failed half-way is not among theirs."""
         if self.active:
             self._buffer.drop_step()
             self._export(self._worlds)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
-        """Does nothing: episodes end in :meth:`record_pre_reset`."""
+        """Do nothing: episodes end in :meth:`record_pre_reset`."""
         return {}
 
     def set_term_cfg(self, name: str, cfg: Any) -> None:
-        """Raises: what is recorded is fixed at construction."""
+        """Raise: what is recorded is fixed at construction."""
         raise TypeError(f"The recorder term '{name}' cannot be replaced: what is recorded is fixed at construction.")
 
     def _prepare_terms(self) -> dict[str, Any]:
@@ -117,7 +117,7 @@ class RecorderManager(ManagerBase):
     def _record_once(
         self, env_ids: torch.Tensor, ask: Callable[[RecorderTerm, torch.Tensor], tuple[str | None, Any]]
     ) -> list[int]:
-        """Stores answers about some worlds, and returns those of them that are recorded."""
+        """Store answers about some worlds, and return those of them that are recorded."""
         worlds = [world for world in env_ids.tolist() if world in self._place]
         if worlds:
             ids = torch.tensor(worlds, device=self.device)
@@ -126,7 +126,7 @@ class RecorderManager(ManagerBase):
         return worlds
 
     def _export(self, worlds: list[int]) -> None:
-        """Writes the episodes of some worlds; those without a step are dropped."""
+        """Write the episodes of some worlds; those without a step are dropped."""
         for world in worlds:
             length = self._buffer.length(self._place[world])
             data = self._buffer.take(self._place[world])

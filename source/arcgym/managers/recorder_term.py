@@ -24,22 +24,22 @@ class RecorderTerm:
     """
 
     def __init__(self, cfg: RecorderTermCfg, env: ManagerBasedEnv) -> None:
-        """Keeps configuration and environment."""
+        """Keep configuration and environment."""
         self.cfg = cfg
         self._env = env
 
     def record_pre_step(self) -> Record:
-        """What to record when the action is known and nothing has moved yet; ``env.obs_buf`` is what led to it."""
+        """Return a record when the action is known and nothing has moved yet; ``env.obs_buf`` is what led to it."""
         return None, None
 
     def record_post_step(self) -> Record:
-        """What to record when rewards and terminations are known and no world has been reset yet."""
+        """Return a record when rewards and terminations are known and no world has been reset yet."""
         return None, None
 
     def record_pre_reset(self, env_ids: torch.Tensor) -> Record:
-        """What to record of the worlds ``env_ids``, int64, shape (n,), whose episodes end here."""
+        """Return a record of the worlds ``env_ids``, int64, shape (n,), whose episodes end here."""
         return None, None
 
     def record_post_reset(self, env_ids: torch.Tensor) -> Record:
-        """What to record of the worlds ``env_ids``, int64, shape (n,), whose episodes start here."""
+        """Return a record of the worlds ``env_ids``, int64, shape (n,), whose episodes start here."""
         return None, None

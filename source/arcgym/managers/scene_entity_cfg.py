@@ -56,7 +56,7 @@ class SceneEntityCfg:
     """Whether named parts come in the order they are named instead of the entity's own."""
 
     def resolve(self, scene: InteractiveScene) -> None:
-        """Finds the ids of everything given by name, on the scene's device.
+        """Find the ids of everything given by name, on the scene's device.
 
         Raises:
             ValueError: If the entity or a part does not exist, with those that do, or names and ids are both given.

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 class ManagerTermBase:
-    """A term with memory: constructed once, called like a function, told about resets."""
+    """A term with memory: constructed once, called like a function, reset with the worlds."""
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Keeps configuration and environment.
+        """Keep configuration and environment.
 
         Args:
             cfg: Configuration of the term, its scene entities resolved.
@@ -36,12 +36,12 @@ class ManagerTermBase:
         return self._env.device
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
-        """Forgets the past of some worlds; called at each reset.
+        """Forget the past of some worlds; called at each reset.
 
         Args:
             env_ids: World indices, int64, shape (n,); None for all.
         """
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """Evaluates the term: ``(env, **params)``, or ``(env, env_ids, **params)`` for events and curricula."""
+        """Evaluate the term: ``(env, **params)``, or ``(env, env_ids, **params)`` for events and curricula."""
         raise NotImplementedError(f"{type(self).__name__} does not define __call__.")

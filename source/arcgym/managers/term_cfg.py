@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from arcgym.managers.noise import NoiseCfg
 from arcgym.utils import MISSING, configclass
-from arcgym.utils.validation import check_params
+from arcgym.utils.validation import (
+    FINITE,
+    FieldError,
+    check_params,
+    require,
+    require_ascending,
+    require_at_least,
+    require_fraction,
+    require_non_negative,
+    require_positive,
+)
 
 if TYPE_CHECKING:
     from arcgym.managers.action_manager import ActionTerm
@@ -46,6 +56,15 @@ class RewardTermCfg(ManagerTermBaseCfg):
     weight: float = 1.0
     """Factor of the value. Negative for penalties; zero skips the term, for a curriculum to switch it on."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        super().validate_config()
+        require(self, "weight", FINITE)
+
 
 @configclass
 class CostTermCfg(ManagerTermBaseCfg):
@@ -54,13 +73,22 @@ class CostTermCfg(ManagerTermBaseCfg):
     weight: float = 1.0
     """Factor of the value. Leave it at one to keep the cost in its own unit."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        super().validate_config()
+        require_non_negative(self, "weight")
+
 
 @configclass
 class TerminationTermCfg(ManagerTermBaseCfg):
     """A reason to end an episode: ``func`` returns one bool a world, shape (N,)."""
 
     time_out: bool = False
-    """Whether the episode is cut short rather than lost, so that its value is bootstrapped. True for time limits."""
+    """Whether the episode is cut short rather than lost: its value is then bootstrapped. True for time limits."""
 
     success: bool = False
     """Whether an episode that this term ends has reached its goal. Success rates and recorders count these."""
@@ -89,6 +117,19 @@ class EventTermCfg(ManagerTermBaseCfg):
 
     min_step_count_between_reset: int = 0
     """Fewest control steps between two events of mode ``reset`` in one world. Raise it for expensive events."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        super().validate_config()
+        require_positive(self, "interval_range_s", unit="s")
+        require_ascending(self, "interval_range_s", unit="s")
+        require_at_least(self, 0, "min_step_count_between_reset")
+        if self.mode == "interval" and self.interval_range_s is None:
+            raise FieldError(self, "interval_range_s", "is not set, but the mode 'interval' needs it [s].")
 
 
 @configclass
@@ -152,6 +193,22 @@ class ObservationTermCfg(ManagerTermBaseCfg):
     """Whether the frames join the first dimension of the value: 5 frames of (3, H, W) become (15, H, W). Otherwise they
     are a dimension of their own: (5, 3, H, W)."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        super().validate_config()
+        require(self, "clip", FINITE)
+        require_ascending(self, "clip")
+        require(self, "scale", FINITE)
+        require_at_least(self, 0, "delay_min_lag", "delay_max_lag", "delay_update_period", "history_length")
+        require_fraction(self, "delay_hold_prob")
+        if self.delay_max_lag < self.delay_min_lag:
+            text = f"is {self.delay_max_lag}, expected at least delay_min_lag, {self.delay_min_lag}."
+            raise FieldError(self, "delay_max_lag", text)
+
 
 @configclass
 class ObservationGroupCfg:
@@ -176,8 +233,17 @@ class ObservationGroupCfg:
     """Replaces the terms' own ``flatten_history_dim`` where ``history_length`` is given here."""
 
     nan_policy: Literal["disabled", "warn", "sanitize", "error"] = "sanitize"
-    """What happens to a value that is not finite: nothing, a message, a zero, or an exception. ``warn`` and ``error``
+    """Treatment of values that are not finite: nothing, a message, a zero, or an exception. ``warn`` and ``error``
     wait for the device every step: use them to find the term that produces it."""
 
     terms: dict[str, ObservationTermCfg] = {}
     """Further terms by name."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_at_least(self, 0, "history_length")
+        require(self, "concatenate_dim", FINITE)

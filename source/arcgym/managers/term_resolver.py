@@ -16,7 +16,7 @@ from arcgym.utils.string import resolve_callable
 
 
 def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) -> dict[str, Any]:
-    """Returns the terms of a configuration class or dict by name, leaving out those that are None.
+    """Return the terms of a configuration class or dict by name, leaving out those that are None.
 
     Args:
         cfg: Configuration instance, dict, or None for no terms.
@@ -37,7 +37,7 @@ def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) 
 
 
 def resolve_term(cfg: ManagerTermBaseCfg, env: Any, name: str, owner: str, leading: tuple[str, ...]) -> None:
-    """Makes ``cfg.func`` callable, in place: text is imported, scene entities are found, classes are constructed.
+    """Make ``cfg.func`` callable, in place: text is imported, scene entities are found, classes are constructed.
 
     Args:
         cfg: Term to resolve.
@@ -75,7 +75,7 @@ def _named(text: str, label: str) -> Callable[..., Any]:
 
 
 def _check_signature(signature: inspect.Signature, arguments: tuple[str, ...], params: dict, label: str) -> None:
-    """Compares the parameters after the leading arguments with those given."""
+    """Compare the parameters after the leading arguments with those given."""
     parameters = list(signature.parameters.values())
     kinds = {parameter.kind for parameter in parameters}
     is_open = inspect.Parameter.VAR_POSITIONAL in kinds
@@ -91,7 +91,7 @@ def _check_signature(signature: inspect.Signature, arguments: tuple[str, ...], p
 
 
 def _resolve_entities(signature: inspect.Signature, params: dict[str, Any], env: Any, label: str) -> None:
-    """Finds the parts of scene entities, those in the function's defaults included."""
+    """Find the parts of scene entities, those in the function's defaults included."""
     for name, parameter in signature.parameters.items():
         if isinstance(parameter.default, SceneEntityCfg) and name not in params:
             params[name] = copy.deepcopy(parameter.default)

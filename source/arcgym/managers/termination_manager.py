@@ -21,7 +21,7 @@ class TerminationManager(ManagerBase):
     term_cfg_type = TerminationTermCfg
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
+        """Resolve the terms and evaluate each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values(torch.bool)
         self._dones = torch.zeros(len(self._terms), self.num_envs, dtype=torch.bool, device=self.device)
@@ -51,7 +51,7 @@ class TerminationManager(ManagerBase):
         return self._dones[rows].any(dim=0)
 
     def compute(self) -> torch.Tensor:
-        """Evaluates all terms and returns :attr:`dones`."""
+        """Evaluate all terms and return :attr:`dones`."""
         if self._terms:
             self._order = self._sorted_names()
             values = {name: self._evaluate(name) for name in self._terms}
@@ -62,12 +62,12 @@ class TerminationManager(ManagerBase):
         return self.dones
 
     def get_term(self, name: str) -> torch.Tensor:
-        """Returns which worlds a term ended in the last step, bool, shape (N,)."""
+        """Return which worlds a term ended in the last step, bool, shape (N,)."""
         self.get_term_cfg(name)
         return self._dones[self._order.index(name)]
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
-        """Returns how many of some worlds each term ended."""
+        """Return how many of some worlds each term ended."""
         super().reset(env_ids)
         counts = (self._dones if env_ids is None else self._dones[:, env_ids]).sum(dim=1, dtype=torch.float32)
         by_name = dict(zip(self._order, counts, strict=True))

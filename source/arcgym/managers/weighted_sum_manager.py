@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What rewards and costs share: a weighted sum of terms and its total over the episode."""
+"""Base of rewards and costs: a weighted sum of terms and its total over the episode."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class WeightedSumManager(ManagerBase):
     """First part of the names that :meth:`reset` logs."""
 
     def __init__(self, cfg: Any, env: ManagerBasedEnv) -> None:
-        """Resolves the terms and evaluates each once; see :class:`ManagerBase`."""
+        """Resolve the terms and evaluate each once; see :class:`ManagerBase`."""
         super().__init__(cfg, env)
         self._check_values()
         self._zero = torch.zeros(self.num_envs, device=self.device)
@@ -42,16 +42,16 @@ class WeightedSumManager(ManagerBase):
 
     @property
     def step_parts(self) -> dict[str, torch.Tensor]:
-        """What each term added in the last step, shape (N,); they add up to the sum."""
+        """Part of each term in the sum of the last step, shape (N,)."""
         return dict(zip(self._terms, self._values, strict=True))
 
     @property
     def episode_sums(self) -> dict[str, torch.Tensor]:
-        """What each term added since the last reset of each world, shape (N,)."""
+        """Sum of each term since the last reset of each world, shape (N,)."""
         return dict(zip(self._terms, self._sums, strict=True))
 
     def compute(self, dt: float) -> torch.Tensor:
-        """Returns the sum over all terms.
+        """Return the sum over all terms.
 
         Args:
             dt: Factor of every value: the control step [s], or 1 to leave values as they are.
@@ -68,7 +68,7 @@ class WeightedSumManager(ManagerBase):
         return self._values.sum(dim=0)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
-        """Returns what to log, each term's mean episode sum over some worlds, and starts them again from zero."""
+        """Return what to log, each term's mean episode sum over some worlds, and start them again from zero."""
         super().reset(env_ids)
         sums = self._sums if env_ids is None else self._sums[:, env_ids]
         means = sums.mean(dim=1) / self._log_divisor()
@@ -76,7 +76,7 @@ class WeightedSumManager(ManagerBase):
         return {f"{self.log_name}/{name}": mean for name, mean in zip(self._terms, means, strict=True)}
 
     def _log_divisor(self) -> float:
-        """What logged sums are divided by."""
+        """Return the divisor of logged sums."""
         return 1.0
 
     def _scale(self, dt: float) -> torch.Tensor:

@@ -8,9 +8,10 @@ Names are loaded on first use, so that configurations can be read without torch.
 
 from __future__ import annotations
 
-import importlib
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.rl.device import place as place
@@ -55,16 +56,13 @@ _MODULES = {
     ),
     "vecenv_wrapper": ("RslRlVecEnvWrapper",),
 }
-_HOME = {name: module for module, names in _MODULES.items() for name in names}
+_HOME = {name: f"arcgym.rl.{module}" for module, names in _MODULES.items() for name in names}
 
 # rsl_rl imports GitPython, which otherwise refuses to load on a machine without git.
 os.environ.setdefault("GIT_PYTHON_REFRESH", "quiet")
 
 
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'arcgym.rl' has no attribute '{name}'")
-    return getattr(importlib.import_module(f"arcgym.rl.{_HOME[name]}"), name)
+__getattr__ = lazy_names(__name__, _HOME)
 
 
 def __dir__() -> list[str]:

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import gymnasium as gym
 
 from arcgym.rl.periodic_video import PeriodicVideo
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
+from arcgym.utils.progress import shown
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class VideoOptions:
 
 
 def make_env(task: str, env_cfg: Any, agent_cfg: Any, video: VideoOptions | None = None) -> RslRlVecEnvWrapper:
-    """Build and reset the environment, and say how long it took.
+    """Build and reset the environment, with its stages shown and how long they took.
 
     Args:
         task: Registered name.
@@ -39,14 +39,11 @@ def make_env(task: str, env_cfg: Any, agent_cfg: Any, video: VideoOptions | None
         agent_cfg: Configuration of the agent, for its bound on actions.
         video: Videos to record, or None.
     """
-    print(f"building {env_cfg.scene.num_envs} worlds on {env_cfg.sim.device}; compiling kernels (first run only)")
-    start = time.perf_counter()
-    env: gym.Env = gym.make(task, cfg=env_cfg, render_mode="rgb_array" if video else None)
-    if video:
-        env = _recorded(env, video)
-    wrapped = RslRlVecEnvWrapper(env, clip_actions=agent_cfg.clip_actions)
-    print(f"ready after {time.perf_counter() - start:.1f} s")
-    return wrapped
+    with shown(f"{env_cfg.scene.num_envs} worlds on {env_cfg.sim.device}"):
+        env: gym.Env = gym.make(task, cfg=env_cfg, render_mode="rgb_array" if video else None)
+        if video:
+            env = _recorded(env, video)
+        return RslRlVecEnvWrapper(env, clip_actions=agent_cfg.clip_actions)
 
 
 def _recorded(env: gym.Env, video: VideoOptions) -> PeriodicVideo:

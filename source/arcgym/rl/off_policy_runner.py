@@ -30,14 +30,24 @@ class OffPolicyRunner(OnPolicyRunner):
         super().__init__(env, train_cfg, log_dir, device)
         self.saves_replay = bool(train_cfg.get("save_replay", False))
 
+    def describe_models(self) -> str:
+        """Return one line for the networks and one for the memory."""
+        replay = self.alg.replay  # type: ignore[attr-defined]
+        size = replay.num_bytes / 2**20
+        return f"{super().describe_models()}\nreplay: {replay.num_rows} rows x {replay.num_envs} worlds, {size:.1f} MiB"
+
     def save(self, path: str, infos: dict | None = None) -> None:
         """Write a checkpoint, and the memory if the configuration asks for it."""
         super().save(path, infos)
         if self.saves_replay and Path(path).name != "model_best.pt":
             file = Path(path).with_name(REPLAY_FILE)
-            temporary = f"{file}.tmp"
-            torch.save(self.alg.replay.state_dict(), temporary)  # type: ignore[attr-defined]
-            os.replace(temporary, file)
+            temporary = Path(f"{file}.tmp")
+            try:
+                torch.save(self.alg.replay.state_dict(), temporary)  # type: ignore[attr-defined]
+                os.replace(temporary, file)
+            except (OSError, RuntimeError) as error:  # torch raises either on a full disk
+                temporary.unlink(missing_ok=True)
+                print(f"replay memory {file} not written: {error}; training goes on", flush=True)
 
     def load(
         self, path: str, load_cfg: dict | None = None, strict: bool = True, map_location: str | None = None

@@ -11,12 +11,16 @@ from typing import Any
 
 from rsl_rl.utils import resolve_callable
 
+from arcgym.rl.agent_checks import check_installed
+from arcgym.rl.checkpoint import read_checkpoint
 from arcgym.rl.device import place
 from arcgym.rl.exporter import export_policy_as_jit, export_policy_as_onnx
 from arcgym.rl.make_env import VideoOptions, make_env
-from arcgym.rl.rollout import UNTRAINED, Policy, run_policy
-from arcgym.rl.run_folder import LOG_ROOT, find_checkpoint
+from arcgym.rl.preflight import check_environment, check_run
+from arcgym.rl.rollout import UNTRAINED, Policy, RolloutResult, run_policy
+from arcgym.rl.run_folder import LOG_ROOT
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
+from arcgym.utils.progress import counted
 
 
 @dataclass(frozen=True)
@@ -26,11 +30,14 @@ class PlayOptions:
     policy: str = "trained"
     """``trained``, or a key of :data:`arcgym.rl.rollout.UNTRAINED`."""
 
+    checkpoint: Path | None = None
+    """Checkpoint of a trained policy."""
+
     device: str | None = None
     """``cpu``, ``cuda`` or ``cuda:<n>``; None takes the first GPU, or the CPU where there is none."""
 
     steps: int | None = None
-    """Control steps; None takes the video's, or those of an episode."""
+    """Control steps; None ends when each world's first episode has ended."""
 
     video_length: int | None = None
     """Control steps of a video; None records none."""
@@ -42,21 +49,26 @@ class PlayOptions:
     """Whether the figures are printed as JSON on the last line."""
 
 
-def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOptions()) -> None:
-    """Build the environment, run the policy, and say how it did and where the files are."""
-    checkpoint = None
-    if options.policy == "trained":
-        checkpoint = find_checkpoint(agent_cfg.experiment_name, agent_cfg.load_run, agent_cfg.load_checkpoint)
-    folder = checkpoint.parent if checkpoint else LOG_ROOT / agent_cfg.experiment_name / options.policy
+def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOptions()) -> RolloutResult:
+    """Check everything, build the environment, run the policy, and say how it did and where the files are.
+
+    Raises:
+        UsageError: Something is wrong that can be known before the run.
+    """
+    folder = options.checkpoint.parent if options.checkpoint else LOG_ROOT / agent_cfg.experiment_name / options.policy
+    _check(env_cfg, agent_cfg, options, folder)
     device = place(env_cfg, agent_cfg, options.device)
     records = _record_to(options.record, env_cfg)
-    video = None
-    if options.video_length:
-        video = VideoOptions(folder.resolve() / "videos" / "play", options.video_length)
+    video = VideoOptions(folder.resolve() / "videos" / "play", options.video_length) if options.video_length else None
     env = make_env(task, env_cfg, agent_cfg, video)
     try:
-        policy = load_policy(env, agent_cfg, checkpoint, device) if checkpoint else UNTRAINED[options.policy](env)
-        result = run_policy(env, policy, options.steps or options.video_length or int(env.max_episode_length))
+        print(env.unwrapped.summary())
+        if options.checkpoint:
+            policy = load_policy(env, agent_cfg, options.checkpoint, device)
+        else:
+            policy = UNTRAINED[options.policy](env)
+        with counted("playing", options.steps or int(env.max_episode_length)) as show:
+            result = run_policy(env, policy, options.steps, show)
         print(result)
     finally:
         env.close()
@@ -66,6 +78,7 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
         print(f"recorded: {_finish_records(task, options.record, records)}")
     if options.json:
         print(result.to_json())
+    return result
 
 
 def load_policy(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path, device: str) -> Policy:
@@ -77,6 +90,20 @@ def load_policy(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path, devic
     for export in (export_policy_as_jit, export_policy_as_onnx):
         print(f"exported: {export(policy, checkpoint.parent / 'exported')}")
     return policy
+
+
+def _check(env_cfg: Any, agent_cfg: Any, options: PlayOptions, folder: Path) -> None:
+    """Raise where the run cannot end well."""
+    outputs = [folder] if options.checkpoint or options.video_length else []
+    if options.record:
+        outputs.append(Path(options.record))
+        if options.record.endswith(".hdf5"):
+            check_installed("h5py", f"--record {options.record}", extra="recorder")
+    if options.checkpoint:
+        check_run(env_cfg, agent_cfg, options.device, outputs)
+        read_checkpoint(options.checkpoint)
+    else:
+        check_environment(env_cfg, options.device, outputs)
 
 
 def _record_to(record: str | None, env_cfg: Any) -> Path | None:

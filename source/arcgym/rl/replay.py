@@ -187,7 +187,7 @@ class ReplayBuffer:
         self._count[world] += 1
 
     def _newest(self, name: str, value: torch.Tensor) -> torch.Tensor:
-        """The newest frame of a stacked group, the whole of another."""
+        """Return the newest frame of a stacked group, the whole of another."""
         stack = self.frame_stacks.get(name, 1)
         return value if stack == 1 else value[:, -(value.shape[1] // stack) :]
 

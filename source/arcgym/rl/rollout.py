@@ -9,7 +9,6 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
-from typing import Any
 
 import torch
 from tensordict import TensorDict
@@ -22,28 +21,35 @@ Policy = Callable[[TensorDict], torch.Tensor]
 
 @dataclass(frozen=True)
 class RolloutResult:
-    """What a policy achieved over a number of control steps in all worlds."""
+    """What a policy achieved in all worlds.
+
+    Figures of episodes count each world's first one and no other: short episodes fit more often into a number of steps
+    than long ones, and would count more.
+    """
 
     steps: int
     """Control steps made by each world."""
 
+    num_envs: int
+    """Number of worlds."""
+
     reward_per_step: float
-    """Mean reward of a control step of a world."""
+    """Mean reward of a control step of a world, over all steps."""
 
     episodes: int
-    """Episodes that ended."""
+    """Worlds whose first episode ended."""
 
     reward_per_episode: float
-    """Mean sum of rewards of the episodes that ended; NaN when none did."""
+    """Mean sum of rewards of these episodes; NaN when none ended."""
 
     success_rate: float
-    """Fraction of the ended episodes that a termination term with ``success=True`` ended; NaN when none ended."""
+    """Fraction of these episodes that a termination term with ``success=True`` ended; NaN when none ended."""
 
     wall_time: float
     """Duration [s]."""
 
     metrics: dict[str, float] = field(default_factory=dict)
-    """Mean of each ``Episode_Metrics/…`` over the episodes that ended."""
+    """Mean of each ``Episode_Metrics/…`` over these episodes."""
 
     def to_json(self) -> str:
         """Return all figures as one line of JSON; what no episode gave is null."""
@@ -52,12 +58,12 @@ class RolloutResult:
 
     def __str__(self) -> str:
         """Return the figures in one line."""
-        return (
-            f"{self.steps} steps in {self.wall_time:.1f} s, mean reward {self.reward_per_step:.4f} a step, "
-            f"{self.episodes} episodes ended, {self.reward_per_episode:.3f} each, success {self.success_rate:.0%}"
-            if self.episodes
-            else f"{self.steps} steps in {self.wall_time:.1f} s, mean reward {self.reward_per_step:.4f} a step, "
-            "no episode ended"
+        text = f"{self.steps} steps in {self.wall_time:.1f} s, mean reward {self.reward_per_step:.4f} a step, "
+        if not self.episodes:
+            return text + "no episode ended"
+        return text + (
+            f"first episode of {self.episodes} of {self.num_envs} worlds ended, "
+            f"{self.reward_per_episode:.3f} each, success {self.success_rate:.0%}"
         )
 
 
@@ -75,38 +81,77 @@ UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {"zero": zero_pol
 """Policies that need no checkpoint, by name."""
 
 
-def run_policy(env: RslRlVecEnvWrapper, policy: Policy, steps: int) -> RolloutResult:
-    """Run ``policy`` for ``steps`` control steps in every world."""
+def run_policy(
+    env: RslRlVecEnvWrapper,
+    policy: Policy,
+    steps: int | None = None,
+    on_step: Callable[[int], None] | None = None,
+) -> RolloutResult:
+    """Run ``policy`` in every world.
+
+    Args:
+        env: Environment whose worlds all begin an episode.
+        policy: Maps observations to raw actions; one with memory is given ``reset(dones)`` after each step.
+        steps: Control steps; None ends when each world's first episode has ended, which the time limit bounds.
+        on_step: Called after every step with the number of steps done.
+    """
     start = time.perf_counter()
-    returns = torch.zeros(env.num_envs, device=env.device)
-    total, ended, succeeded, ended_returns = (torch.zeros((), device=env.device) for _ in range(4))
-    metrics: dict[str, float] = {}
+    tally = _Tally(env)
     obs = env.get_observations()
     with torch.inference_mode():
-        for _ in range(steps):
-            obs, rewards, dones, extras = env.step(policy(obs))
-            done = dones > 0
-            _add_metrics(metrics, extras.get("log", {}), int(done.sum()))
-            returns += rewards
-            total += rewards.sum()
-            ended += done.sum()
-            succeeded += (env.unwrapped.termination_manager.success & done).sum()
-            ended_returns += (returns * done).sum()
-            returns[done] = 0.0
-    episodes = int(ended)
-    return RolloutResult(
-        steps=steps,
-        reward_per_step=float(total) / (steps * env.num_envs),
-        episodes=episodes,
-        reward_per_episode=float(ended_returns) / episodes if episodes else float("nan"),
-        success_rate=float(succeeded) / episodes if episodes else float("nan"),
-        wall_time=time.perf_counter() - start,
-        metrics={name: value / episodes for name, value in metrics.items()} if episodes else {},
-    )
+        while tally.steps < (steps or env.max_episode_length) and (steps or not tally.is_complete()):
+            obs, rewards, dones, _ = env.step(policy(obs))
+            if hasattr(policy, "reset"):
+                policy.reset(dones)
+            tally.add(rewards, dones > 0)
+            if on_step is not None:
+                on_step(tally.steps)
+    return tally.result(time.perf_counter() - start)
 
 
-def _add_metrics(sums: dict[str, float], log: dict[str, Any], episodes: int) -> None:
-    """Add the means over ``episodes`` that a step's log holds, times their number."""
-    for name, value in log.items():
-        if name.startswith("Episode_Metrics/") and episodes:
-            sums[name] = sums.get(name, 0.0) + float(value) * episodes
+class _Tally:
+    """Sums over a rollout, of each world's first episode where they are of episodes."""
+
+    def __init__(self, env: RslRlVecEnvWrapper) -> None:
+        self.env = env
+        self.steps = 0
+        self.total = torch.zeros((), device=env.device)
+        self.returns = torch.zeros(env.num_envs, device=env.device)
+        self.has_ended = torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
+        self.has_succeeded = torch.zeros_like(self.has_ended)
+        self.metrics: dict[str, torch.Tensor] = {}
+
+    def add(self, rewards: torch.Tensor, done: torch.Tensor) -> None:
+        """Take in a step: rewards, shape (N,), and the worlds that are done, bool, shape (N,)."""
+        self.steps += 1
+        self.total += rewards.sum()
+        self.returns += rewards * ~self.has_ended
+        ends = done & ~self.has_ended
+        self.has_succeeded |= ends & self.env.unwrapped.termination_manager.success
+        for name, values in self.env.unwrapped.metrics_manager.finished.items():
+            self.metrics[name] = torch.where(ends, values, self.metrics.get(name, torch.zeros_like(values)))
+        self.has_ended |= done
+
+    def is_complete(self) -> bool:
+        """Return whether each world's first episode has ended. Waits for the device."""
+        return bool(self.has_ended.all())
+
+    def result(self, wall_time: float) -> RolloutResult:
+        """Return the figures."""
+        episodes = int(self.has_ended.sum())
+        return RolloutResult(
+            steps=self.steps,
+            num_envs=self.env.num_envs,
+            reward_per_step=float(self.total) / max(self.steps * self.env.num_envs, 1),
+            episodes=episodes,
+            reward_per_episode=self._mean(self.returns),
+            success_rate=self._mean(self.has_succeeded.float()),
+            wall_time=wall_time,
+            metrics={f"Episode_Metrics/{name}": self._mean(value) for name, value in self.metrics.items()}
+            if episodes
+            else {},
+        )
+
+    def _mean(self, values: torch.Tensor) -> float:
+        """Return the mean over the worlds whose first episode ended; NaN when there is none."""
+        return float(values[self.has_ended].mean())

@@ -5,34 +5,78 @@
 
 from __future__ import annotations
 
+import itertools
+import os
 import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from arcgym.utils.coerce import to_plain
+from arcgym.utils.errors import UsageError
+
 LOG_ROOT = Path("logs") / "rsl_rl"
 
 
 def create_run_folder(experiment: str, run_name: str = "", root: Path = LOG_ROOT) -> Path:
-    """Create and return the folder of a new run, named by the time of its start."""
-    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-    folder = (root / experiment / f"{stamp}_{run_name}".rstrip("_")).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    return folder
+    """Create and return the folder of a new run, named by the time of its start.
 
-
-def write_params(folder: Path, **cfgs: Any) -> None:
-    """Write each configuration as ``params/<name>.yaml``.
-
-    Args:
-        folder: Folder of the run.
-        cfgs: Configurations with ``to_dict``, by name.
+    A run that starts in the same second as another gets a number behind its name: no two runs share a folder.
     """
+    stamp = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+    name = f"{stamp}_{run_name}".rstrip("_")
+    parent = (root / experiment).resolve()
+    parent.mkdir(parents=True, exist_ok=True)
+    for number in itertools.count(1):
+        folder = parent / (name if number == 1 else f"{name}_{number}")
+        try:
+            folder.mkdir()
+        except FileExistsError:
+            continue
+        return folder
+    raise AssertionError("the numbers never end")
+
+
+@contextmanager
+def removed_on_failure(folder: Path | None) -> Iterator[None]:
+    """Remove a run's folder if the block fails or is interrupted: a run that never started leaves nothing."""
+    try:
+        yield
+    except BaseException:
+        if folder is not None:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def write_params(folder: Path, **values: Any) -> None:
+    """Write each configuration, or dict of plain values, as ``params/<name>.yaml``, whole or not at all."""
     (folder / "params").mkdir(exist_ok=True)
-    for name, cfg in cfgs.items():
-        (folder / "params" / f"{name}.yaml").write_text(yaml.safe_dump(_plain(cfg.to_dict()), sort_keys=False))
+    for name, value in values.items():
+        text = yaml.safe_dump(to_plain(value), sort_keys=False)
+        write_whole(folder / "params" / f"{name}.yaml", text.encode())
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file that is complete whenever it exists under its name.
+
+    Raises:
+        OSError: The disk is full or the folder cannot be written; nothing is left behind, and an older file stays.
+    """
+    temporary = path.with_name(f"{path.name}.tmp")
+    try:
+        with temporary.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+        raise
 
 
 def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "latest", root: Path = LOG_ROOT) -> Path:
@@ -45,20 +89,26 @@ def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "la
         root: Folder of all experiments.
 
     Raises:
-        FileNotFoundError: Nothing matches; the message lists what is there.
+        UsageError: Nothing matches, with what is there, or ``load_run`` is no regular expression.
     """
     if Path(checkpoint).is_file():
         return Path(checkpoint).resolve()
+    try:
+        pattern = re.compile(load_run)
+    except re.error as error:
+        raise UsageError(f"load_run '{load_run}' is no regular expression: {error}.") from error
     runs = sorted((path for path in (root / experiment).glob("*") if path.is_dir()), reverse=True)
     for run in runs:
-        if run.name == load_run or re.fullmatch(load_run, run.name):
+        if run.name == load_run or pattern.fullmatch(run.name):
             found = _select(run, checkpoint)
             if found is not None:
                 return found.resolve()
     available = [str(path.relative_to(root / experiment)) for run in runs for path in _checkpoints(run)]
-    raise FileNotFoundError(
+    experiments = sorted(path.name for path in root.glob("*") if path.is_dir())
+    elsewhere = "" if runs else f" Experiments in {root.resolve()}: {', '.join(experiments) or 'none'}."
+    raise UsageError(
         f"No checkpoint '{checkpoint}' of a run matching '{load_run}' in {(root / experiment).resolve()}. "
-        f"Available: {', '.join(available) or 'none'}."
+        f"Available: {', '.join(available) or 'none'}.{elsewhere}"
     )
 
 
@@ -74,16 +124,3 @@ def _checkpoints(run: Path) -> list[Path]:
     """Numbered checkpoints of a run, oldest iteration first."""
     numbers = {path: re.fullmatch(r"model_(\d+)\.pt", path.name) for path in run.glob("model_*.pt")}
     return sorted((path for path, match in numbers.items() if match), key=lambda path: int(path.stem.split("_")[1]))
-
-
-def _plain(value: Any) -> Any:
-    """Convert to what YAML can hold: functions and classes become ``module:name``, other objects their text."""
-    if value is None or isinstance(value, (bool, int, float, str)):
-        return value
-    if isinstance(value, dict):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple, set)):
-        return [_plain(item) for item in value]
-    if callable(value) and hasattr(value, "__qualname__"):
-        return f"{value.__module__}:{value.__qualname__}"
-    return str(value)

@@ -5,33 +5,51 @@
 
 from __future__ import annotations
 
-import os
+import contextlib
+import io
 import statistics
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import torch
 from rsl_rl.env import VecEnv
 from rsl_rl.runners import OnPolicyRunner as RslRlOnPolicyRunner
+from rsl_rl.utils.log_writer import LogWriter
 
+from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
+from arcgym.rl.divergence import check_finite
 from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
+from arcgym.rl.patient_writer import PatientWriter
+from arcgym.utils.errors import UsageError
 
 
 class OnPolicyRunner(RslRlOnPolicyRunner):
     """On-policy runner that
 
-    * writes checkpoints whole or not at all, and one more on Ctrl-C or SIGTERM,
+    * writes checkpoints whole or not at all, and one more on Ctrl-C or SIGTERM; a full disk does not stop it,
+    * loads checkpoints as weights only, so that a foreign one runs no code,
+    * stops when a loss or a weight is no longer finite, before that is saved,
     * resumes with the next iteration and with the environment's step counter, so that curricula go on,
     * keeps ``model_best.pt``, the checkpoint with the highest mean episode reward.
     """
 
     def __init__(self, env: VecEnv, train_cfg: dict, log_dir: str | None = None, device: str = "cpu"):
         """Build algorithm and logger; arguments as in rsl_rl."""
-        super().__init__(env, train_cfg, log_dir, device)
+        with contextlib.redirect_stdout(io.StringIO()):  # rsl_rl prints every layer
+            super().__init__(env, train_cfg, log_dir, device)
         self.completed_iterations = 0
         self.best_reward = float("-inf")
+        self.last_checkpoint: Path | None = None
         if not train_cfg.get("store_git_diff", False):
             self.logger.git_status_repos.clear()
+
+    def describe_models(self) -> str:
+        """Return one line with the kind and the number of weights of each model."""
+        models = self._models()
+        counts = {name: sum(weight.numel() for weight in model.parameters()) for name, model in models.items()}
+        lines = [f"{name} {type(model).__name__}, {counts[name]:,} weights" for name, model in models.items()]
+        return f"networks: {'; '.join(lines)}"
 
     def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
         """Run updates; on a signal save a checkpoint and raise :class:`TrainingInterrupted`.
@@ -39,8 +57,16 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         Args:
             num_learning_iterations: Updates to run, on top of those already done.
             init_at_random_ep_len: Whether the worlds start at random places of their time limit.
+
+        Raises:
+            TrainingInterrupted: A signal came; a checkpoint has been saved.
+            TrainingDiverged: A loss or a weight is not finite; the checkpoints are from before.
         """
+        if self.cfg.get("init_policy") and self.completed_iterations == 0:
+            self._start_from(self.cfg["init_policy"])
         update = self.alg.update
+        init_writer = self.logger.init_logging_writer
+        self.logger.init_logging_writer = lambda: self._init_writer(init_writer)  # type: ignore[method-assign]
         with InterruptGuard() as guard:
             self.alg.update = lambda: self._update(update, guard)  # type: ignore[method-assign]
             try:
@@ -50,9 +76,10 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 raise
             finally:
                 self.alg.update = update  # type: ignore[method-assign]
+                self.logger.init_logging_writer = init_writer  # type: ignore[method-assign]
 
     def save(self, path: str, infos: dict | None = None) -> None:
-        """Write a checkpoint through a temporary file, so that ``path`` is complete whenever it exists."""
+        """Write a checkpoint; see :func:`arcgym.rl.checkpoint.write_checkpoint`."""
         counters = {
             "completed_iterations": self.completed_iterations,
             "common_step_counter": int(self.env.unwrapped.common_step_counter),  # type: ignore[attr-defined]
@@ -63,10 +90,9 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             "iter": self.current_learning_iteration,
             "infos": {**counters, **(infos or {})},
         }
-        temporary = f"{path}.tmp"
-        torch.save(checkpoint, temporary)
-        os.replace(temporary, path)
-        self.logger.save_model(path, self.current_learning_iteration)
+        if write_checkpoint(path, checkpoint):
+            self.last_checkpoint = Path(path)
+            self.logger.save_model(path, self.current_learning_iteration)
 
     def load(
         self, path: str, load_cfg: dict | None = None, strict: bool = True, map_location: str | None = None
@@ -75,19 +101,52 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
 
         Returns:
             The ``infos`` saved with it.
+
+        Raises:
+            UsageError: The file is damaged, holds more than weights, or belongs to other networks.
         """
-        infos = super().load(path, load_cfg, strict, map_location or self.device) or {}
+        contents = read_checkpoint(path, map_location or self.device)
+        try:
+            self.alg.load(contents, load_cfg, strict)
+        except (KeyError, RuntimeError, ValueError) as error:
+            reason = error.args[0] if error.args else error
+            raise UsageError(f"{path} does not fit the agent's configuration: {reason}") from error
+        infos = contents["infos"] or {}
         self.completed_iterations = int(infos.get("completed_iterations", 0))
         self.current_learning_iteration = self.completed_iterations
         self.best_reward = infos.get("best_reward", self.best_reward)
         self.env.unwrapped.common_step_counter = infos.get("common_step_counter", 0)  # type: ignore[attr-defined]
         return infos
 
+    def _start_from(self, path: str) -> None:
+        """Take the policy, and nothing else, from another run's checkpoint."""
+        try:
+            self.alg.load(read_checkpoint(path, self.device), {"actor": True}, strict=True)
+        except (KeyError, RuntimeError, ValueError) as error:
+            raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error
+        print(f"policy: starts from {path}")
+
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():
-            losses = update()
+            losses: dict[str, float] = {}
+            try:
+                losses = update()
+            finally:  # weights that are NaN also make torch's distributions raise: this names the cause
+                weights = {name: list(model.parameters()) for name, model in self._models().items()}
+                check_finite(losses, weights, self.completed_iterations)
             self.completed_iterations += 1
         return losses
+
+    def _models(self) -> dict[str, torch.nn.Module]:
+        """Return the algorithm's networks by name."""
+        found = {name: value for name, value in vars(self.alg).items() if isinstance(value, torch.nn.Module)}
+        return {name.removeprefix("_raw_"): model for name, model in found.items()}
+
+    def _init_writer(self, init_writer: Callable[[], None]) -> None:
+        init_writer()
+        writer: Any = self.logger.writer
+        if writer is not None and not isinstance(writer, LogWriter):
+            self.logger.writer = PatientWriter(writer)  # type: ignore[assignment]
 
     def _save_interrupted(self) -> None:
         if self.logger.log_dir is not None and not self.logger.disable_logs:
@@ -99,6 +158,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         reward = statistics.mean(self.logger.rewbuffer) if self.logger.rewbuffer else float("-inf")
         best = Path(path).with_name("model_best.pt")
         if reward > self.best_reward and Path(path) != best:
-            self.best_reward = reward
+            previous, self.best_reward = self.best_reward, reward
             self.save(str(best))
+            if self.last_checkpoint != best:
+                self.best_reward = previous
         return self.best_reward

@@ -12,6 +12,36 @@ import dataclasses
 from typing import Any
 
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import (
+    FINITE,
+    FieldError,
+    Range,
+    require,
+    require_ascending,
+    require_at_least,
+    require_fraction,
+    require_non_negative,
+    require_positive,
+)
+
+ACTIVATIONS = (
+    "elu",
+    "selu",
+    "relu",
+    "crelu",
+    "lrelu",
+    "tanh",
+    "sigmoid",
+    "softplus",
+    "gelu",
+    "swish",
+    "mish",
+    "identity",
+)
+"""Activations that rsl_rl resolves."""
+
+LOG_WRITERS = {"wandb": "WandbLogWriter", "neptune": "NeptuneLogWriter"}
+"""rsl_rl's writer by the name of the logger; ``tensorboard`` is its own."""
 
 
 @configclass
@@ -48,6 +78,23 @@ class CnnCfg:
     global_pool: str = "none"
     """One of ``none``, ``max``, ``avg``: pools the last layer to one value a channel. Loses where the lumen is."""
 
+    def validate_config(self) -> None:
+        """Check sizes and names, and that each sequence has an entry for every layer.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "output_channels", "kernel_size", "stride", "dilation")
+        require(self, "padding", ("none", "zeros", "reflect", "replicate", "circular"))
+        require(self, "norm", ("none", "batch", "layer"))
+        require(self, "activation", ACTIVATIONS)
+        require(self, "global_pool", ("none", "max", "avg"))
+        layers = len(self.output_channels)
+        for name in ("kernel_size", "stride", "dilation", "norm", "max_pool"):
+            value = getattr(self, name)
+            if isinstance(value, list) and len(value) != layers:
+                raise FieldError(self, name, f"has {len(value)} entries, expected {layers}, as output_channels has.")
+
 
 @configclass
 class GaussianDistributionCfg:
@@ -68,6 +115,16 @@ class GaussianDistributionCfg:
     learn_std: bool = True
     """Whether the standard deviation is learnt. Turn off for a fixed exploration noise."""
 
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_positive(self, "init_std", "std_range")
+        require_ascending(self, "std_range")
+        require(self, "std_type", ("scalar", "log"))
+
 
 @configclass
 class BetaDistributionCfg:
@@ -78,6 +135,15 @@ class BetaDistributionCfg:
 
     action_range: list[float] = [-1.0, 1.0]
     """Lowest and highest raw action."""
+
+    def validate_config(self) -> None:
+        """Check that the range is one.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require(self, "action_range", FINITE)
+        require_ascending(self, "action_range")
 
 
 @configclass
@@ -98,6 +164,17 @@ class RslRlMlpModelCfg:
 
     distribution_cfg: GaussianDistributionCfg | BetaDistributionCfg | None = None
     """Distribution over actions; None for a critic."""
+
+    def validate_config(self) -> None:
+        """Check widths and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "hidden_dims")
+        require(self, "activation", ACTIVATIONS)
+        if not self.hidden_dims:
+            raise FieldError(self, "hidden_dims", "is empty, expected one width or more.")
 
 
 @configclass
@@ -163,6 +240,20 @@ class RslRlPpoAlgorithmCfg:
     share_cnn_encoders: bool = False
     """Whether the critic uses the actor's encoders; both sets must then name the same image groups."""
 
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, 1, "num_learning_epochs", "num_mini_batches")
+        require_positive(self, "learning_rate", "desired_kl", "clip_param", "max_grad_norm")
+        require_fraction(self, "lam")
+        require(self, "gamma", Range(0.0, 1.0, above=True))
+        require(self, "schedule", ("adaptive", "fixed"))
+        require(self, "optimizer", ("adam", "adamw", "sgd", "rmsprop"))
+        require_non_negative(self, "entropy_coef", "value_loss_coef")
+
 
 @configclass
 class RslRlOnPolicyRunnerCfg:
@@ -222,6 +313,9 @@ class RslRlOnPolicyRunnerCfg:
     torch_compile_mode: str | None = None
     """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
 
+    init_policy: str | None = None
+    """Checkpoint whose policy a new run starts from, such as one of behaviour cloning; None starts from scratch."""
+
     resume: bool = False
     """Whether to go on from ``load_run``/``load_checkpoint``; set by ``--resume``."""
 
@@ -230,6 +324,23 @@ class RslRlOnPolicyRunnerCfg:
 
     load_checkpoint: str = "latest"
     """Checkpoint to resume from: a file name, ``latest`` or ``best``."""
+
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range.
+        """
+        require_at_least(self, -1, "seed")
+        require_at_least(self, 1, "num_steps_per_env", "max_iterations", "save_interval")
+        require(self, "logger", ("tensorboard", *LOG_WRITERS))
+        require_positive(self, "clip_actions")
+        for name in ("experiment_name", "run_name"):
+            value = getattr(self, name)
+            if "/" in value or value.startswith("."):
+                raise FieldError(self, name, f"is '{value}', expected a name without '/' and no '.' in front.")
+        if not self.experiment_name:
+            raise FieldError(self, "experiment_name", "is empty, expected a name.")
 
     def to_dict(self) -> dict[str, Any]:
         """Return the training dictionary that rsl_rl 5.5 accepts: None entries left out, logger in its own format."""
@@ -252,9 +363,8 @@ def _strip(value: Any) -> Any:
 
 def _logger(name: str, project: str) -> str | dict[str, str]:
     """Return rsl_rl's logger entry."""
-    writers = {"wandb": "WandbLogWriter", "neptune": "NeptuneLogWriter"}
     if name == "tensorboard":
         return name
-    if name not in writers:
-        raise ValueError(f"agent.logger is '{name}', expected one of: tensorboard, {', '.join(writers)}.")
-    return {"class_name": writers[name], "project_name": project}
+    if name not in LOG_WRITERS:
+        raise ValueError(f"agent.logger is '{name}', expected one of: tensorboard, {', '.join(LOG_WRITERS)}.")
+    return {"class_name": LOG_WRITERS[name], "project_name": project}

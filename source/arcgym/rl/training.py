@@ -5,17 +5,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from rsl_rl.utils import resolve_callable
 
-from arcgym.rl.device import place
+import arcgym
+from arcgym.rl.device import check_launcher, is_main_process, place
+from arcgym.rl.divergence import TrainingDiverged
 from arcgym.rl.interrupt import TrainingInterrupted
 from arcgym.rl.make_env import VideoOptions, make_env
+from arcgym.rl.preflight import check_run
 from arcgym.rl.rollout_memory import describe_rollout
-from arcgym.rl.run_folder import create_run_folder, find_checkpoint, write_params
+from arcgym.rl.run_folder import LOG_ROOT, create_run_folder, removed_on_failure, write_params
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
 
@@ -27,7 +32,10 @@ class TrainOptions:
     """``cpu``, ``cuda`` or ``cuda:<n>``; None takes the first GPU, or the CPU where there is none."""
 
     distributed: bool = False
-    """Whether this is one process of ``torchrun``."""
+    """Whether this is one process of ``torchrun``. Rank 0 alone makes folder, logs, videos and checkpoints."""
+
+    checkpoint: Path | None = None
+    """Checkpoint to go on from, or None."""
 
     video_interval: int | None = None
     """Control steps between the starts of two videos; None records none."""
@@ -37,40 +45,72 @@ class TrainOptions:
 
 
 def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = TrainOptions()) -> int:
-    """Build environment and runner, learn, and say where the results are.
+    """Check everything, build environment and runner, learn, and say where the results are.
 
     Returns:
-        Exit status: 0, or 128 and the signal's number after Ctrl-C or a kill.
+        Exit status: 0; 1 after losses that are not finite; 128 and the signal's number after Ctrl-C or a kill.
+
+    Raises:
+        UsageError: Something is wrong that can be known before the run; no folder has been made.
     """
-    checkpoint = None
-    if agent_cfg.resume:
-        checkpoint = find_checkpoint(agent_cfg.experiment_name, agent_cfg.load_run, agent_cfg.load_checkpoint)
+    check_launcher(options.distributed)
+    check_run(env_cfg, agent_cfg, options.device, [LOG_ROOT / agent_cfg.experiment_name], trains=True)
     device = place(env_cfg, agent_cfg, options.device, options.distributed)
+    with contextlib.ExitStack() as stack:
+        if not is_main_process():
+            stack.enter_context(contextlib.redirect_stdout(None))
+        folder = _start_folder(task, env_cfg, agent_cfg) if is_main_process() else None
+        with removed_on_failure(folder):
+            env = make_env(task, env_cfg, agent_cfg, _video(options, folder))
+            runner = _make_runner(env, agent_cfg, folder, device)
+            if options.checkpoint is not None:
+                runner.load(str(options.checkpoint))
+                print(f"resumed from {options.checkpoint} at iteration {runner.current_learning_iteration}")
+        return _learn(runner, env, agent_cfg, folder)
+
+
+def _start_folder(task: str, env_cfg: Any, agent_cfg: Any) -> Path:
+    """Return the folder of this run, with its parameters in it."""
     folder = create_run_folder(agent_cfg.experiment_name, agent_cfg.run_name)
-    env_cfg.log_dir = str(folder)
-    write_params(folder, env=env_cfg, agent=agent_cfg)
-    video = None
-    if options.video_interval:
-        video = VideoOptions(folder / "videos" / "train", options.video_length, options.video_interval)
-    env = make_env(task, env_cfg, agent_cfg, video)
-    runner = make_runner(env, agent_cfg, folder, device)
-    if checkpoint is not None:
-        runner.load(str(checkpoint))
-        print(f"resumed from {checkpoint} at iteration {runner.current_learning_iteration}")
+    with removed_on_failure(folder):
+        env_cfg.log_dir = str(folder)
+        about = {"task": task, "arcgym": arcgym.__version__, "command": sys.argv}
+        write_params(folder, run=about, env=env_cfg, agent=agent_cfg)
+    return folder
+
+
+def _video(options: TrainOptions, folder: Path | None) -> VideoOptions | None:
+    """Return what to record; the main process alone records."""
+    if folder is None or not options.video_interval:
+        return None
+    return VideoOptions(folder / "videos" / "train", options.video_length, options.video_interval)
+
+
+def _make_runner(env: RslRlVecEnvWrapper, agent_cfg: Any, folder: Path | None, device: str) -> Any:
+    """Build the runner that the agent's configuration names, and print what it is made of."""
+    print(env.unwrapped.summary())
+    print(describe_rollout(env.get_observations(), env.num_actions, agent_cfg.num_steps_per_env))
+    runner_class = resolve_callable(agent_cfg.class_name)
+    runner = runner_class(env, agent_cfg.to_dict(), log_dir=str(folder) if folder else None, device=device)
+    if hasattr(runner, "describe_models"):
+        print(runner.describe_models())
+    return runner
+
+
+def _learn(runner: Any, env: RslRlVecEnvWrapper, agent_cfg: Any, folder: Path | None) -> int:
+    """Learn, say where the results are, and return the exit status."""
+    status = 0
     try:
         runner.learn(agent_cfg.max_iterations, agent_cfg.init_at_random_ep_len)
     except TrainingInterrupted as interrupt:
-        print(f"stopped by {interrupt}; go on with: --resume --load_run {folder.name}")
-        return 128 + interrupt.signal_number
+        status = 128 + interrupt.signal_number
+        if folder is not None:
+            print(f"stopped by {interrupt}; go on with: --resume --load_run {folder.name}")
+    except TrainingDiverged as error:
+        status = 1
+        print(f"training stopped in {error}.", file=sys.stderr)
     finally:
         env.close()
         print(f"run: {folder}")
-    print(f"checkpoint: {folder / f'model_{runner.current_learning_iteration}.pt'}")
-    return 0
-
-
-def make_runner(env: RslRlVecEnvWrapper, agent_cfg: Any, folder: Path, device: str) -> Any:
-    """Say how much memory the rollout takes and build the runner that the agent's configuration names."""
-    print(describe_rollout(env.get_observations(), env.num_actions, agent_cfg.num_steps_per_env))
-    runner_class = resolve_callable(agent_cfg.class_name)
-    return runner_class(env, agent_cfg.to_dict(), log_dir=str(folder), device=device)
+    print(f"checkpoint: {getattr(runner, 'last_checkpoint', None) or 'none'}")
+    return status

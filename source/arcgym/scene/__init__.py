@@ -2,19 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenes: what is in the worlds."""
 
-import importlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from arcgym.scene.interactive_scene_cfg import InteractiveSceneCfg
+from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
     from arcgym.scene.interactive_scene import InteractiveScene
 
 __all__ = ["InteractiveScene", "InteractiveSceneCfg"]
 
-
-def __getattr__(name: str) -> Any:
-    """Import torch and Newton only when the runtime class is asked for."""
-    if name == "InteractiveScene":
-        return importlib.import_module("arcgym.scene.interactive_scene").InteractiveScene
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy_names(__name__, {"InteractiveScene": "arcgym.scene.interactive_scene"})

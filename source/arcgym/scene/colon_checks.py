@@ -11,7 +11,7 @@ import numpy as np
 import torch
 
 from arcgym.anatomy import ColonStage
-from arcgym.anatomy.validation.validate import Check
+from arcgym.anatomy.validation.checks import Check
 from arcgym.assets import CAPSULE_CFG, ColonCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.scene.interactive_scene_cfg import InteractiveSceneCfg

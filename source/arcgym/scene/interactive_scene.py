@@ -16,6 +16,7 @@ from arcgym.sensors import SensorBase
 from arcgym.sim.simulation import Simulation
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.utils.class_type import construct
+from arcgym.utils.progress import report
 from arcgym.utils.string import did_you_mean
 
 
@@ -39,6 +40,7 @@ class InteractiveScene:
         self.colon: Colon = construct(cfg.colon)
         self.endoscope: Endoscope = construct(cfg.endoscope)
         self.sensors: dict[str, SensorBase] = _build_sensors(cfg)
+        report(f"building {cfg.num_envs} worlds")
         self.sim = Simulation(sim_cfg, self.colon, self.endoscope, cfg.num_envs)
         self.env_origins = torch.zeros(cfg.num_envs, 3, device=self.device)
         for sensor in self.sensors.values():

@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.assets import ColonCfg, EndoscopeCfg
 from arcgym.utils.configclass import MISSING, configclass
+from arcgym.utils.validation import require_at_least
 
 
 @configclass
@@ -28,3 +29,11 @@ class InteractiveSceneCfg:
     camera: Any = None
     """Camera at the tip (:class:`arcgym.sensors.EndoscopeCameraCfg`); ``None`` for state-based tasks, which saves its
     time."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_at_least(self, 1, "num_envs")

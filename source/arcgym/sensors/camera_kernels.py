@@ -1,7 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Kernels of the endoscope camera: rays to radiance and depth, exposure, and the response curve."""
+"""Kernels of the endoscope camera: rays to radiance and depth, exposure, and the response curve.
+
+Launch dimensions: N worlds, H rows, W columns, S samples a pixel.
+"""
 
 import warp as wp
 
@@ -13,7 +16,7 @@ PROBES = wp.constant(14)
 
 @wp.func
 def probe_direction(probe: int) -> wp.vec3:
-    """Direction of one of the 14 probes: the six faces and the eight corners of a cube."""
+    """Return the direction of one of the 14 probes: the six faces and the eight corners of a cube."""
     if probe < 6:
         direction = wp.vec3(0.0)
         direction[probe % 3] = 1.0 - 2.0 * float(probe // 3)
@@ -33,7 +36,15 @@ def find_covered(
     far: float,
     covered: wp.array[wp.bool],
 ):
-    """Marks the worlds whose lens has sunk into the wall: most of its surroundings show the wall's back."""
+    """Mark the worlds whose lens has sunk into the wall: most probes meet the wall's back. Launch (N,).
+
+    Args:
+        surface: Surface of all worlds.
+        drawn: Worlds to look at, shape (N,).
+        poses: Camera poses, shape (N,).
+        far: Farthest distance seen [m].
+        covered: Whether the lens is covered, shape (N,); written.
+    """
     world = wp.tid()
     if not drawn[world]:
         return
@@ -66,7 +77,23 @@ def cast_rays(
     radiance: wp.array3d[wp.vec3],
     depth: wp.array3d[float],
 ):
-    """Radiance (mean of the samples) and ray distance (nearest of the samples) of every pixel of every world."""
+    """Trace radiance (mean of the samples) and distance (nearest of the samples) of every pixel. Launch (N, H, W).
+
+    Args:
+        surface: Surface of all worlds.
+        lighting: Lights and mucosa.
+        albedo: Colour texture.
+        detail: Texture of slope, height and wetness.
+        drawn: Worlds to draw, shape (N,).
+        poses: Camera poses, shape (N,).
+        rays: Directions in the camera's frame, shape (H, W, S).
+        texture_offset: Shift of the texture in fractions of its size, shape (N,).
+        covered: Worlds whose lens is covered, shape (N,).
+        near: Distance given where the lens is covered [m].
+        far: Farthest distance seen [m].
+        radiance: Linear radiance, shape (N, H, W); written.
+        depth: Distance along the ray [m], shape (N, H, W); written.
+    """
     world, row, column = wp.tid()
     if not drawn[world]:
         return
@@ -91,7 +118,13 @@ def cast_rays(
 
 @wp.kernel
 def row_brightness(radiance: wp.array3d[wp.vec3], drawn: wp.array[wp.bool], brightness: wp.array2d[float]):
-    """Sum over each row of the square root of luminance (Rec. 709), in a fixed order and so always the same."""
+    """Sum up the square root of luminance (Rec. 709) over each row, in a fixed order. Launch (N, H).
+
+    Args:
+        radiance: Linear radiance, shape (N, H, W).
+        drawn: Worlds to draw, shape (N,).
+        brightness: Sum of each row, shape (N, H); written.
+    """
     world, row = wp.tid()
     if not drawn[world]:
         return
@@ -114,7 +147,20 @@ def expose(
     gain: wp.array[float],
     drawn_from: wp.array[wp.transform],
 ):
-    """Gain that brings the mean to `target`; a gain of 0 marks a world whose last picture does not count."""
+    """Find the gain that brings the mean brightness to ``target``. Launch (N,).
+
+    Args:
+        brightness: Sum of each row, shape (N, H).
+        pixels: Pixels of a picture.
+        target: Mean square root of luminance aimed at.
+        gain_min: Least gain.
+        gain_max: Largest gain.
+        lag: Share of the last picture's gain, in the logarithm.
+        drawn: Worlds to draw, shape (N,).
+        poses: Camera poses, shape (N,).
+        gain: Gain of the last picture, 0 where it does not count, shape (N,); updated.
+        drawn_from: Camera poses of the picture, shape (N,); written.
+    """
     world = wp.tid()
     if not drawn[world]:
         return
@@ -132,7 +178,7 @@ def expose(
 
 @wp.func
 def response(radiance: float, edge: float, contrast: float) -> wp.uint8:
-    """Camera response as a byte: saturating, gamma 2, then an S-curve."""
+    """Return the camera response as a byte: saturating, gamma 2, then an S-curve."""
     level = wp.sqrt(1.0 - wp.exp(-radiance)) * edge
     curve = level * level * (3.0 - 2.0 * level)
     return wp.uint8(255.0 * (level + contrast * (curve - level)) + 0.5)
@@ -150,7 +196,19 @@ def develop(
     drawn: wp.array[wp.bool],
     rgb: wp.array4d[wp.uint8],
 ):
-    """Exposed radiance to bytes, with the world's brightness and colour cast and the lens's vignette."""
+    """Convert exposed radiance to bytes. Launch (N, H, W).
+
+    Args:
+        radiance: Linear radiance, shape (N, H, W).
+        gain: Gain of the exposure, shape (N,).
+        light_gain: Brightness relative to it, shape (N,).
+        color_gain: Gain of red, green and blue, shape (N,).
+        rays: Directions in the camera's frame, shape (H, W, S).
+        vignette: Darkening towards the rim, 0 to 1.
+        contrast: Strength of the S-curve, 0 to 1.
+        drawn: Worlds to draw, shape (N,).
+        rgb: Picture, shape (N, H, W, 3); written.
+    """
     world, row, column = wp.tid()
     if not drawn[world]:
         return

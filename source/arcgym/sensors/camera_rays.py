@@ -10,7 +10,7 @@ import numpy as np
 
 
 def fisheye_rays(width: int, height: int, field_of_view: float, samples: int = 1) -> np.ndarray:
-    """Returns the ray directions of an equidistant fisheye: angle from the axis = distance from the centre / f.
+    """Return the ray directions of an equidistant fisheye: angle from the axis = distance from the centre / f.
 
     Args:
         width: Picture width [px].
@@ -33,12 +33,12 @@ def fisheye_rays(width: int, height: int, field_of_view: float, samples: int = 1
 
 
 def pixel_angle(width: int, height: int, field_of_view: float) -> float:
-    """Returns the angle that one pixel spans [rad], everywhere the same along the radius."""
+    """Return the angle that one pixel spans [rad], everywhere the same along the radius."""
     return field_of_view / math.hypot(width, height)
 
 
 def _sample_offsets(samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Positions of the samples within a pixel, in [0, 1): a square grid, or a diagonal where the number has no root."""
+    """Return the places of the samples in a pixel, in [0, 1): a square grid, or a diagonal where there is no root."""
     side = math.isqrt(samples)
     if side * side == samples:
         grid = (np.arange(side) + 0.5) / side

@@ -17,6 +17,7 @@ from arcgym.sensors.sensor_base import SensorBase
 from arcgym.sensors.skinned_surface import SkinnedSurface
 from arcgym.sensors.surface_renderer import Optics, SurfaceRenderer, WorldLooks
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.configclass import validate
 from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from arcgym.assets.endoscope_spec import CameraSpec
     from arcgym.scene.interactive_scene import InteractiveScene
     from arcgym.sensors.endoscope_camera_cfg import EndoscopeCameraCfg
-
-OUTPUTS = ("rgb", "depth")
-"""Data types that the camera can give."""
 
 
 @dataclass
@@ -56,19 +54,12 @@ class EndoscopeCamera(SensorBase):
     cfg: EndoscopeCameraCfg
 
     def __init__(self, cfg: EndoscopeCameraCfg) -> None:
-        """Checks the configuration."""
+        """Check the configuration."""
         super().__init__(cfg)
-        unknown = [name for name in cfg.data_types if name not in OUTPUTS]
-        if unknown:
-            raise ValueError(f"EndoscopeCameraCfg.data_types: {unknown} unknown. Available: {list(OUTPUTS)}.")
-        if min(cfg.width, cfg.height, cfg.samples) < 1:
-            raise ValueError(
-                "EndoscopeCameraCfg: width, height and samples must be at least 1,"
-                f" got {cfg.width}, {cfg.height}, {cfg.samples}."
-            )
+        validate(cfg, "camera")
 
     def initialize(self, scene: InteractiveScene) -> None:
-        """Binds the camera to ``scene["colon"]`` and ``scene["endoscope"]`` and allocates its buffers."""
+        """Bind the camera to ``scene["colon"]`` and ``scene["endoscope"]`` and allocates its buffers."""
         self._colon, self._endoscope = scene["colon"], scene["endoscope"]
         self._device = str(scene.device)
         stage = self._colon.stage
@@ -108,7 +99,7 @@ class EndoscopeCamera(SensorBase):
         return spec.field_of_view if self.cfg.field_of_view is None else self.cfg.field_of_view
 
     def update(self, env_mask: torch.Tensor | None = None) -> None:
-        """Draws the worlds of `env_mask`, shape (num_envs,), bool, again; None draws all.
+        """Draw the worlds of `env_mask`, shape (num_envs,), bool, again; None draws all.
 
         Pictures of the other worlds stay bit for bit.
         """
@@ -120,28 +111,28 @@ class EndoscopeCamera(SensorBase):
         self.draw()
 
     def draw(self) -> None:
-        """Draws the worlds of the last update again from the present camera poses, without moving the wall."""
+        """Draw the worlds of the last update again from the present camera poses, without moving the wall."""
         self._renderer.draw(self._endoscope.camera_pose_wp, self._looks, self._drawn)
         self._data.frame += 1
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
-        """Lets the exposure of the worlds start anew with their next picture."""
+        """Let the exposure of the worlds start anew with their next picture."""
         fill_worlds(wp.to_torch(self._renderer.gain), env_ids, 0.0)
 
     def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
-        """Sets the brightness of the picture relative to the exposure's aim, shape (n,); 1 is neutral."""
+        """Set the brightness of the picture relative to the exposure's aim, shape (n,); 1 is neutral."""
         wp.to_torch(self._looks.light_gain)[slice(None) if env_ids is None else env_ids] = gain
 
     def write_color_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
-        """Sets the gain of red, green and blue, shape (n, 3); ones are neutral."""
+        """Set the gain of red, green and blue, shape (n, 3); ones are neutral."""
         wp.to_torch(self._looks.color_gain)[slice(None) if env_ids is None else env_ids] = gain
 
     def write_texture_offset(self, offset: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
-        """Shifts the mucosa texture by fractions of its size along u and v, shape (n, 2)."""
+        """Shift the mucosa texture by fractions of its size along u and v, shape (n, 2)."""
         wp.to_torch(self._looks.texture_offset)[slice(None) if env_ids is None else env_ids] = offset
 
     def snapshot_view(self, env_id: int = 0, size: int = 512, samples: int = 2) -> tuple[np.ndarray, np.ndarray]:
-        """Draws one world large, from the fine surface, for people to look at.
+        """Draw one world large, from the fine surface, for people to look at.
 
         The fine surface is made at the first call and kept. Exposure has no lag here.
 
@@ -162,7 +153,7 @@ class EndoscopeCamera(SensorBase):
         return renderer.rgb.numpy()[0].copy(), renderer.depth.numpy()[0].copy()
 
     def _snapshot_renderer(self, size: int, samples: int) -> SurfaceRenderer:
-        """Returns the renderer of one world's fine surface at this size, making it at first use."""
+        """Return the renderer of one world's fine surface at this size, making it at first use."""
         key = (size, samples)
         if key not in self._snapshots:
             visual, surface, textures = self._fine_surface
@@ -183,14 +174,14 @@ class EndoscopeCamera(SensorBase):
         return wp.full(1, True, dtype=wp.bool, device=self._device)
 
     def _optics(self) -> Optics:
-        """Gathers what the endoscope's stage and the configuration say about camera and lights."""
+        """Gather what the endoscope's stage and the configuration say about camera and lights."""
         stage = self._endoscope.stage
         lights = lights_in_camera(stage.lights, stage.camera)
         near = float(stage.camera.clipping[0])
         return Optics(self.field_of_view, lights, near, self.cfg.far, self.cfg.lighting, self.cfg.exposure)
 
     def _make_data(self) -> EndoscopeCameraData:
-        """Shows the renderer's buffers as tensors."""
+        """Show the renderer's buffers as tensors."""
         pose = wp.to_torch(self._renderer.drawn_from)
         outputs = {"rgb": self._renderer.rgb, "depth": self._renderer.depth}
         views = {name: wp.to_torch(outputs[name]) for name in self.cfg.data_types}
@@ -198,7 +189,7 @@ class EndoscopeCamera(SensorBase):
 
 
 def lights_in_camera(lights: np.ndarray, camera: CameraSpec) -> np.ndarray:
-    """Returns light positions, given like the camera in the last link's frame, in the camera's frame [m], (2, 3)."""
+    """Return light positions, given like the camera in the last link's frame, in the camera's frame [m], (2, 3)."""
     x, y, z, w = (float(c) for c in camera.quaternion)
     axis, offset = np.array([-x, -y, -z]), np.asarray(lights, dtype=np.float64) - np.asarray(camera.position)
     twice = 2.0 * np.cross(axis, offset)

@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
 from arcgym.sensors.sensor_base_cfg import SensorBaseCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import Range, require, require_at_least, require_positive
 
 
 @configclass
@@ -41,3 +43,17 @@ class EndoscopeCameraCfg(SensorBaseCfg):
 
     exposure: ExposureCfg = ExposureCfg()
     """Automatic exposure and response curve."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        super().validate_config()
+        require(self, "width", Range(1, 4096), unit="px")
+        require(self, "height", Range(1, 4096), unit="px")
+        require(self, "field_of_view", Range(0.0, 2.0 * math.pi, above=True), unit="rad")
+        require_at_least(self, 1, "samples")
+        require(self, "data_types", ("rgb", "depth"))
+        require_positive(self, "far", unit="m")

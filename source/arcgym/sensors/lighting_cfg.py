@@ -5,6 +5,14 @@
 from __future__ import annotations
 
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import (
+    Range,
+    require,
+    require_ascending,
+    require_fraction,
+    require_non_negative,
+    require_positive,
+)
 
 
 @configclass
@@ -36,6 +44,17 @@ class LightingCfg:
     min_distance: float = 0.003
     """Distance to a light under which it grows no brighter [m], about the size of the light guide lens."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_fraction(self, "beam", "wrap", "film")
+        require_non_negative(self, "scatter", "bump", "gloss")
+        require(self, "roughness", Range(0.0, 1.0, above=True))
+        require_positive(self, "min_distance", unit="m")
+
 
 @configclass
 class ExposureCfg:
@@ -62,3 +81,14 @@ class ExposureCfg:
 
     contrast: float = 0.45
     """Strength of the S-curve that darkens shadows and lifts lights: 0 none, 1 full."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_positive(self, "gain", "target", "gain_range")
+        require_ascending(self, "gain_range")
+        require(self, "lag", Range(0.0, 1.0, below=True))
+        require_fraction(self, "vignette", "contrast")

@@ -17,7 +17,7 @@ class MucosaTextures:
     """Albedo and detail texture with their pyramids of ever smaller copies, tiled in both directions."""
 
     def __init__(self, albedo: Path, detail: Path, device: str, smooth_levels: bool = False) -> None:
-        """Loads both images.
+        """Load both images.
 
         Args:
             albedo: Colour image in sRGB.
@@ -34,7 +34,7 @@ class MucosaTextures:
 
 
 def _load_rgba(path: Path) -> np.ndarray:
-    """Reads an image, shape (H, W, 4), uint8."""
+    """Read an image, shape (H, W, 4), uint8."""
     if not Path(path).is_file():
         raise FileNotFoundError(f"Texture {path} not found. It belongs beside the colon's stage file.")
     with Image.open(path) as image:
@@ -49,7 +49,7 @@ def _square_root_of_linear(srgb: np.ndarray) -> np.ndarray:
 
 
 def _make_texture(image: np.ndarray, blend: wp.TextureFilterMode, device: str) -> wp.Texture2D:
-    """Uploads an image as a tiled texture with the whole pyramid."""
+    """Upload an image as a tiled texture with the whole pyramid."""
     return wp.Texture2D(
         np.ascontiguousarray(image),
         filter_mode=wp.TextureFilterMode.LINEAR,

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What every sensor of the scene does."""
+"""Interface of every sensor of the scene."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class SensorBase(ABC):
     """A sensor of all worlds at once; it is made with its configuration and bound to the scene later."""
 
     def __init__(self, cfg: SensorBaseCfg) -> None:
-        """Keeps the configuration; nothing is allocated before :meth:`initialize`."""
+        """Keep the configuration; nothing is allocated before :meth:`initialize`."""
         self.cfg = cfg
         self._since_update = 0.0
 
@@ -29,18 +29,18 @@ class SensorBase(ABC):
 
     @abstractmethod
     def initialize(self, scene: InteractiveScene) -> None:
-        """Binds the sensor to the scene's assets and allocates its buffers."""
+        """Bind the sensor to the scene's assets and allocates its buffers."""
 
     @abstractmethod
     def update(self, env_mask: torch.Tensor | None = None) -> None:
-        """Takes a new reading in the worlds of `env_mask`, shape (num_envs,), bool; None: in all."""
+        """Take a new reading in the worlds of `env_mask`, shape (num_envs,), bool; None: in all."""
 
     @abstractmethod
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
-        """Forgets what earlier readings left behind in the worlds `env_ids`; None: in all."""
+        """Forget what earlier readings left behind in the worlds `env_ids`; None: in all."""
 
     def advance(self, dt: float) -> None:
-        """Lets `dt` seconds pass and takes a reading of all worlds when the update period is over."""
+        """Let `dt` seconds pass and takes a reading of all worlds when the update period is over."""
         self._since_update += dt
         if self._since_update >= self.cfg.update_period - 1.0e-9:
             self._since_update = 0.0

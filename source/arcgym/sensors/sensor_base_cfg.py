@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from arcgym.utils.configclass import MISSING, configclass
+from arcgym.utils.validation import require_non_negative
 
 
 @configclass
@@ -18,3 +19,11 @@ class SensorBaseCfg:
 
     update_period: float = 0.0
     """Time between two readings [s]; 0 reads after every control step. Raise it for a sensor slower than control."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_non_negative(self, "update_period", unit="s")

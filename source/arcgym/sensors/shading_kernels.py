@@ -10,15 +10,13 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.struct
 class SurfaceView:
-    """What a ray needs of a :class:`SkinnedSurface` and its textures."""
+    """A :class:`SkinnedSurface` and its textures, for ray casting. W worlds, M vertices."""
 
-    mesh: wp.uint64
-    roots: wp.array[int]
-    normals: wp.array[wp.vec3]
-    # u, v, tint and texels per metre of every vertex, shared by the worlds
-    attributes: wp.array[wp.vec4]
-    # length of the texture along u and v at its true scale [m]
-    texture_size: wp.vec2
+    mesh: wp.uint64  # grouped by world
+    roots: wp.array[int]  # root of each world's group, shape (W,)
+    normals: wp.array[wp.vec3]  # unit normals towards the lumen, shape (W*M,)
+    attributes: wp.array[wp.vec4]  # u, v, tint and texels per metre of every vertex, shared by the worlds, shape (M,)
+    texture_size: wp.vec2  # length of the texture along u and v at its true scale [m]
 
 
 @wp.struct
@@ -58,7 +56,7 @@ class Hit:
 def surface_hit(
     surface: SurfaceView, query: wp.MeshQueryRay, world: int, origin: wp.vec3, direction: wp.vec3, pixel_angle: float
 ) -> Hit:
-    """Interpolates the surface at the point that a ray has hit."""
+    """Interpolate the surface at the point that a ray has hit."""
     corner = query.face * 3
     i0 = wp.mesh_get_index(surface.mesh, corner)
     i1 = wp.mesh_get_index(surface.mesh, corner + 1)
@@ -96,7 +94,7 @@ def surface_hit(
 
 @wp.func
 def facing_normal(normal: wp.vec3, area: wp.vec3, direction: wp.vec3) -> wp.vec3:
-    """Smooth normal on the viewer's side; at silhouettes, where it would point away, bent back to grazing."""
+    """Return the smooth normal on the viewer's side; at silhouettes, where it points away, bent back to grazing."""
     side = normal
     if wp.dot(area, direction) > 0.0:
         side = -normal
@@ -108,7 +106,7 @@ def facing_normal(normal: wp.vec3, area: wp.vec3, direction: wp.vec3) -> wp.vec3
 
 @wp.func
 def relief_normal(hit: Hit, slope: wp.vec2, texture_size: wp.vec2, height: float) -> wp.vec3:
-    """Normal of the mucosal relief; where the texture is stretched the relief is flatter, as a real one would be."""
+    """Return the normal of the mucosal relief; it is flatter where the texture is stretched, as a real one would be."""
     gradient = (hit.gradient_u * (slope[0] * texture_size[0]) + hit.gradient_v * (slope[1] * texture_size[1])) * height
     steep = wp.length_sq(gradient)
     if steep > 0.25:
@@ -118,7 +116,7 @@ def relief_normal(hit: Hit, slope: wp.vec2, texture_size: wp.vec2, height: float
 
 @wp.func
 def mucosa_color(texel: wp.vec4, tint: float) -> wp.vec3:
-    """Linear albedo from a texel in gamma 2; polyps are redder, the inside of a diverticulum darker."""
+    """Return the linear albedo from a texel in gamma 2; polyps are redder, the inside of a diverticulum darker."""
     color = wp.vec3(texel[0] * texel[0], texel[1] * texel[1], texel[2] * texel[2])
     if tint > 0.0:
         return wp.cw_mul(color, wp.vec3(1.0 + 0.05 * tint, 1.0 - 0.38 * tint, 1.0 - 0.30 * tint))
@@ -127,7 +125,7 @@ def mucosa_color(texel: wp.vec4, tint: float) -> wp.vec3:
 
 @wp.func
 def highlight(cosine: float, alpha_sq: float) -> float:
-    """GGX distribution of microfacets (Walter et al. 2007, eq. 33) times the 4 % that water reflects, over 4."""
+    """Return the GGX distribution of microfacets (Walter et al. 2007, eq. 33) times 0.01, a quarter of water's 4 %."""
     spread = cosine * cosine * (alpha_sq - 1.0) + 1.0
     return 0.01 * alpha_sq / (spread * spread)
 
@@ -145,27 +143,27 @@ def lit_by(
     alpha_sq: float,
     lighting: Lighting,
 ) -> wp.vec3:
-    """Radiance towards the camera from one light: wrapped diffuse reflection and the highlight on the film."""
-    way = lamp - hit.position
-    distance_sq = wp.length_sq(way)
-    way = way / wp.sqrt(distance_sq)
-    cosine = wp.max(-wp.dot(way, axis), 0.02)
+    """Return the radiance to the camera from one light: wrapped diffuse reflection and the highlight on the film."""
+    incoming = lamp - hit.position
+    distance_sq = wp.length_sq(incoming)
+    incoming = incoming / wp.sqrt(distance_sq)
+    cosine = wp.max(-wp.dot(incoming, axis), 0.02)
     power = 0.5 * cosine * (1.0 - lighting.beam + lighting.beam * cosine)
     power = power / wp.max(distance_sq, lighting.min_distance_sq)
-    falling = wp.dot(relief, way)
+    falling = wp.dot(relief, incoming)
     diffuse = wp.vec3(
         wp.max((falling + lighting.wrap[0]) / (1.0 + lighting.wrap[0]), 0.0),
         wp.max((falling + lighting.wrap[1]) / (1.0 + lighting.wrap[1]), 0.0),
         wp.max((falling + lighting.wrap[2]) / (1.0 + lighting.wrap[2]), 0.0),
     )
-    mirror = wp.max(wp.dot(film, wp.normalize(way - direction)), 0.0)
+    mirror = wp.max(wp.dot(film, wp.normalize(incoming - direction)), 0.0)
     glint = gloss * highlight(mirror, alpha_sq)
     return (wp.cw_mul(color, diffuse) + wp.vec3(glint, glint, glint)) * power
 
 
 @wp.func
 def covered_radiance(lighting: Lighting, albedo: wp.Texture2D) -> wp.vec3:
-    """Mucosa pressed against the lens: its mean colour, lit from as near as can be ("red-out")."""
+    """Return the radiance of mucosa pressed against the lens: mean colour, lit from the least distance ("red-out")."""
     color = mucosa_color(wp.texture_sample(albedo, wp.vec2(0.5, 0.5), dtype=wp.vec4f, lod=16.0), 0.0)
     return wp.cw_mul(color, color) / lighting.min_distance_sq
 
@@ -182,7 +180,7 @@ def shade(
     distance: float,
     texture_offset: wp.vec2,
 ) -> wp.vec3:
-    """Radiance that a hit sends back along the ray."""
+    """Return the radiance that a hit sends back along the ray."""
     uv = hit.uv + texture_offset
     texel = wp.texture_sample(albedo, uv, dtype=wp.vec4f, lod=hit.level)
     relief_texel = wp.texture_sample(detail, uv, dtype=wp.vec4f, lod=hit.level + 1.0)

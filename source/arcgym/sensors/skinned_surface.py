@@ -36,7 +36,7 @@ class SkinnedSurface:
     """Where ray queries of a world start, shape (num_envs,), int32."""
 
     def __init__(self, visual: VisualMesh, wall: WallMesh | ShellMesh, num_envs: int, device: str) -> None:
-        """Binds `visual` to the rest shape of `wall`, once for all `num_envs` worlds."""
+        """Bind `visual` to the rest shape of `wall`, once for all `num_envs` worlds."""
         _check_binding(visual, wall)
         self.num_envs = num_envs
         self.num_nodes = len(wall.points)
@@ -57,7 +57,7 @@ class SkinnedSurface:
         wp.launch(group_roots, num_envs, inputs=[self.mesh.id], outputs=[self.roots], device=device)
 
     def update(self, nodal_pos: wp.array, drawn: wp.array | None = None) -> None:
-        """Moves the surface to the wall's present shape.
+        """Move the surface to the wall's present shape.
 
         Args:
             nodal_pos: Wall vertices of all worlds [m], shape (V, num_envs), vec3.
@@ -75,7 +75,7 @@ class SkinnedSurface:
         self.mesh.refit()
 
     def _skin(self, nodal_pos: wp.array, drawn: wp.array) -> None:
-        """Launches the two skinning kernels."""
+        """Launch the two skinning kernels."""
         wp.launch(
             wall_frames,
             (self.num_nodes, self.num_envs),
@@ -92,7 +92,7 @@ class SkinnedSurface:
         )
 
     def _bind(self, visual: VisualMesh, wall: WallMesh | ShellMesh) -> None:
-        """Stores offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
+        """Store offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
         rest = wp.array(wall.points[:, None], dtype=wp.vec3, device=self.device)
         wp.launch(
             wall_frames,
@@ -113,7 +113,7 @@ class SkinnedSurface:
         )
 
     def _build_mesh(self, faces: np.ndarray) -> wp.Mesh:
-        """Builds the grouped mesh; its tree is made once and only refitted after.
+        """Build the grouped mesh; its tree is made once and only refitted after.
 
         A CPU builds by the surface-area heuristic. That takes 12 ms a world, on the CPU for a GPU as well; a GPU builds
         by Morton codes at once (lbvh). With two faces a leaf it then draws as fast, and refits 1.7 ms slower at 1024
@@ -132,7 +132,7 @@ class SkinnedSurface:
 
 
 def _check_binding(visual: VisualMesh, wall: WallMesh | ShellMesh) -> None:
-    """Raises where the skin does not fit the wall."""
+    """Raise where the skin does not fit the wall."""
     top = int(visual.skin_indices.max())
     if top >= len(wall.points):
         raise ValueError(

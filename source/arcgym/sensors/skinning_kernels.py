@@ -1,7 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Kernels that carry the visual surface along with the deforming wall, all worlds in one launch."""
+"""Kernels that carry the visual surface along with the deforming wall, all worlds in one launch.
+
+Launch dimensions: V wall vertices, M vertices of the visual surface, W worlds.
+"""
 
 import warp as wp
 
@@ -15,7 +18,14 @@ def wall_frames(
     drawn: wp.array[wp.bool],
     frames: wp.array2d[wp.mat33],
 ):
-    """Orthonormal frame of every wall vertex, columns along the colon, around it and across the wall. Launch (V, W)."""
+    """Compute an orthonormal frame of every wall vertex. Launch (V, W).
+
+    Args:
+        nodes: Wall positions [m], shape (V, W).
+        neighbors: Vertices ahead, behind, and on either side around the colon, shape (V,).
+        drawn: Worlds to update, shape (W,).
+        frames: Columns along the colon, around it and across the wall, shape (V, W); written.
+    """
     node, world = wp.tid()
     if not drawn[world]:
         return
@@ -41,7 +51,19 @@ def skin_vertices(
     points: wp.array[wp.vec3],
     normals: wp.array[wp.vec3],
 ):
-    """Linear blend skinning: p = sum_k w_k (x_k + F_k o_k), and the normals alike. Launch (M, W)."""
+    """Skin by linear blending: p = sum_k w_k (x_k + F_k o_k), and the normals alike. Launch (M, W).
+
+    Args:
+        nodes: Wall positions x [m], shape (V, W).
+        frames: Frames F of the wall vertices, shape (V, W).
+        skin_indices: Wall vertices that carry each vertex, shape (M,).
+        skin_weights: Weights w, shape (M,).
+        rest_offsets: Offsets o in the frames [m], shape (M, 4).
+        rest_normals: Normals in the frames, shape (M, 4).
+        drawn: Worlds to update, shape (W,).
+        points: Positions [m], shape (W*M,); written.
+        normals: Unit normals, shape (W*M,); written.
+    """
     vertex, world = wp.tid()
     if not drawn[world]:
         return
@@ -59,6 +81,6 @@ def skin_vertices(
 
 @wp.kernel
 def group_roots(mesh: wp.uint64, roots: wp.array[int]):
-    """Root of each world's subtree in the grouped mesh; constant while the mesh is only refitted."""
+    """Write the root of each world's subtree, shape (W,); constant while the mesh is only refitted. Launch (W,)."""
     world = wp.tid()
     roots[world] = wp.mesh_get_group_root(mesh, world)

@@ -44,7 +44,7 @@ class Optics:
 
 @dataclass(frozen=True)
 class WorldLooks:
-    """What differs between worlds."""
+    """Values that differ between worlds."""
 
     light_gain: wp.array
     """Brightness relative to the exposure's aim, shape (num_envs,), float."""
@@ -55,7 +55,7 @@ class WorldLooks:
 
     @classmethod
     def neutral(cls, num_envs: int, device: str) -> WorldLooks:
-        """Returns the same plain look for every world."""
+        """Return the same plain look for every world."""
         return cls(
             wp.full(num_envs, 1.0, dtype=float, device=device),
             wp.full(num_envs, wp.vec3(1.0), dtype=wp.vec3, device=device),
@@ -63,7 +63,7 @@ class WorldLooks:
         )
 
     def of_world(self, env_id: int) -> WorldLooks:
-        """Returns the look of one world, sharing memory."""
+        """Return the look of one world, sharing memory."""
         one = slice(env_id, env_id + 1)
         return WorldLooks(self.light_gain[one], self.color_gain[one], self.texture_offset[one])
 
@@ -80,7 +80,7 @@ class SurfaceRenderer:
         size: tuple[int, int],
         samples: int,
     ) -> None:
-        """Allocates everything for pictures of `size` (width, height) [px] with `samples` rays per pixel."""
+        """Allocate everything for pictures of `size` (width, height) [px] with `samples` rays per pixel."""
         width, height = size
         self.surface, self.textures, self.optics = surface, textures, optics
         self.shape = (surface.num_envs, height, width)
@@ -98,7 +98,7 @@ class SurfaceRenderer:
         self._lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
 
     def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
-        """Draws the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform."""
+        """Draw the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform."""
         wp.launch(
             find_covered,
             self.shape[0],
@@ -144,7 +144,7 @@ class SurfaceRenderer:
         )
 
     def _expose(self, poses: wp.array, drawn: wp.array) -> None:
-        """Finds the gain of every world."""
+        """Find the gain of every world."""
         num_envs, height, width = self.shape
         cfg = self.optics.exposure
         low, high = cfg.gain_range if cfg.automatic else (cfg.gain, cfg.gain)
@@ -165,7 +165,7 @@ class SurfaceRenderer:
 
 
 def _surface_view(surface: SkinnedSurface, visual: VisualMesh, textures: MucosaTextures) -> SurfaceView:
-    """Packs what the kernel needs of the surface."""
+    """Pack what the kernel needs of the surface."""
     density = texel_density(visual, textures.width, textures.height)
     attributes = np.column_stack([visual.uv, visual.tint, density]).astype(np.float32)
     view = SurfaceView()
@@ -178,7 +178,7 @@ def _surface_view(surface: SkinnedSurface, visual: VisualMesh, textures: MucosaT
 
 
 def _lighting(optics: Optics, angle: float) -> Lighting:
-    """Packs the lighting configuration; `angle` is what one sample spans [rad]."""
+    """Pack the lighting configuration; `angle` is what one sample spans [rad]."""
     cfg, lights = optics.lighting, optics.lights
     lighting = Lighting()
     lighting.left = wp.vec3(*map(float, lights[0]))

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""How finely a texture lies on a mesh."""
+"""Density of a texture on a mesh."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def texel_density(visual: VisualMesh, width: int, height: int) -> np.ndarray:
-    """Returns the texels per metre at every vertex along the texture's denser axis, shape (M,), float64.
+    """Return the texels per metre at every vertex along the texture's denser axis, shape (M,), float64.
 
     The renderer picks the level of the texture pyramid by it. It is taken at rest, as the mean over the triangles
     around a vertex, so that levels change smoothly over the surface.
@@ -30,7 +30,7 @@ def texel_density(visual: VisualMesh, width: int, height: int) -> np.ndarray:
 
 
 def _vertex_mean(visual: VisualMesh, value: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Returns the weighted mean over the triangles around each vertex of a value per triangle."""
+    """Return the weighted mean over the triangles around each vertex of a value per triangle."""
     total, weights = np.zeros(len(visual.points)), np.zeros(len(visual.points))
     for k in range(3):
         np.add.at(total, visual.faces[:, k], value * weight)

@@ -10,26 +10,26 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.func
 def segment_parameter(p: wp.vec3, a: wp.vec3, b: wp.vec3) -> float:
-    """Parameter in [0, 1] of the point of segment ``ab`` closest to ``p``."""
+    """Return the parameter in [0, 1] of the point of segment ``ab`` closest to ``p``."""
     d = b - a
     return wp.clamp(wp.dot(p - a, d) / wp.max(wp.dot(d, d), 1.0e-12), 0.0, 1.0)
 
 
 @wp.func
 def triangle_point(a: wp.vec3, b: wp.vec3, c: wp.vec3, u: wp.vec3) -> wp.vec3:
-    """Point of triangle ``abc`` with barycentric coordinates ``u``."""
+    """Return the point of triangle ``abc`` with barycentric coordinates ``u``."""
     return u[0] * a + u[1] * b + u[2] * c
 
 
 @wp.func
 def corner_point(x: wp.array2d[wp.vec3], face: wp.vec3i, u: wp.vec3, w: int) -> wp.vec3:
-    """Point of world ``w``'s triangle ``face`` with barycentric coordinates ``u``; ``x`` has shape (V, W)."""
+    """Return the point of world ``w``'s triangle ``face`` at barycentric coordinates ``u``; ``x`` has shape (V, W)."""
     return triangle_point(x[face[0], w], x[face[1], w], x[face[2], w], u)
 
 
 @wp.func
 def closest_on_triangle(a: wp.vec3, b: wp.vec3, c: wp.vec3, p: wp.vec3) -> wp.vec3:
-    """Barycentric coordinates of the point of triangle ``abc`` closest to ``p``."""
+    """Return the barycentric coordinates of the point of triangle ``abc`` closest to ``p``."""
     ab = b - a
     ac = c - a
     d1 = wp.dot(ab, p - a)
@@ -62,7 +62,7 @@ def closest_on_triangle(a: wp.vec3, b: wp.vec3, c: wp.vec3, p: wp.vec3) -> wp.ve
 
 @wp.func
 def segment_segment(p1: wp.vec3, q1: wp.vec3, p2: wp.vec3, q2: wp.vec3) -> wp.vec2:
-    """Parameters (on ``p1 q1``, on ``p2 q2``) of the closest points of two segments."""
+    """Return the parameters (on ``p1 q1``, on ``p2 q2``) of the closest points of two segments."""
     d1 = q1 - p1
     d2 = q2 - p2
     r = p1 - p2
@@ -87,7 +87,7 @@ def segment_segment(p1: wp.vec3, q1: wp.vec3, p2: wp.vec3, q2: wp.vec3) -> wp.ve
 
 @wp.func
 def segment_triangle(p: wp.vec3, q: wp.vec3, a: wp.vec3, b: wp.vec3, c: wp.vec3) -> wp.vec4:
-    """Closest point of triangle ``abc`` to segment ``pq`` as (barycentric coordinates, distance [m]).
+    """Return the closest point of triangle ``abc`` to segment ``pq`` as (barycentric coordinates, distance [m]).
 
     The candidates are both ends of the segment against the face and the segment against the three edges. A segment
     that pierces the face is at distance zero from none of them; the contact's sign then comes from the wall's normal.
@@ -119,7 +119,7 @@ def segment_triangle(p: wp.vec3, q: wp.vec3, a: wp.vec3, b: wp.vec3, c: wp.vec3)
 
 @wp.func
 def blended(mean: wp.vec4, u: wp.vec3, distance: float, nearest: float, blur: float) -> wp.vec4:
-    """Running sum of barycentric coordinates and of their weights exp(-(distance - nearest) / blur)."""
+    """Return the running sum of barycentric coordinates and of their weights exp(-(distance - nearest) / blur)."""
     weight = wp.exp((nearest - distance) / blur)
     return mean + weight * wp.vec4(u[0], u[1], u[2], 1.0)
 
@@ -128,7 +128,7 @@ def blended(mean: wp.vec4, u: wp.vec3, distance: float, nearest: float, blur: fl
 def segment_triangle_mean(
     p: wp.vec3, q: wp.vec3, a: wp.vec3, b: wp.vec3, c: wp.vec3, nearest: float, blur: float
 ) -> wp.vec3:
-    """Barycentric coordinates of where triangle ``abc`` is close to segment ``pq``, whose distance is ``nearest`` [m].
+    """Return barycentric coordinates of triangle ``abc`` close to segment ``pq``, whose distance is ``nearest`` [m].
 
     The mean of the candidates of :func:`segment_triangle` by their nearness: unlike the closest point itself, it does
     not jump from edge to edge of a triangle that is parallel to the segment. ``blur`` [m] is how much farther a

@@ -22,12 +22,12 @@ from arcgym.sim.wall.wall_topology import LumenTopology, lumen_topology
 
 
 def empty_builder() -> newton.ModelBuilder:
-    """Builder without gravity."""
+    """Return a builder without gravity."""
     return newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
 
 
 def scope_model(endoscope: Endoscope, mass_scaling: float, num_envs: int, device: str) -> newton.Model:
-    """Model of the scopes of all worlds."""
+    """Build the model of the scopes of all worlds."""
     world, builder = empty_builder(), empty_builder()
     endoscope.add_to(world, mass_scaling)
     builder.replicate(world, num_envs)
@@ -35,7 +35,7 @@ def scope_model(endoscope: Endoscope, mass_scaling: float, num_envs: int, device
 
 
 def wall_parameters(colon: Colon) -> WallParameters:
-    """The wall as Newton imports and colours it, in numpy."""
+    """Return the wall as Newton imports and colours it, in numpy."""
     builder = empty_builder()
     colon.add_to(builder)
     shell = isinstance(colon.wall, ShellMesh)
@@ -70,12 +70,12 @@ def _shell(shell: ShellMesh) -> ShellParameters:
 
 
 def wall_modes(wall: WallParameters) -> RingModes:
-    """Ring modes of the wall."""
+    """Return the ring modes of the wall."""
     return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness, wall.elements.parts)
 
 
 def wall_lumen(colon: Colon) -> LumenTopology:
-    """Faces of the wall that the scope touches, sorted along the centreline."""
+    """Return the faces of the wall that the scope touches, sorted along the centreline."""
     wall = colon.wall
     faces = wall.triangles if isinstance(wall, ShellMesh) else inner_faces(wall.tets, wall.layer)
     return lumen_topology(wall.points, faces, wall.ring, wall.layer)

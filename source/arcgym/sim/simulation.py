@@ -26,6 +26,7 @@ from arcgym.sim.snapshot import Snapshot, SnapshotSet
 from arcgym.sim.snapshot_library import SnapshotLibrary
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
+from arcgym.utils.configclass import validate
 
 logger = logging.getLogger(__name__)
 
@@ -54,8 +55,9 @@ class Simulation:
 
         Raises:
             StageError: If Newton's importer drops something of a stage.
-            ValueError: If ``num_envs`` is not positive.
+            ValueError: If ``num_envs`` is not positive or a setting is out of its bounds.
         """
+        validate(cfg, "sim")
         if num_envs < 1:
             raise ValueError(f"num_envs is {num_envs}; at least one world is needed.")
         self.cfg, self.colon, self.endoscope, self.num_envs = cfg, colon, endoscope, num_envs

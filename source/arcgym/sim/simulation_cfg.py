@@ -4,9 +4,19 @@
 
 from __future__ import annotations
 
+import re
 from typing import Literal
 
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import (
+    FINITE,
+    FieldError,
+    Range,
+    require,
+    require_at_least,
+    require_non_negative,
+    require_positive,
+)
 
 
 @configclass
@@ -49,6 +59,20 @@ class ContactCfg:
     link_capacity: int = 64
     """Contacts kept for any one link."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_positive(self, "stiffness", unit="N/m")
+        require_positive(self, "hardening", "search_gap", unit="m")
+        require_positive(self, "slip_velocity", unit="m/s")
+        require_non_negative(self, "damping", unit="N s/m")
+        require_non_negative(self, "friction")
+        require_non_negative(self, "wall_radius", unit="m")
+        require_at_least(self, 1, "search_reach", "capacity")
+
 
 @configclass
 class WallSolverCfg:
@@ -73,6 +97,17 @@ class WallSolverCfg:
     self_contact_stiffness: float = 2000.0
     """Penalty stiffness between two rings that touch [N/m]: at 1 N they overlap by 0.5 mm. Beyond 5 mm, 10 N, the push
     no longer grows: loops that are pressed together harder pass through each other."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_at_least(self, 1, "iterations", "repeats")
+        require_non_negative(self, "drag", unit="1/s")
+        require_positive(self, "largest_move", unit="m")
+        require_positive(self, "self_contact_stiffness", unit="N/m")
 
 
 @configclass
@@ -107,17 +142,15 @@ class SimulationCfg:
     """Capture the physics step in a graph and replay it: 2.3 times faster with one world on a CPU core. Switch it off
     to step through kernels in a debugger."""
 
-    def __post_init__(self) -> None:
-        """Refuse settings that no solver can run.
+    def validate_config(self) -> None:
+        """Check bounds.
 
         Raises:
-            ValueError: If a value is out of its range.
+            ValueError: If a value is out of its bounds.
         """
-        if self.solver not in ("two_level", "newton"):
-            raise ValueError(f"SimulationCfg.solver is {self.solver!r}; choose 'two_level' or 'newton'.")
-        if self.scope_substeps < 1:
-            raise ValueError(f"SimulationCfg.scope_substeps is {self.scope_substeps}; it must be at least 1.")
-        if not 0.0 < self.dt <= 1.0 / 60.0:
-            raise ValueError(f"SimulationCfg.dt is {self.dt} s; it must be positive and at most 1/60 s.")
-        if self.mass_scaling <= 0.0:
-            raise ValueError(f"SimulationCfg.mass_scaling is {self.mass_scaling}; it must be positive.")
+        require(self, "dt", Range(0.0, 1.0 / 60.0, above=True), unit="s")
+        require(self, "gravity", FINITE, unit="m/s^2")
+        require_at_least(self, 1, "scope_substeps", "scope_iterations", "newton_iterations")
+        require_positive(self, "mass_scaling")
+        if not re.fullmatch(r"cpu|cuda(:\d+)?", self.device):
+            raise FieldError(self, "device", f"is {self.device!r}, expected 'cpu', 'cuda' or 'cuda:<number>'.")

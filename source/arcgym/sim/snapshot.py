@@ -1,23 +1,20 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Complete states of one world, in memory and in a small file beside the colon's stage."""
+"""Complete states of one world, in memory and in a small file."""
 
 from __future__ import annotations
 
 import hashlib
+import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from arcgym.assets import Colon, Endoscope
     from arcgym.sim.simulation import Simulation
-
-DEFAULT_MATERIAL = "paper"
-"""Tissue preset that snapshots are made in unless their file names another one."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +30,7 @@ class Snapshot:
         return Snapshot({name: array[env_id].cpu().numpy().copy() for name, array in sim.world_arrays().items()})
 
     def at_rest(self) -> Snapshot:
-        """The same place with all velocities zero."""
+        """Return the same place with all velocities zero."""
         still = {"joint_qd", "nodal_vel"}
         return Snapshot({name: np.zeros_like(a) if name in still else a for name, a in self.arrays.items()})
 
@@ -48,6 +45,8 @@ class SnapshotSet:
     """The states."""
     fingerprint: str
     """Identifies wall mesh and scope, see :func:`fingerprint`."""
+    about: dict[str, Any] = field(default_factory=dict)
+    """Notes of the file on the states: plain values, such as how far a drive came."""
 
     def index(self, name: str) -> int:
         """Place of a state in the set.
@@ -64,9 +63,13 @@ class SnapshotSet:
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         stacked: dict[str, Any] = {k: np.stack([s.arrays[k] for s in self.snapshots]) for k in self.snapshots[0].arrays}
-        partial = path.with_suffix(".partial.npz")
-        np.savez_compressed(partial, names=np.array(self.names), fingerprint=np.array(self.fingerprint), **stacked)
-        os.replace(partial, path)
+        partial = path.with_name(f".{path.stem}.{os.getpid()}.partial.npz")
+        stacked |= {"names": self.names, "fingerprint": self.fingerprint, "about": json.dumps(self.about)}
+        try:
+            np.savez_compressed(partial, **stacked)
+            os.replace(partial, path)
+        finally:
+            partial.unlink(missing_ok=True)
 
     @staticmethod
     def load(path: str | Path) -> SnapshotSet:
@@ -77,13 +80,15 @@ class SnapshotSet:
         """
         path = Path(path)
         if not path.is_file():
-            raise FileNotFoundError(f"No snapshots at {path}. Make them with scripts/tools/make_snapshots.py.")
+            raise FileNotFoundError(f"No start states at {path}. Make them with 'arcgym snapshots --task NAME'.")
         with np.load(path) as data:
             names = tuple(str(name) for name in data["names"])
-            keys = [k for k in data.files if k not in ("names", "fingerprint")]
+            keys = [k for k in data.files if k not in ("names", "fingerprint", "about")]
             stacked = {k: data[k] for k in keys}
             mark = str(data["fingerprint"])
-        return SnapshotSet(names, tuple(Snapshot({k: stacked[k][i] for k in keys}) for i in range(len(names))), mark)
+            about = json.loads(str(data["about"])) if "about" in data.files else {}
+        states = tuple(Snapshot({k: stacked[k][i] for k in keys}) for i in range(len(names)))
+        return SnapshotSet(names, states, mark, about)
 
     def check(self, sim: Simulation) -> None:
         """Compare with a simulation.
@@ -91,35 +96,26 @@ class SnapshotSet:
         Raises:
             ValueError: If the states are of another wall mesh or scope.
         """
+        problem = self.mismatch(sim)
+        if problem:
+            raise ValueError(
+                f"These start states do not fit {sim.colon.path} with {sim.endoscope.path}: {problem}. "
+                "Make new ones with 'arcgym snapshots --task NAME'."
+            )
+
+    def mismatch(self, sim: Simulation) -> str:
+        """Return what keeps the states from fitting a simulation; empty if they fit."""
         expected = fingerprint(sim)
         if self.fingerprint != expected:
-            raise ValueError(
-                f"The snapshots are of another wall mesh or endoscope than {sim.colon.path} with {sim.endoscope.path} "
-                f"(fingerprint {self.fingerprint}, expected {expected}). "
-                f"Make them with scripts/tools/make_snapshots.py --colon {sim.colon.path} "
-                f"--material {sim.colon.cfg.material} --endoscope {sim.endoscope.path.stem}."
-            )
+            return f"another wall mesh or endoscope (fingerprint {self.fingerprint}, expected {expected})"
+        missing = set(sim.world_arrays()) ^ set(self.snapshots[0].arrays)
+        return f"other actuators (differing in {', '.join(sorted(missing))})" if missing else ""
 
 
 def fingerprint(sim: Simulation) -> str:
-    """Short hash of what a state depends on: the wall's rest points and rings, the scope's links and joints."""
+    """Return a short hash of the wall's rest points and rings and of the scope's links and joints."""
     wall, scope = sim.colon.wall, sim.endoscope.stage
     digest = hashlib.sha256(" ".join(sim.endoscope.joint_names).encode())
     for array in (wall.points, wall.ring, scope.link_length, scope.link_radius):
         digest.update(np.ascontiguousarray(array).tobytes())
     return digest.hexdigest()[:16]
-
-
-def snapshot_path(colon_path: Path, endoscope_path: Path, material: str = DEFAULT_MATERIAL) -> Path:
-    """Where the snapshots of a colon and an endoscope lie, beside the colon's stage.
-
-    ``snapshots/<endoscope>.npz``, or ``snapshots/<endoscope>_<material>.npz`` in another tissue than the default.
-    """
-    suffix = "" if material == DEFAULT_MATERIAL else f"_{material}"
-    return colon_path.parent / "snapshots" / f"{endoscope_path.stem}{suffix}.npz"
-
-
-def find_snapshots(colon: Colon, endoscope: Endoscope) -> Path:
-    """Path of the snapshots made in the colon's tissue, else of those made in the default one, which may not fit."""
-    own = snapshot_path(colon.path, endoscope.path, colon.cfg.material)
-    return own if own.is_file() else snapshot_path(colon.path, endoscope.path)

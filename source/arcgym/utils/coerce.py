@@ -20,17 +20,17 @@ _SLICE = re.compile(r"slice\((None|-?\d+), (None|-?\d+), (None|-?\d+)\)")
 
 
 def is_config(value: Any) -> bool:
-    """Whether a value is an instance of a configuration class."""
+    """Return whether a value is an instance of a configuration class."""
     return dataclasses.is_dataclass(value) and not isinstance(value, type)
 
 
 def is_missing(value: Any) -> bool:
-    """Whether a value is the mark of a field not yet set, or a pickled copy of it."""
+    """Return whether a value is the mark of a field not yet set, or a pickled copy of it."""
     return isinstance(value, type(dataclasses.MISSING))
 
 
 def field_types(cls: type) -> dict[str, Any]:
-    """Returns the declared type of every field; ``Any`` where a name is imported for type checkers only.
+    """Return the declared type of every field; ``Any`` where a name is imported for type checkers only.
 
     Unlike :func:`typing.get_type_hints` it resolves names of classes nested in the class that uses them.
     """
@@ -43,7 +43,7 @@ def field_types(cls: type) -> dict[str, Any]:
 
 
 def to_plain(value: Any) -> Any:
-    """Turns a value into dicts, lists, strings and numbers."""
+    """Turn a value into dicts, lists, strings and numbers."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if is_config(value):
@@ -62,7 +62,7 @@ def to_plain(value: Any) -> Any:
 
 
 def from_dict(cfg: Any, data: dict[str, Any], path: str = "") -> None:
-    """Writes the values of nested dicts into ``cfg``, in place.
+    """Write the values of nested dicts into ``cfg``, in place.
 
     Args:
         cfg: Configuration to change.
@@ -86,10 +86,10 @@ def from_dict(cfg: Any, data: dict[str, Any], path: str = "") -> None:
 
 
 def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
-    """Fits a plain value, from a command line or a file, to a field.
+    """Fit a plain value, from a command line or a file, to a field.
 
     Integers pass for floats, lists for tuples, dicts for configurations, ``"module:name"`` for callables, names for
-    members of an enumeration; nothing else is converted.
+    members of an enumeration and for presets of a configuration with ``from_name``; nothing else is converted.
 
     Args:
         value: What was given.
@@ -114,7 +114,7 @@ def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
     if origin in (Union, types.UnionType):
         return _coerce_union(value, expected, current, path)
     if origin is Literal:
-        return _check(value in get_args(expected), value, value, expected, path)
+        return _coerce_literal(value, expected, path)
     kind = origin or expected
     if kind in (Callable, type):
         return _coerce_callable(value, expected, path)
@@ -128,7 +128,36 @@ def coerce(value: Any, expected: Any, current: Any, path: str) -> Any:
         return _coerce_mapping(value, expected, current, path)
     if dataclasses.is_dataclass(kind) and isinstance(value, dict):
         return _build_config(value, kind, current, path)
+    if isinstance(value, str) and hasattr(kind, "from_name"):
+        return _named_config(value, kind, path)
     return _coerce_scalar(value, kind, expected, path)
+
+
+def check_declared(cfg: Any, path: str = "") -> None:
+    """Check that numbers, texts and ``Literal`` names in the fields of a configuration have their declared types.
+
+    Args:
+        cfg: Configuration; fields of other types, nested configurations among them, are left out.
+        path: Where it sits in a larger configuration, for messages.
+
+    Raises:
+        TypeError: With the field, the expected type and what was given.
+    """
+    hints = field_types(type(cfg))
+    for name, value in vars(cfg).items():
+        expected = hints.get(name, Any)
+        if _is_plain(expected):
+            coerce(value, expected, value, f"{path}.{name}" if path else name)
+
+
+def _is_plain(expected: Any) -> bool:
+    """Return whether a type is made of numbers, texts and names alone."""
+    origin = get_origin(expected)
+    if origin is Literal:
+        return True
+    if origin in (Union, types.UnionType, tuple, list, dict):
+        return all(_is_plain(part) for part in get_args(expected))
+    return expected in (bool, int, float, str, None, type(None), Ellipsis)
 
 
 def _evaluate(annotation: Any, module: dict[str, Any], scope: dict[str, Any]) -> Any:
@@ -141,7 +170,7 @@ def _evaluate(annotation: Any, module: dict[str, Any], scope: dict[str, Any]) ->
 
 
 def _may_be_none(expected: Any) -> bool:
-    """Whether a type is optional, or a configuration that declares ``can_be_none``."""
+    """Return whether a type is optional, or a configuration that declares ``can_be_none``."""
     return type(None) in (expected, *get_args(expected)) or getattr(expected, "can_be_none", False)
 
 
@@ -152,6 +181,21 @@ def _coerce_union(value: Any, expected: Any, current: Any, path: str) -> Any:
         except TypeError:
             continue
     raise _mismatch(value, expected, path)
+
+
+def _coerce_literal(value: Any, expected: Any, path: str) -> Any:
+    names = get_args(expected)
+    if value in names and type(value) in (type(name) for name in names):
+        return value
+    hint = f" {did_you_mean(value, map(str, names))}" if isinstance(value, str) else ""
+    raise TypeError(f"{_mismatch(value, expected, path)}{hint}")
+
+
+def _named_config(value: str, kind: Any, path: str) -> Any:
+    try:
+        return kind.from_name(value)
+    except ValueError as error:
+        raise ValueError(f"'{path}': {error}") from error
 
 
 def _coerce_callable(value: Any, expected: Any, path: str) -> Any:

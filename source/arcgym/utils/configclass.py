@@ -17,14 +17,16 @@ from __future__ import annotations
 import copy as copy_module
 import dataclasses
 import functools
+import math
 import reprlib
 import textwrap
 import types
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar, dataclass_transform
 
-from arcgym.utils.coerce import field_types, from_dict, is_config, is_missing, to_plain
+from arcgym.utils.coerce import check_declared, field_types, from_dict, is_config, is_missing, to_plain
 from arcgym.utils.string import did_you_mean
+from arcgym.utils.validation import FieldError
 
 __all__ = ["MISSING", "configclass", "copy", "from_dict", "is_config", "replace", "to_dict", "validate"]
 
@@ -42,7 +44,7 @@ _ATOMIC = (type(None), bool, int, float, complex, str, bytes, type, types.Functi
 
 @dataclass_transform(field_specifiers=(dataclasses.field,))
 def configclass(cls: type[T]) -> type[T]:
-    """Turns a class into a configuration class; see the module's docstring."""
+    """Turn a class into a configuration class; see the module's docstring."""
     cls.__annotations__ = _complete_annotations(cls)
     for name, annotation in cls.__annotations__.items():
         if not _is_class_variable(annotation):
@@ -66,12 +68,12 @@ def configclass(cls: type[T]) -> type[T]:
 
 
 def copy(cfg: T) -> T:
-    """Returns a deep copy; ``__post_init__`` does not run again."""
+    """Return a deep copy; ``__post_init__`` does not run again."""
     return copy_module.deepcopy(cfg)
 
 
 def replace(cfg: T, **changes: Any) -> T:
-    """Returns a copy with some fields changed; ``__post_init__`` does not run again, so the changes stand.
+    """Return a copy with some fields changed; ``__post_init__`` does not run again, so the changes stand.
 
     Raises:
         ValueError: If a name is not a field.
@@ -85,30 +87,57 @@ def replace(cfg: T, **changes: Any) -> T:
 
 
 def to_dict(cfg: Any) -> dict[str, Any]:
-    """Returns nested dicts of plain values, fit for YAML: callables become ``"module:name"``, tuples lists."""
+    """Return nested dicts of plain values, fit for YAML: callables become ``"module:name"``, tuples lists."""
     return to_plain(cfg)
 
 
-def validate(cfg: Any) -> None:
-    """Checks a configuration and everything inside it.
+def validate(cfg: Any, name: str = "") -> None:
+    """Check a configuration and everything inside it, before anything is built from it.
 
-    A nested configuration may define ``validate_config(self)`` for checks of its own; it runs once nothing is missing.
+    Nothing may be missing, numbers must not be NaN and must have the type of their field, and texts of ``Literal``
+    fields be among its names. Then the ``validate_config(self)`` of every nested configuration that has one runs; see
+    :mod:`arcgym.utils.validation` for bounds. ``__post_init__`` checks nothing: overrides are written after it.
+
+    Args:
+        cfg: Configuration.
+        name: Where it sits, as on the command line, such as ``env``; the first word of every path in messages.
 
     Raises:
-        ValueError: If fields are missing, naming every path.
+        ValueError: The first value that cannot be used, with its path, or all missing paths.
+        TypeError: If a number or name has another type than its field.
     """
-    entries = list(_walk(cfg, ""))
+    entries = list(_walk(cfg, name))
     missing = [path for path, value in entries if is_missing(value)]
     if missing:
         raise ValueError(f"{type(cfg).__name__} has fields without a value: {', '.join(missing)}.")
-    for _, value in entries:
-        check = getattr(value, "validate_config", None) if is_config(value) else None
+    for path, value in entries:
+        if isinstance(value, float) and math.isnan(value):
+            raise ValueError(f"{path} is nan, expected a number.")
+    nested = [(path, value) for path, value in entries if is_config(value)]
+    for path, value in nested:
+        check_declared(value, path)
+    for path, value in reversed(nested):  # the inner ones first: cross-checks may rely on them
+        check = getattr(value, "validate_config", None)
         if check is not None:
-            check()
+            _run_check(check, path, is_root=path == name)
+
+
+def _run_check(check: Callable[[], None], path: str, is_root: bool) -> None:
+    """Call a configuration's own check and put its path before what it raises."""
+    try:
+        check()
+    except FieldError as error:
+        raise ValueError(f"{_joined(path, error.field)} {error.text}") from error
+    except ValueError as error:
+        raise ValueError(str(error) if is_root else f"{path}: {error}") from error
+
+
+def _joined(path: str, name: object) -> str:
+    return f"{path}.{name}" if path else str(name)
 
 
 def _complete_annotations(cls: type) -> dict[str, Any]:
-    """Annotations of the class's own members: the written ones, then those of members without, in their order."""
+    """Return annotations of the class's own members: the written ones, then those of the others, in order."""
     written = dict(cls.__dict__.get("__annotations__", {}))
     inherited = _inherited_annotations(cls)
     for name, value in cls.__dict__.items():
@@ -122,7 +151,7 @@ def _complete_annotations(cls: type) -> dict[str, Any]:
 
 
 def _inherited_annotations(cls: type) -> dict[str, Any]:
-    """Field name to type over all bases, resolved where each was written."""
+    """Return field name to type over all bases, resolved where each was written."""
     found: dict[str, Any] = {}
     for base in reversed(cls.__mro__[1:]):
         if dataclasses.is_dataclass(base):
@@ -136,7 +165,7 @@ def _is_class_variable(annotation: Any) -> bool:
 
 
 def _as_field(value: Any) -> Any:
-    """Default of a dataclass field: shared when it cannot change, copied for each instance otherwise."""
+    """Return the default of a dataclass field: shared when it cannot change, copied for each instance otherwise."""
     if isinstance(value, dataclasses.Field) or isinstance(value, _ATOMIC):
         return value
     if is_missing(value):
@@ -145,7 +174,7 @@ def _as_field(value: Any) -> Any:
 
 
 def _deepcopy(self: Any, memo: dict[int, Any]) -> Any:
-    """Copies attribute by attribute and keeps :data:`MISSING` the object it is."""
+    """Copy attribute by attribute and keep :data:`MISSING` the object it is."""
     memo[id(MISSING)] = MISSING
     new = object.__new__(type(self))
     memo[id(self)] = new
@@ -163,11 +192,11 @@ def _short_repr(self: Any) -> str:
 
 
 def _no_post_init(self: Any) -> None:
-    """Lets subclasses call ``super().__post_init__()``."""
+    """Let subclasses call ``super().__post_init__()``."""
 
 
 def _walk(value: Any, path: str) -> Iterator[tuple[str, Any]]:
-    """Yields path and value of ``value`` and of everything nested in configurations, dicts and sequences."""
+    """Yield path and value of ``value`` and of everything nested in configurations, dicts and sequences."""
     yield path, value
     items: Any = ()
     if is_config(value):
@@ -177,4 +206,4 @@ def _walk(value: Any, path: str) -> Iterator[tuple[str, Any]]:
     elif isinstance(value, (list, tuple)):
         items = enumerate(value)
     for name, child in items:
-        yield from _walk(child, f"{path}.{name}" if path else str(name))
+        yield from _walk(child, _joined(path, name))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def apply_overrides(cfgs: dict[str, Any], overrides: Sequence[str]) -> None:
-    """Writes overrides into configurations, in place.
+    """Write overrides into configurations, in place.
 
     Args:
         cfgs: Configurations by the first word of the path, e.g. ``{"env": env_cfg, "agent": agent_cfg}``.
@@ -58,7 +58,7 @@ def _apply(cfgs: dict[str, Any], override: Override, text: str) -> None:
 
 
 def _child(node: Any, name: str, path: str) -> Any:
-    """Returns what ``name`` holds inside ``node``, which sits at ``path``."""
+    """Return what ``name`` holds inside ``node``, which sits at ``path``."""
     names = _names(node, path)
     if name not in names:
         owner = f"'{path}'" if path else "The command"
@@ -71,7 +71,7 @@ def _child(node: Any, name: str, path: str) -> Any:
 def _assign(node: Any, name: str, value: Any, path: str, adds: bool) -> None:
     parent = path.rpartition(".")[0]
     if not parent:
-        raise ValueError(f"'{path}' is a whole configuration: name a field inside it. Available: {_listed(node[name])}")
+        raise ValueError(_without_parent(node, name))
     if adds and isinstance(node, dict) and name not in node:
         node[name] = value
         return
@@ -98,5 +98,12 @@ def _names(node: Any, path: str) -> list[str]:
     raise ValueError(f"'{path}' is the value {node!r}: it has no fields to override.")
 
 
-def _listed(node: Any) -> str:
-    return ", ".join(sorted(_names(node, ""))) + "."
+def _without_parent(cfgs: dict[str, Any], name: str) -> str:
+    """Return the message for an override of one word, which names a whole configuration or none."""
+    if name in cfgs:
+        fields = ", ".join(sorted(_names(cfgs[name], name)))
+        return f"'{name}' is a whole configuration: name a field inside it. Available: {fields}."
+    paths = [f"{owner}.{name}" for owner, cfg in cfgs.items() if name in _names(cfg, owner)]
+    if paths:
+        return f"The command has no field '{name}'. Did you mean {' or '.join(repr(path) for path in paths)}?"
+    return f"The command has no field '{name}': begin with {' or '.join(repr(f'{owner}.') for owner in cfgs)}."

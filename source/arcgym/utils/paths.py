@@ -6,8 +6,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
+CACHE_ENV = "ARCGYM_CACHE"
+"""Environment variable that names the cache folder; it wins over the user's."""
 ASSETS_ENV = "ARCGYM_ASSETS"
 """Environment variable that names the assets folder; it wins over the folders of the package and the checkout."""
 
@@ -31,6 +34,25 @@ def assets_dir() -> Path:
             return place
     tried = ", ".join(str(place) for place in places)
     raise FileNotFoundError(f"No assets folder. Tried: {tried}. Set {ASSETS_ENV} to the folder that has 'endoscopes/'.")
+
+
+def cache_dir() -> Path:
+    """Return the folder for what can be made again, which may not exist yet.
+
+    It is the one that ``ARCGYM_CACHE`` names, else ``arcgym`` in the user's cache folder: ``$XDG_CACHE_HOME`` or
+    ``~/.cache``, ``~/Library/Caches`` on macOS, ``%LOCALAPPDATA%`` on Windows.
+    """
+    named = os.environ.get(CACHE_ENV)
+    if named:
+        return Path(named).expanduser()
+    home = Path.home()
+    if sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    elif sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "arcgym"
 
 
 def resolve_asset(path: str | Path) -> Path:

@@ -39,7 +39,7 @@ _loaded: set[str] = set()
 def register_task(
     task: str, *, env_cfg_entry_point: str, entry_point: str = "arcgym.envs:ManagerBasedRLEnv", **cfg_entry_points: str
 ) -> None:
-    """Registers a task with Gymnasium.
+    """Register a task with Gymnasium.
 
     Args:
         task: Name, e.g. ``"ARC-Splenic-Proximal"``.
@@ -68,7 +68,7 @@ def register_task(
 
 
 def load_task_packages() -> None:
-    """Imports every package that registers tasks, each once.
+    """Import every package that registers tasks, each once.
 
     Raises:
         ImportError: If a package cannot be imported, with its name and where it was declared.
@@ -87,14 +87,14 @@ def load_task_packages() -> None:
 
 
 def list_tasks(prefix: str = "ARC-") -> list[str]:
-    """Returns the names of all registered tasks that start with ``prefix``, sorted; other packages choose their own."""
+    """Return the names of all registered tasks that start with ``prefix``, sorted; other packages choose their own."""
     load_task_packages()
     specs = gymnasium.registry.items()
     return sorted(name for name, spec in specs if name.startswith(prefix) and "env_cfg_entry_point" in spec.kwargs)
 
 
 def load_cfg_from_registry(task: str, key: str) -> Any:
-    """Returns a fresh configuration of a task.
+    """Return a fresh configuration of a task.
 
     Args:
         task: Registered name.
@@ -113,7 +113,7 @@ def load_cfg_from_registry(task: str, key: str) -> Any:
 
 
 def load_cfg(entry_point: Any) -> Any:
-    """Returns a fresh configuration.
+    """Return a fresh configuration.
 
     Args:
         entry_point: Text ``"module:Class"``, a class, or an instance to copy.

@@ -12,7 +12,7 @@ from typing import Any
 
 
 def did_you_mean(name: str, choices: Iterable[str]) -> str:
-    """Return a sentence that offers the closest of ``choices``, then list them all."""
+    """Return a sentence that offers the closest of ``choices``, then lists them all."""
     choices = sorted(choices)
     if not choices:
         return "Nothing is available here."

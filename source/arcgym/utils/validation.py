@@ -117,9 +117,11 @@ def require_ascending(cfg: Any, name: str, unit: str = "") -> None:
     """Check that a pair of numbers does not fall; None passes.
 
     Raises:
-        FieldError: If the first is above the second.
+        FieldError: If the first is above the second, or there are not two.
     """
     value = getattr(cfg, name)
+    if value is not None and len(value) != 2:
+        raise FieldError(cfg, name, f"is {value}, expected two numbers.")
     if value is not None and not value[0] <= value[1]:
         raise FieldError(cfg, name, f"is {_shown(tuple(value), unit)}, expected the smaller number first.")
 

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import torch
 
@@ -26,6 +27,22 @@ def fill_worlds(
         tensor.index_fill_(dim, env_ids, value)
     else:
         tensor[(slice(None),) * dim + (env_ids,)] = value
+
+
+def replace_worlds(old: dict[str, Any], new: dict[str, Any], env_ids: torch.Tensor) -> dict[str, Any]:
+    """Return a copy of named tensors, also of nested ones, in which some worlds have the values of others.
+
+    Args:
+        old: Values of the worlds that stay, each of shape (N, ...).
+        new: Values of the others, with the same names and shapes.
+        env_ids: World indices, int64, shape (n,).
+    """
+    return {
+        name: replace_worlds(value, new[name], env_ids)
+        if isinstance(value, dict)
+        else value.index_copy(0, env_ids, new[name][env_ids])
+        for name, value in old.items()
+    }
 
 
 def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:

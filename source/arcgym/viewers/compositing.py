@@ -18,7 +18,7 @@ _HAZE_SHARE = 0.10
 
 
 def compose(color: np.ndarray, depth: np.ndarray, far: float, depth_contrast: float) -> np.ndarray:
-    """Puts a traced picture on a light ground, with haze, shade between overlapping parts and a soft shadow.
+    """Put a traced picture on a light ground, with haze, shade between overlapping parts and a soft shadow.
 
     Args:
         color: Linear RGB, premultiplied, and opacity, shape (H, W, 4).
@@ -36,7 +36,7 @@ def compose(color: np.ndarray, depth: np.ndarray, far: float, depth_contrast: fl
 
 
 def _hazed(rgb: np.ndarray, alpha: np.ndarray, depth: np.ndarray, hit: np.ndarray) -> np.ndarray:
-    """Blends far parts into the ground."""
+    """Blend far parts into the ground."""
     if not hit.any():
         return rgb
     near, deep = np.percentile(depth[hit], [2, 98])
@@ -45,7 +45,7 @@ def _hazed(rgb: np.ndarray, alpha: np.ndarray, depth: np.ndarray, hit: np.ndarra
 
 
 def _depth_shade(depth: np.ndarray, hit: np.ndarray, contrast: float) -> np.ndarray:
-    """Darkens what lies behind its surroundings.
+    """Darken what lies behind its surroundings.
 
     Unsharp masking of the depth buffer (Luft, Colditz and Deussen, SIGGRAPH 2006).
     """
@@ -59,7 +59,7 @@ def _depth_shade(depth: np.ndarray, hit: np.ndarray, contrast: float) -> np.ndar
 
 
 def _shadow(alpha: np.ndarray) -> np.ndarray:
-    """Returns the factor of the ground's brightness under a soft shadow, shape (H, W, 3)."""
+    """Return the factor of the ground's brightness under a soft shadow, shape (H, W, 3)."""
     height = alpha.shape[0]
     cast = shift(alpha, (0.030 * height, 0.022 * height), order=0, mode="nearest", prefilter=False)
     share = 0.55 * gaussian_filter(cast, 0.020 * height)[..., None]

@@ -26,21 +26,21 @@ DIM_INK: Color = (140, 151, 168)
 
 @lru_cache(maxsize=16)
 def font(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    """Returns Pillow's own scalable font at a size [px]."""
+    """Return Pillow's own scalable font at a size [px]."""
     return ImageFont.load_default(size=size)
 
 
 def text_width(draw: ImageDraw.ImageDraw, text: str, size: int) -> float:
-    """Returns the width of one line of text [px]."""
+    """Return the width of one line of text [px]."""
     return draw.textlength(text, font=font(size))
 
 
 def first_fitting(draw: ImageDraw.ImageDraw, texts: Sequence[str], width: float, size: int) -> str:
-    """Returns the first of `texts` that is no wider than `width` [px], or the empty string."""
+    """Return the first of `texts` that is no wider than `width` [px], or the empty string."""
     return next((text for text in texts if text_width(draw, text, size) <= width), "")
 
 
 def mix(color: Color, other: Color, share: float) -> Color:
-    """Returns `color` with `share` (0..1) of `other` mixed in."""
+    """Return `color` with `share` (0..1) of `other` mixed in."""
     red, green, blue = (round(a * (1.0 - share) + b * share) for a, b in zip(color, other, strict=True))
     return red, green, blue

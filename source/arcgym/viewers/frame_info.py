@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a video frame says about its environment."""
+"""Numbers that a video frame shows about its environment."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ _BAR = (9, 84)
 def draw_legends(
     draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: ViewCamera, wall: WallScale, tiers: Tiers | None
 ) -> None:
-    """Draws all legends into the picture's corners, where the colon is not.
+    """Draw all legends into the picture's corners, where the colon is not.
 
     Args:
         draw: Where to draw.
@@ -69,12 +69,12 @@ def _draw_scale_bar(draw: ImageDraw.ImageDraw, right: float, y: float, camera: V
 
 
 def _focus(camera: ViewCamera) -> float:
-    """Returns the distance at which the picture is scaled right: to the vertical line through the anus [m]."""
+    """Return the distance at which the picture is scaled right: to the vertical line through the anus [m]."""
     return float(-camera.eye @ camera.forward)
 
 
 def _draw_sides(draw: ImageDraw.ImageDraw, origin: tuple[int, int], camera: ViewCamera) -> None:
-    """Writes which side of the patient is left and right in the picture, for views from the front or the back."""
+    """Write which side of the patient is left and right in the picture, for views from the front or the back."""
     if abs(camera.right[0]) < 0.5:
         return
     sides = ("patient right", "patient left")

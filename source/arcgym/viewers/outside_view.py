@@ -24,7 +24,7 @@ _FILL_LIGHT = np.array([0.9, 0.1, 0.6])
 
 
 class WallSurface(Protocol):
-    """What is needed of :class:`arcgym.sensors.SkinnedSurface`; it holds one world."""
+    """Part of :class:`arcgym.sensors.SkinnedSurface` that is drawn, of one world."""
 
     points: wp.array
     """Vertices [m], shape (M,), vec3."""
@@ -52,7 +52,7 @@ class OutsideView:
         bending_links: int = 0,
         tiers: Tiers = FORCE_TIERS,
     ) -> None:
-        """Places the camera and allocates what every frame needs.
+        """Place the camera and allocate what every frame needs.
 
         Args:
             cfg: Camera and look.
@@ -95,7 +95,7 @@ class OutsideView:
         link_force: np.ndarray,
         wall_values: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Draws the surface as it is now, and the scope.
+        """Draw the surface as it is now, and the scope.
 
         Args:
             link_pos: Middle of each link [m], shape (L, 3).
@@ -131,7 +131,7 @@ class OutsideView:
         )
 
     def _add_scope(self) -> None:
-        """Builds the scope's mesh around a straight scope: its ray tree then follows the shaft, however it bends."""
+        """Build the scope's mesh around a straight scope: its ray tree then follows the shaft, however it bends."""
         straight = np.zeros((len(self._link_length), 3))
         straight[:, 2] = np.cumsum(self._link_length) - 0.5 * self._link_length
         vertices, normals = self._tube.sweep(straight, np.tile([0.0, 0.0, 0.0, 1.0], (len(straight), 1)))

@@ -43,7 +43,7 @@ class ViewParams:
 
 @wp.struct
 class ViewGeometry:
-    """What is drawn: the wall of one world and the scope."""
+    """Things drawn: the wall of one world and the scope."""
 
     wall: wp.uint64
     """Mesh of the wall."""
@@ -65,7 +65,7 @@ class ViewGeometry:
 
 @wp.struct
 class Sample:
-    """What one ray brings back."""
+    """Result of one ray."""
 
     color: wp.vec4
     """Linear RGB, premultiplied, and opacity."""
@@ -103,7 +103,7 @@ def scope_color(
     ray: wp.vec3,
     view: ViewParams,
 ):
-    """Shades the scope at a ray hit."""
+    """Shade the scope at a ray hit."""
     i = wp.mesh_get_index(geometry.scope, query.face * 3)
     j = wp.mesh_get_index(geometry.scope, query.face * 3 + 1)
     k = wp.mesh_get_index(geometry.scope, query.face * 3 + 2)
@@ -145,7 +145,7 @@ def trace(
     geometry: ViewGeometry,
     view: ViewParams,
 ):
-    """Follows the ray through picture position (x, y) [px] front to back until the scope or full opacity."""
+    """Follow the ray through picture position (x, y) [px] front to back until the scope or full opacity."""
     across = 2.0 * x / float(view.width) - 1.0
     down = 2.0 * y / float(view.height) - 1.0
     ray = wp.normalize(view.forward + view.right * across - view.up * down)
@@ -204,7 +204,7 @@ def trace_pixels(
     color: wp.array2d[wp.vec4],
     depth: wp.array2d[float],
 ):
-    """Traces one ray through the middle of every pixel."""
+    """Trace one ray through the middle of every pixel."""
     row, column = wp.tid()
     sample = trace(float(column) + 0.5, float(row) + 0.5, geometry, view)
     color[row, column] = sample.color
@@ -232,7 +232,7 @@ def refine_edges(
     color: wp.array2d[wp.vec4],
     refined: wp.array2d[wp.vec4],
 ):
-    """Copies flat pixels and averages four rotated-grid samples where neighbours differ by more than `threshold`."""
+    """Copy flat pixels and average four rotated-grid samples where neighbours differ by more than `threshold`."""
     row, column = wp.tid()
     if contrast(color, row, column) < threshold:
         refined[row, column] = color[row, column]

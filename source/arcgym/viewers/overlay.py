@@ -44,7 +44,7 @@ class Cell:
 
 
 def octagon(picture: np.ndarray, corner: float = 0.137, ground: Color = DARK) -> Image.Image:
-    """Cuts the corners off an endoscope picture, as video processors do.
+    """Cut the corners off an endoscope picture, as video processors do.
 
     Args:
         picture: uint8, shape (H, W, 3).
@@ -74,7 +74,7 @@ def draw_panel(
     forces: Sequence[float],
     tiers: Tiers = FORCE_TIERS,
 ) -> None:
-    """Draws segment bar, numbers and charts into a box.
+    """Draw segment bar, numbers and charts into a box.
 
     Args:
         draw: Where to draw.
@@ -98,7 +98,7 @@ def draw_panel(
 
 
 def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
-    """Returns what is shown as numbers, the most important first."""
+    """Return what is shown as numbers, the most important first."""
     tip, top = force_tier(info.tip_force, tiers), force_tier(info.max_force, tiers)
     shown = [
         Cell("time", f"{info.time:.1f} s", "000.0 s"),
@@ -113,7 +113,7 @@ def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
 
 
 def draw_cells(draw: ImageDraw.ImageDraw, box: Box, shown: Sequence[Cell], tiers: Tiers = FORCE_TIERS) -> int:
-    """Draws cells from left to right as far as they fit, and returns how many did."""
+    """Draw cells from left to right as far as they fit, and return how many did."""
     left, top, right, _ = box
     left += 1  # glyphs may reach one pixel to the left of where they start
     for count, cell in enumerate(shown):
@@ -126,7 +126,7 @@ def draw_cells(draw: ImageDraw.ImageDraw, box: Box, shown: Sequence[Cell], tiers
 
 
 def _cell_width(draw: ImageDraw.ImageDraw, cell: Cell, tiers: Tiers) -> float:
-    """Returns the width of a cell, the same whatever tier it is in [px]."""
+    """Return the width of a cell, the same whatever tier it is in [px]."""
     value = (_DOT_WIDTH if cell.dot else 0) + max(text_width(draw, t, _VALUE_SIZE) for t in (cell.widest, cell.value))
     if cell.note:
         value += _NOTE_GAP + max(text_width(draw, tier.label, _LABEL_SIZE) for tier in tiers)

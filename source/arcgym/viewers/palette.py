@@ -20,7 +20,7 @@ class ForceTier:
     start: float
     """Lowest force of the tier [N]."""
     label: str
-    """What the tier means, for the legend."""
+    """Meaning of the tier, for the legend."""
     color: tuple[int, int, int]
     """Display colour (sRGB, 0..255)."""
 
@@ -30,7 +30,7 @@ Tiers = Sequence[ForceTier]
 
 
 def shown_tiers(limits: ForceTiersCfg) -> Tiers:
-    """Returns the tiers between the limits of a task, with the colours of their pictures."""
+    """Return the tiers between the limits of a task, with the colours of their pictures."""
     return (
         ForceTier(0.0, "comfort", (66, 184, 131)),
         ForceTier(limits.comfort, "discomfort", (245, 190, 40)),
@@ -69,12 +69,12 @@ _DEFORMATION_STOPS = np.array(
 
 
 def force_tier(force: float, tiers: Tiers = FORCE_TIERS) -> ForceTier:
-    """Returns the tier that a wall force [N] belongs to."""
+    """Return the tier that a wall force [N] belongs to."""
     return [tier for tier in tiers if force >= tier.start or tier is tiers[0]][-1]
 
 
 def force_colors(force: np.ndarray, tiers: Tiers = FORCE_TIERS) -> np.ndarray:
-    """Returns the colour of each force.
+    """Return the colour of each force.
 
     Colours change from one tier to the next over 10 % of the threshold, so that a tier reads as one colour.
 
@@ -93,7 +93,7 @@ def force_colors(force: np.ndarray, tiers: Tiers = FORCE_TIERS) -> np.ndarray:
 
 
 def deformation_colors(fraction: np.ndarray) -> np.ndarray:
-    """Returns the wall's colour from undeformed (0, tissue) to the end of the scale (1, deep blue).
+    """Return the wall's colour from undeformed (0, tissue) to the end of the scale (1, deep blue).
 
     The ramp runs through cool colours: warm ones belong to the forces on the scope.
 
@@ -108,12 +108,12 @@ def deformation_colors(fraction: np.ndarray) -> np.ndarray:
 
 
 def to_linear(color: np.ndarray) -> np.ndarray:
-    """Converts sRGB 0..255 to linear 0..1 with a gamma of 2.2."""
+    """Convert sRGB 0..255 to linear 0..1 with a gamma of 2.2."""
     return (np.asarray(color, float) / 255.0) ** 2.2
 
 
 def to_display(color: np.ndarray) -> np.ndarray:
-    """Converts linear 0..1 to sRGB uint8 with a gamma of 2.2."""
+    """Convert linear 0..1 to sRGB uint8 with a gamma of 2.2."""
     return (255.0 * np.clip(color, 0.0, 1.0) ** (1.0 / 2.2) + 0.5).astype(np.uint8)
 
 

@@ -23,7 +23,7 @@ _MARK_LENGTH = 0.002
 def scope_color_table(
     link_length: np.ndarray, bending_links: int, link_force: np.ndarray, tiers: Tiers = FORCE_TIERS
 ) -> np.ndarray:
-    """Returns the colour of the scope at even steps from its proximal end to its tip.
+    """Return the colour of the scope at even steps from its proximal end to its tip.
 
     Dark shaft with a light ring every 10 cm from the tip (as real colonoscopes carry), a lighter bending section and
     a light tip. The tier colour of the wall force covers all but the rings where there is any.
@@ -50,6 +50,6 @@ def scope_color_table(
 
 
 def _tinted(color: np.ndarray, force: np.ndarray, tiers: Tiers) -> np.ndarray:
-    """Blends the tier colour in, fully from twenty times the smallest visible force."""
+    """Blend the tier colour in, fully from twenty times the smallest visible force."""
     share = np.clip((force - VISIBLE_FORCE) / (19.0 * VISIBLE_FORCE), 0.0, 1.0)[:, None]
     return color * (1.0 - 0.9 * share) + 0.9 * share * force_colors(force, tiers)

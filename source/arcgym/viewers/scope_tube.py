@@ -20,7 +20,7 @@ class ScopeTube:
     """
 
     def __init__(self, link_length: np.ndarray, link_radius: np.ndarray, rings_per_link: int = 4, sides: int = 16):
-        """Lays out the rings.
+        """Lay out the rings.
 
         Args:
             link_length: Length of each link [m], shape (L,).
@@ -41,7 +41,7 @@ class ScopeTube:
         self.faces = _tube_faces(len(self._rings), sides)
 
     def sweep(self, position: np.ndarray, quaternion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Returns the tube for the given link poses.
+        """Return the tube for the given link poses.
 
         Args:
             position: Middle of each link [m], shape (L, 3).
@@ -73,7 +73,7 @@ class ScopeTube:
 
 
 def _ring_profile(length: float, link_radius: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Returns arc length, radius scale and axial part of the normal of each ring, with quarter-circle ends."""
+    """Return arc length, radius scale and axial part of the normal of each ring, with quarter-circle ends."""
     turn = np.linspace(0.5 * np.pi, 0.0, _CAP_RINGS)
     first, last = 0.6 * float(link_radius[0]), 0.6 * float(link_radius[-1])
     body = np.linspace(first, length - last, count + 1)[1:-1]
@@ -91,7 +91,7 @@ def _tube_faces(rings: int, sides: int) -> np.ndarray:
 
 
 def _link_axes(quaternion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Returns the first and third column of each rotation matrix, both shape (L, 3)."""
+    """Return the first and third column of each rotation matrix, both shape (L, 3)."""
     x, y, z, w = quaternion.T
     side = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)], axis=-1)
     axis = np.stack([2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)], axis=-1)

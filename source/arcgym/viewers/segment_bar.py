@@ -21,7 +21,7 @@ def draw_segment_bar(
     tip_arc: float,
     task_range: tuple[float, float] | None = None,
 ) -> None:
-    """Draws the bar into a box; everything drawn stays inside.
+    """Draw the bar into a box; everything drawn stays inside.
 
     Args:
         draw: Where to draw.

@@ -25,7 +25,7 @@ def draw_sparkline(
     thresholds: Sequence[tuple[float, Color]] = (),
     capacity: int = 100,
 ) -> None:
-    """Draws the newest value at the right end; the chart scrolls to the left once `capacity` values are there.
+    """Draw the newest value at the right end; the chart scrolls to the left once `capacity` values are there.
 
     Args:
         draw: Where to draw.

@@ -16,7 +16,7 @@ _BEYOND = 1.5
 
 
 def draw_tier_bar(draw: ImageDraw.ImageDraw, box: Box, force: float, tiers: Tiers) -> None:
-    """Draws the tiers side by side, bright up to the force; everything drawn stays inside the box.
+    """Draw the tiers side by side, bright up to the force; everything drawn stays inside the box.
 
     Places go with the square root of the force, so that the low tiers are wide enough to read.
 

@@ -41,7 +41,7 @@ class TwoPaneView:
     """
 
     def __init__(self, env: ManagerBasedEnv, cfg: ViewerCfg | None = None) -> None:
-        """Builds the surface of one world.
+        """Build the surface of one world.
 
         Args:
             env: Environment whose scene holds ``colon``, ``endoscope`` and, if it has one, ``camera``.
@@ -71,7 +71,7 @@ class TwoPaneView:
         self.forces: deque[float] = deque(maxlen=_HISTORY)
 
     def frame(self, env_id: int = 0, info: Mapping[str, Any] | None = None) -> np.ndarray:
-        """Draws a world as it is now.
+        """Draw a world as it is now.
 
         Args:
             env_id: World to draw.
@@ -124,7 +124,7 @@ class TwoPaneView:
         return self._paint.force(env_id, position, quaternion, self._scope.stage.link_length, force)
 
     def _remember(self, env_id: int, info: FrameInfo) -> None:
-        """Adds to the charts, which start again with every episode and world."""
+        """Add to the charts, which start again with every episode and world."""
         if env_id != self._env_id or info.time < self._time:
             self.rewards.clear()
             self.forces.clear()

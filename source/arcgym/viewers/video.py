@@ -26,7 +26,7 @@ class VideoRecorder:
     """
 
     def __init__(self, path: str | Path, fps: float = 10.0, quality: float = 7.0) -> None:
-        """Prepares the file; it appears with the first frame.
+        """Prepare the file; it appears with the first frame.
 
         Args:
             path: Name of the file, ending in ``.mp4``; folders are made.
@@ -49,7 +49,7 @@ class VideoRecorder:
         self._is_closed = False
 
     def write(self, frame: np.ndarray) -> None:
-        """Adds a frame.
+        """Add a frame.
 
         Args:
             frame: uint8, shape (H, W, 3); H and W even and the same for all frames.
@@ -66,20 +66,20 @@ class VideoRecorder:
         self.num_frames += 1
 
     def close(self) -> None:
-        """Finishes the file; further calls do nothing."""
+        """Finish the file; further calls do nothing."""
         self._is_closed = True
         if self._writer is not None:
             self._writer.close()
             self._writer = None
 
     def __enter__(self) -> VideoRecorder:
-        """Returns the recorder."""
+        """Return the recorder."""
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Finishes the file, whether or not there was an error."""
+        """Finish the file, whether or not there was an error."""
         self.close()
 
     def _check(self, frame: np.ndarray) -> None:

@@ -30,7 +30,7 @@ class ViewCamera:
     """Width and height [px]."""
 
     def project(self, points: np.ndarray) -> np.ndarray:
-        """Returns the pixel coordinates (x right, y down) of world points.
+        """Return the pixel coordinates (x right, y down) of world points.
 
         Args:
             points: World positions [m], shape (K, 3).
@@ -42,12 +42,12 @@ class ViewCamera:
         return (tangents * (1.0, -1.0) + 1.0) * 0.5 * np.array(self.size)
 
     def tangents(self, points: np.ndarray) -> np.ndarray:
-        """Returns right and up offset over depth of world points, shape (K, 2)."""
+        """Return right and up offset over depth of world points, shape (K, 2)."""
         offset = np.asarray(points, float) - self.eye
         return np.stack([offset @ self.right, offset @ self.up], axis=-1) / (offset @ self.forward)[:, None]
 
     def pixels_per_meter(self, point: np.ndarray) -> float:
-        """Returns how many pixels a metre across the picture takes at the depth of `point` (shape (3,))."""
+        """Return how many pixels a metre across the picture takes at the depth of `point` (shape (3,))."""
         depth = float((np.asarray(point, float) - self.eye) @ self.forward)
         return 0.5 * self.size[0] / (self.tan_half[0] * depth)
 
@@ -60,7 +60,7 @@ def frame_points(
     distance: float = 1.4,
     margin: float = 1.06,
 ) -> ViewCamera:
-    """Returns the camera that shows all points as large as possible.
+    """Return the camera that shows all points as large as possible.
 
     Azimuth 0 looks from anterior (along −Y), +90° from the patient's left (along +X); elevation lifts the camera
     towards cranial (+Z).

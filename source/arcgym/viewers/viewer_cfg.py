@@ -8,6 +8,15 @@ import math
 from typing import Any, Literal
 
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import (
+    FINITE,
+    Range,
+    require,
+    require_at_least,
+    require_fraction,
+    require_non_negative,
+    require_positive,
+)
 
 
 @configclass
@@ -28,7 +37,7 @@ class OutsideViewCfg:
     outside_length: float = 0.07
     """Part of the scope below the anus that is kept in the picture [m]."""
     wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
-    """What the wall's colour shows: how far it has moved, its strain, the pull of its anchors, or the force of the
+    """Quantity that the wall's color shows: how far it moved, its strain, the pull of its anchors, or the force of the
     links beside it."""
     scope_color: Literal["force", "plain"] = "force"
     """Whether the scope is coloured by the force of the wall on each link."""
@@ -50,6 +59,22 @@ class OutsideViewCfg:
     """
     depth_contrast: float = 0.7
     """Strength of the shade behind loops that lie in front of others, 0..1."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "width", Range(64, 4096), unit="px")
+        require(self, "height", Range(64, 4096), unit="px")
+        require(self, "azimuth", FINITE, unit="rad")
+        require(self, "elevation", Range(-math.radians(85.0), math.radians(85.0)), unit="rad")
+        require_positive(self, "distance", unit="m")
+        require_non_negative(self, "outside_length", unit="m")
+        require_positive(self, "wall_full_scale")
+        require_fraction(self, "near_alpha", "rim_alpha", "far_alpha", "ghost_alpha", "scope_share", "depth_contrast")
+        require_non_negative(self, "edge_threshold")
 
 
 @configclass
@@ -73,12 +98,10 @@ class ViewerCfg:
     """Metrics terms of the task whose value in the last step is shown; those that it lacks are left out."""
 
     def validate_config(self) -> None:
-        """Check the numbers.
+        """Check bounds.
 
         Raises:
-            ValueError: If the world or the number of rays cannot be.
+            ValueError: If a value is out of its bounds.
         """
-        if self.env_id < 0:
-            raise ValueError(f"viewer.env_id is {self.env_id}, expected the index of a world, 0 or more.")
-        if self.samples < 1:
-            raise ValueError(f"viewer.samples is {self.samples}, expected 1 or more rays a pixel.")
+        require_at_least(self, 0, "env_id")
+        require_at_least(self, 1, "samples")

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the colour of the wall shows: displacement, strain, anchor tension or the force of the scope on it."""
+"""Color of the wall: displacement, strain, anchor tension or the force of the scope on it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from arcgym.sim.wall.wall_readout import inverse_rest
 from arcgym.viewers.palette import FORCE_TIERS, Tiers, deformation_colors, force_colors
 
 WALL_COLORS = ("displacement", "strain", "tension", "force")
-"""What the wall's colour can show."""
+"""Quantities that the wall's color can show."""
 
 _SCALES = {
     "displacement": ("wall displacement", "mm", 1000.0, 0.05),
@@ -35,7 +35,7 @@ class WallScale:
     """Colours from nothing to the full scale."""
 
     title: str
-    """What is shown."""
+    """Name of the quantity."""
     unit: str
     """Unit of the shown number."""
     per_unit: float
@@ -48,14 +48,14 @@ class WallScale:
     """Linear RGB at even steps from zero to ``full``, shape (K, 3)."""
 
     def paint(self, values: np.ndarray) -> np.ndarray:
-        """Returns the colour of each value, linear RGB, shape (M, 3)."""
+        """Return the colour of each value, linear RGB, shape (M, 3)."""
         place = np.clip(values / self.full, 0.0, 1.0) * (len(self.colors) - 1)
         steps = np.arange(len(self.colors))
         return np.stack([np.interp(place, steps, self.colors[:, channel]) for channel in range(3)], axis=1)
 
 
 def wall_scale(kind: str, full: float | None = None, tiers: Tiers = FORCE_TIERS) -> WallScale:
-    """Returns the scale of a quantity.
+    """Return the scale of a quantity.
 
     Args:
         kind: One of :data:`WALL_COLORS`.
@@ -87,7 +87,7 @@ class WallPaint:
     """Values of the wall of one world for the vertices of its visual surface, on the host."""
 
     def __init__(self, colon: Any) -> None:
-        """Stores rest shape and skin.
+        """Store rest shape and skin.
 
         Args:
             colon: The scene's colon; its proxy surface is what is drawn.

@@ -23,7 +23,7 @@ from arcgym.managers import TerminationTermCfg as DoneTerm
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.sensors import EndoscopeCameraCfg
 from arcgym.utils.configclass import MISSING, configclass
-from arcgym.utils.validation import require
+from arcgym.utils.validation import FieldError, require
 from arcgym_tasks.navigation.segments import Start, time_limit_s
 
 
@@ -191,9 +191,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """Longest episode [s]; None takes the time limit of segment and start, see
     :data:`arcgym_tasks.navigation.segments.TIME_LIMIT_S`."""
 
-    lumen: str | mdp.LumenCfg = "paper"
+    lumen: mdp.LumenCfg | str = mdp.PAPER
     """Constants of the lumen reward: ``paper``, ``metric`` or your own :class:`arcgym.envs.mdp.LumenCfg`. ``metric``
-    tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's."""
+    tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's. A name and changes to it may
+    follow each other: ``env.lumen=metric env.lumen.far=0.2``."""
 
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
@@ -229,12 +230,26 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """Check numbers and names.
 
         Raises:
-            ValueError: If a number is out of range, or the segment or the lumen preset is unknown.
+            ValueError: If a number is out of range, the segment or the lumen preset is unknown, or the solver cannot do
+                what a term needs.
         """
         require(self, "segment", SEGMENTS)
         require(self, "start", get_args(Start))
         super().validate_config()
         mdp.resolve_lumen(self.lumen)
+        if self.sim.solver == "newton":
+            self._check_newton()
+
+    def _check_newton(self) -> None:
+        """Refuse terms that need the two-level solver."""
+        terms = {
+            "env.terminations.wall_penetrated": self.terminations.wall_penetrated,
+            "env.events.stiffness": self.events.stiffness,
+            "env.events.friction": self.events.friction,
+        }
+        used = [f"{name}=null" for name, term in terms.items() if term is not None]
+        if used:
+            raise FieldError(self, "sim.solver", f"is 'newton', which needs {' '.join(used)}; or choose 'two_level'.")
 
     @property
     def max_episode_length_s(self) -> float:

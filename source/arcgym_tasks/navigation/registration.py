@@ -70,10 +70,18 @@ def register_robot(
     tasks = []
     for segment in segments:
         task = f"ARC-{segment.capitalize()}-{robot}"
-        experiment = (("experiment_name", task.lower().replace("-", "_")),)
-        entries: dict[str, Any] = {k: CfgEntry(cfg, experiment) for k, cfg in {**AGENTS, **(agents or {})}.items()}
+        entries: dict[str, Any] = {
+            key: CfgEntry(cfg, (("experiment_name", _experiment(task, key)),))
+            for key, cfg in {**AGENTS, **(agents or {})}.items()
+        }
         for variant, play in (("", False), ("-Play", True)):
             entry: Any = CfgEntry(env_cfg, (("segment", segment),), play)
             register_task(task + variant, env_cfg_entry_point=entry, **entries)
             tasks.append(task + variant)
     return tasks
+
+
+def _experiment(task: str, key: str) -> str:
+    """Folder of an agent's runs: ``arc_splenic_magnetic``, and ``arc_splenic_magnetic_sac`` for another than PPO."""
+    agent = key.removesuffix("cfg_entry_point").removeprefix("rsl_rl_").strip("_")
+    return "_".join(filter(None, (task.lower().replace("-", "_"), agent)))

@@ -25,7 +25,7 @@ posture leaves in place."""
 
 
 def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve | None = None) -> Curve:
-    """Generate the centreline of a spec; the result still has to pass :mod:`arcgym.anatomy.validation.validate`.
+    """Generate the centreline of a spec; the result still has to pass :mod:`arcgym.anatomy.generator.acceptance`.
 
     Args:
         spec: Specification of the colon.

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from arcgym.anatomy.generator.acceptance import check_course, wall_bounds
 from arcgym.anatomy.generator.centerline import make_centerline
 from arcgym.anatomy.generator.lesions import Lesion, place_lesions
 from arcgym.anatomy.generator.posture import make_posed, repose
@@ -21,7 +22,8 @@ from arcgym.anatomy.generator.wall import sample_wall
 from arcgym.anatomy.landmarks import find_landmarks
 from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import Centerline, ColonStage
-from arcgym.anatomy.validation.validate import failed, validate_curve, validate_wall
+from arcgym.anatomy.validation.checks import failed
+from arcgym.anatomy.validation.wall_checks import check_wall
 
 _LOGGER = logging.getLogger(__name__)
 POSTURE_TOLERANCE = 0.03
@@ -58,7 +60,7 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
             rejected.append(f"seed {seed}: {error}")
             continue
         wall = sample_wall(surface, lesions)
-        problems = failed([*validate_curve(spec, surface), *validate_wall(wall, spec)])
+        problems = failed([*check_course(spec, surface), *check_wall(wall, wall_bounds(spec))])
         if not problems:
             break
         rejected.append(f"seed {seed}: " + "; ".join(str(check) for check in problems))

@@ -50,8 +50,10 @@ _RANGES = {
     "material.poissons_ratio": (0.0, 0.4999),
     "material.density": (500.0, 2000.0),
 }
+"""Smallest and largest value of a number, by the path of its field; SI units."""
 
 _PAIRS = {"polyp_radius": (0.001, 0.0125), "wide_neck": (0.007, 0.010), "diverticulum_neck": (0.001, 0.005)}
+"""The same for both values of a pair."""
 
 _SEGMENT_RANGES = {
     "length": (0.02, 1.5),
@@ -61,8 +63,10 @@ _SEGMENT_RANGES = {
     "wide_diverticula": (0, 10),
     "polyps": (0, 30),
 }
+"""The same for the fields of each segment."""
 
 _FOLD_RANGES = {"spacing": (0.010, 0.10), "depth": (0.0, 1.1), "width": (0.001, 0.010), "stagger": (0.0, 1.0)}
+"""The same for the fields of each segment's folds."""
 
 
 def check_spec(spec: ColonSpec) -> None:

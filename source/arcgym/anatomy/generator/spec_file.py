@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads a colon's spec from YAML: the fields of :class:`ColonSpec`, all optional, over its defaults."""
+"""Read a colon's spec from YAML: the fields of :class:`ColonSpec`, all optional, over its defaults."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from arcgym.anatomy.importing.errors import ImportArgumentError
 
 Point = tuple[float, float, float]
+"""A position [mm]."""
 
 
 def parse_point(text: str, option: str) -> Point:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes an imported colon into a folder that appears when it is whole."""
+"""Write an imported colon into a folder that appears when it is whole."""
 
 from __future__ import annotations
 

@@ -14,12 +14,16 @@ from arcgym.anatomy.importing.pipeline import ImportedColon
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage.types import ColonStage
 from arcgym.anatomy.validation.stage_checks import inspect_stage
-from arcgym.anatomy.validation.validate import ring_radii
+from arcgym.anatomy.validation.wall_checks import ring_radii
 
 REPORT_NAME = "report.json"
+"""File of the figures."""
+
 PAGE_NAME = "report.png"
+"""File of the pictures."""
 
 _COLORS = ("#4c72b0", "#dd8452", "#55a868", "#c44e52", "#8172b3", "#937860", "#da8bc3", "#8c8c8c")
+"""Color of each segment."""
 
 
 def figures(imported: ImportedColon) -> dict[str, Any]:

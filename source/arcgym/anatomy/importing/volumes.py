@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads label volumes with SimpleITK and resamples the lumen onto a grid along the patient's axes."""
+"""Read label volumes with SimpleITK and resample the lumen onto a grid along the patient's axes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads a colon stage and says precisely what is wrong with it when it cannot be used."""
+"""Read a colon stage and say precisely what is wrong with it when it cannot be used."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes a colon as a USD stage: a short text layer over a binary layer that holds the arrays."""
+"""Write a colon as a USD stage: a short text layer over a binary layer that holds the arrays."""
 
 from __future__ import annotations
 

@@ -4,8 +4,9 @@
 
 In reading order:
 
-- :mod:`validate`: a check with its bound, and the checks of wall, course and visual surfaces that a colon has to pass;
-- :mod:`stage_checks`: all of them, and those of topology, anchors and file, for any stage;
+- :mod:`checks`: a figure and the bound that it has to keep;
+- :mod:`wall_checks`: the wall on its own, also of colons in the making;
+- :mod:`stage_checks`: everything about a stage, in memory or in a file;
 - :mod:`mesh_checks`: whether a mesh is closed or crosses itself, and what it encloses.
 """
 
@@ -16,16 +17,16 @@ from typing import TYPE_CHECKING
 from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from arcgym.anatomy.validation.checks import Check, failed
     from arcgym.anatomy.validation.stage_checks import inspect_file, inspect_stage
-    from arcgym.anatomy.validation.validate import Check, failed
 
 __all__ = ["Check", "failed", "inspect_file", "inspect_stage"]
 
 __getattr__ = lazy_names(
     __name__,
     {
-        "Check": "arcgym.anatomy.validation.validate",
-        "failed": "arcgym.anatomy.validation.validate",
+        "Check": "arcgym.anatomy.validation.checks",
+        "failed": "arcgym.anatomy.validation.checks",
         "inspect_file": "arcgym.anatomy.validation.stage_checks",
         "inspect_stage": "arcgym.anatomy.validation.stage_checks",
     },

@@ -7,10 +7,11 @@ from __future__ import annotations
 import numpy as np
 from pxr import Usd, UsdValidation
 
-from arcgym.anatomy.measures import inner_faces
+from arcgym.anatomy.measures import flipped_normal_fraction, inner_faces, winds_outwards
 from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from arcgym.anatomy.stage import StageError, read_colon
-from arcgym.anatomy.stage.types import ColonStage, WallMesh
+from arcgym.anatomy.stage.types import ColonStage, VisualMesh, WallMesh
+from arcgym.anatomy.validation.checks import Check
 from arcgym.anatomy.validation.mesh_checks import (
     boundary_faces,
     cap_openings,
@@ -18,7 +19,7 @@ from arcgym.anatomy.validation.mesh_checks import (
     edge_uses,
     winding_numbers,
 )
-from arcgym.anatomy.validation.validate import Check, validate_stage
+from arcgym.anatomy.validation.wall_checks import check_wall
 
 _LENGTH_RANGE = 0.1, 3.0
 """Least and largest length of a colon or a piece of one [m]."""
@@ -40,7 +41,7 @@ def inspect_stage(stage: ColonStage) -> list[Check]:
     """Check a stage in memory: size, meshes, topology, centreline, anchors."""
     return [
         *_check_size(stage),
-        *validate_stage(stage),
+        *_check_meshes(stage),
         *_check_topology(stage.wall),
         _check_centerline(stage),
         *_check_anchors(stage.wall),
@@ -64,6 +65,45 @@ def _check_size(stage: ColonStage) -> list[Check]:
         Check("median diameter [m]", diameter, _DIAMETER_RANGE[0], at_least=True),
         Check("median diameter, upper bound [m]", diameter, _DIAMETER_RANGE[1], at_least=False),
     ]
+
+
+def _check_meshes(stage: ColonStage) -> list[Check]:
+    """Check wall, visual surfaces, landmarks and handedness."""
+    arcs = np.diff(list(stage.landmarks.values()))
+    return [
+        *check_wall(stage.wall),
+        *_check_visual("render surface", stage.visual, stage.wall),
+        *_check_visual("proxy surface", stage.visual_proxy, stage.wall),
+        Check("least distance of landmarks [m]", float(arcs.min()), 0.0, at_least=True),
+        *_check_sides(stage),
+    ]
+
+
+def _check_sides(stage: ColonStage) -> list[Check]:
+    """Find mirrored anatomies: the ascending colon is on the patient's right. Empty where there is only one side."""
+    left, right = (stage.centerline.segment == SEGMENTS.index(name) for name in ("descending", "ascending"))
+    if not (left.any() and right.any()):
+        return []
+    x = stage.centerline.points[:, 0]
+    return [Check("ascending minus descending x [m]", float(x[right].mean() - x[left].mean()), 0.05, at_least=True)]
+
+
+def _check_visual(name: str, visual: VisualMesh, wall: WallMesh) -> list[Check]:
+    sums = np.abs(visual.skin_weights.astype(float).sum(1) - 1.0).max()
+    carriers = wall.points[visual.skin_indices]
+    anchor = np.einsum("mk,mkd->md", visual.skin_weights, carriers)
+    return [
+        Check(f"{name}: error of skin weight sums", float(sums), 1e-5, at_least=False),
+        Check(f"{name}: least skin weight", float(visual.skin_weights.min()), 0.0, at_least=True),
+        Check(f"{name}: wall layer it is skinned to", float(wall.layer[visual.skin_indices].max()), 0.0, False),
+        Check(f"{name}: distance to its carriers [m]", _largest_distance(visual.points, anchor), 0.04, at_least=False),
+        Check(f"{name}: faces wound outwards", float(winds_outwards(visual.points, visual.faces)), 0.0, False),
+        Check(f"{name}: share of flipped normals", flipped_normal_fraction(visual), 0.01, at_least=False),
+    ]
+
+
+def _largest_distance(a: np.ndarray, b: np.ndarray) -> float:
+    return float(np.linalg.norm(a - b, axis=1).max())
 
 
 def _check_topology(wall: WallMesh) -> list[Check]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.assets.actuators.actuator_base_cfg import ActuatorBaseCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import require_positive
 
 
 @configclass
@@ -23,12 +24,10 @@ class BaseDriveCfg(ActuatorBaseCfg):
     """Largest torque [N m], over the stage's 1 N m."""
 
     def validate_config(self) -> None:
-        """Check numbers.
+        """Check names and bounds.
 
         Raises:
-            ValueError: If a limit is not positive.
+            ValueError: If a value is out of its bounds or a name is unknown.
         """
-        for name in ("force_limit", "torque_limit"):
-            value = getattr(self, name)
-            if value is not None and value <= 0.0:
-                raise ValueError(f"BaseDriveCfg.{name} is {value}; expected more than 0, or None for the stage's.")
+        require_positive(self, "force_limit", unit="N")
+        require_positive(self, "torque_limit", unit="N m")

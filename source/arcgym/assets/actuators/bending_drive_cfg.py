@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.assets.actuators.actuator_base_cfg import ActuatorBaseCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import require_positive
 
 
 @configclass
@@ -20,10 +21,9 @@ class BendingDriveCfg(ActuatorBaseCfg):
     """Speed of the control wheels [rad/s]. Raise it if actions command faster bending than 0.13 rad a step of 0.1 s."""
 
     def validate_config(self) -> None:
-        """Check numbers.
+        """Check names and bounds.
 
         Raises:
-            ValueError: If the rate is not positive.
+            ValueError: If a value is out of its bounds or a name is unknown.
         """
-        if self.rate <= 0.0:
-            raise ValueError(f"BendingDriveCfg.rate is {self.rate} rad/s; expected more than 0.")
+        require_positive(self, "rate", unit="rad/s")

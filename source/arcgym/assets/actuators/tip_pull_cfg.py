@@ -8,6 +8,7 @@ from typing import Any
 
 from arcgym.assets.actuators.actuator_base_cfg import ActuatorBaseCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import require_non_negative, require_positive
 
 
 @configclass
@@ -30,14 +31,14 @@ class TipPullCfg(ActuatorBaseCfg):
     """Largest torque [N m]."""
 
     def validate_config(self) -> None:
-        """Check numbers.
+        """Check names and bounds.
 
         Raises:
-            ValueError: If a stiffness or a limit is not positive, or a damping negative.
+            ValueError: If a value is out of its bounds or a name is unknown.
         """
-        for name in ("stiffness", "force_limit", "angular_stiffness", "torque_limit"):
-            if getattr(self, name) <= 0.0:
-                raise ValueError(f"TipPullCfg.{name} is {getattr(self, name)}; expected more than 0.")
-        for name in ("damping", "angular_damping"):
-            if getattr(self, name) < 0.0:
-                raise ValueError(f"TipPullCfg.{name} is {getattr(self, name)}; expected at least 0.")
+        require_positive(self, "stiffness", unit="N/m")
+        require_positive(self, "force_limit", unit="N")
+        require_positive(self, "angular_stiffness", unit="N m/rad")
+        require_positive(self, "torque_limit", unit="N m")
+        require_non_negative(self, "damping", unit="N s/m")
+        require_non_negative(self, "angular_damping", unit="N m s/rad")

@@ -12,6 +12,7 @@ import torch
 
 from arcgym.managers import ActionTerm, ActionTermCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import Range, require, require_positive
 from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
@@ -156,6 +157,16 @@ class TipVelocityActionCfg(ActionTermCfg):
     """Constant forward velocity [m/s], as in the paper; the forward action is then dropped (A = 5). None leaves it to
     the policy (A = 6)."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_positive(self, "linear_scale", unit="m/s")
+        require_positive(self, "angular_scale", unit="rad/s")
+        require(self, "forward_velocity", Range(-1.0, 1.0), unit="m/s")
+
 
 @configclass
 class InsertionActionCfg(ActionTermCfg):
@@ -186,3 +197,13 @@ class InsertionActionCfg(ActionTermCfg):
     insertion_velocity: float | None = None
     """Constant insertion velocity [m/s]; the insertion action is then dropped (A = 3). None leaves it to the policy
     (A = 4)."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_positive(self, "insertion_scale", unit="m/s")
+        require_positive(self, "roll_scale", "bending_scale", unit="rad/s")
+        require(self, "insertion_velocity", Range(-1.0, 1.0), unit="m/s")

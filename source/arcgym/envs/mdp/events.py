@@ -16,7 +16,7 @@ from arcgym.assets.materials import ANCHOR_SCALES, TISSUE_PRESETS, anchor_scale,
 from arcgym.envs.mdp.segments import segment_span
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
-from arcgym.sim.snapshot import SnapshotSet, find_snapshots
+from arcgym.start_states.find import ensure, find_stored
 from arcgym.utils.validation import FRACTION, NON_NEGATIVE, POSITIVE, expects
 
 if TYPE_CHECKING:
@@ -39,44 +39,46 @@ REST_POSE = -1
 """Snapshot index of the scope straight in the anal canal."""
 
 
-@expects(segment=SEGMENTS)
+@expects(segment=SEGMENTS, start=("segment", "rest"))
 class reset_to_segment_start(ManagerTermBase):
     """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
 
-    States come from the file of snapshots that belongs to this colon, its tissue and this endoscope, loaded once. The
-    first segment of the colon starts from the rest pose if the file does not have it.
+    States come from beside the colon's stage or from the cache, and are made if there are none, see
+    :mod:`arcgym.start_states`. The first segment of the colon starts from the rest pose if none is stored.
     """
 
     def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
-        """Find the state.
+        """Find the state, or have it made.
 
         Raises:
-            ValueError: If the colon does not have the segment.
-            KeyError: If the file of snapshots does not have it.
-            FileNotFoundError: If there is no such file.
+            ValueError: If the colon does not have the segment, or its start state cannot be made.
         """
         super().__init__(cfg, env)
         segment = task_setting(env, "segment", cfg.params.get("segment"))
-        self._index = torch.tensor(self._find(env, segment), device=env.device)
+        start = cfg.params.get("start") or getattr(env.cfg, "start", "segment")
+        self._index = torch.tensor(REST_POSE if start == "rest" else self._find(env, segment), device=env.device)
 
-    def __call__(self, env: ManagerBasedEnv, env_ids: torch.Tensor, segment: str | None = None) -> None:
+    def __call__(
+        self, env: ManagerBasedEnv, env_ids: torch.Tensor, segment: str | None = None, start: str | None = None
+    ) -> None:
         """Write the state.
 
         Args:
             segment: Name of the segment, read once at construction; None takes the task's, ``env.cfg.segment``.
+            start: ``segment``, or ``rest`` to begin straight in the anus whatever the segment; None takes the task's,
+                ``env.cfg.start``.
         """
         env.sim.write_snapshot(self._index, env_ids)
 
     @staticmethod
     def _find(env: ManagerBasedEnv, segment: str) -> int:
         is_first = segment_span(env, segment)[0] <= 0.0
-        path = find_snapshots(env.scene["colon"], env.scene["endoscope"])
-        if env.sim.snapshots is None and (path.is_file() or not is_first):
-            env.sim.load_snapshots(SnapshotSet.load(path))
-        snapshots = env.sim.snapshots
-        if snapshots is None or (is_first and segment not in snapshots.names):
-            return REST_POSE
-        return snapshots.index(segment)
+        if env.sim.snapshots is None or segment not in env.sim.snapshots.names:
+            states = find_stored(env.scene, segment) if is_first else ensure(env.scene, segment)
+            if states is None:
+                return REST_POSE
+            env.sim.load_snapshots(states)
+        return env.sim.snapshots.index(segment)
 
 
 @expects(std=NON_NEGATIVE)

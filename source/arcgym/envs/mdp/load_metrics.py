@@ -24,13 +24,13 @@ __all__ = ["base_force_magnitude", "load_impulse", "load_percentile", "load_time
 
 
 def base_force_magnitude(env: ManagerBasedRLEnv) -> torch.Tensor:
-    """Push or pull on the base, mean over the control step [N] (reduce: max)."""
+    """Push or pull on the base, mean over the control step [N], shape (N,) (reduce: max)."""
     return env.scene["endoscope"].data.base_force.abs()
 
 
 @expects(kind=LOADS)
 def load_impulse(env: ManagerBasedRLEnv, kind: str) -> torch.Tensor:
-    """Load times the control step [N s] (reduce: sum).
+    """Load times the control step [N s], shape (N,) (reduce: sum).
 
     Args:
         kind: One of :data:`arcgym.envs.mdp.LOADS`.
@@ -40,7 +40,7 @@ def load_impulse(env: ManagerBasedRLEnv, kind: str) -> torch.Tensor:
 
 @expects(kind=LOADS, limit=TIERS)
 def load_time_above(env: ManagerBasedRLEnv, kind: str, limit: float | str) -> torch.Tensor:
-    """Time in which a load is above a limit [s] (reduce: sum).
+    """Time in which a load is above a limit [s], shape (N,) (reduce: sum).
 
     Args:
         kind: One of :data:`arcgym.envs.mdp.LOADS`.
@@ -51,7 +51,7 @@ def load_time_above(env: ManagerBasedRLEnv, kind: str, limit: float | str) -> to
 
 @expects(kind=LOADS, percentile=Range(0.0, 100.0))
 class load_percentile(ManagerTermBase):
-    """Percentile of a load over the episode so far [N, or strain] (reduce: last).
+    """Percentile of a load over the episode so far [N, or strain], shape (N,) (reduce: last).
 
     From a histogram of the control steps, its bins evenly spaced in the logarithm between 0.01 and 100: the result is
     the upper edge of the percentile's bin, up to 5 % too high.

@@ -45,7 +45,16 @@ import warp as wp
 
 from arcgym.envs.mdp import lumen_kernels
 from arcgym.envs.mdp.settings import task_setting
+from arcgym.utils.configclass import configclass, copy
 from arcgym.utils.string import did_you_mean
+from arcgym.utils.validation import (
+    Range,
+    require,
+    require_fraction,
+    require_non_negative,
+    require_order,
+    require_positive,
+)
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -63,7 +72,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, kw_only=True)
+@configclass
 class LumenCfg:
     """Constants of the lumen reward; the defaults are the preset ``paper``."""
 
@@ -97,15 +106,33 @@ class LumenCfg:
     far: float = 1.0
     """Depth is clipped here [m] first. Lower it so that one distant pixel does not become the whole deep region."""
 
-    def __post_init__(self) -> None:
-        """Check that every ramp rises."""
-        for low, high in (("tau_wall", "tau_lumen"), ("delta_min", "delta_good")):
-            if not getattr(self, low) < getattr(self, high):
-                raise ValueError(
-                    f"LumenCfg: {low} = {getattr(self, low)} m must be below {high} = {getattr(self, high)} m."
-                )
-        if not 0.0 <= self.rho_min < 1.0:
-            raise ValueError(f"LumenCfg: rho_min = {self.rho_min} must be in [0, 1).")
+    @classmethod
+    def from_name(cls, name: str) -> LumenCfg:
+        """Return a copy of the preset of that name, for ``env.lumen=metric`` on the command line.
+
+        Raises:
+            ValueError: If there is no such preset, with the nearest names.
+        """
+        return copy(resolve_lumen(name))
+
+    def validate_config(self) -> None:
+        """Check bounds and that every ramp rises.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "depth_threshold", Range(0.0, 1.0, above=True))
+        require_fraction(self, "mix")
+        require_non_negative(self, "tau_wall", "delta_min", unit="m")
+        require_positive(self, "tau_lumen", "delta_good", "far", unit="m")
+        require_order(self, "tau_wall", "tau_lumen", unit="m")
+        require_order(self, "delta_min", "delta_good", unit="m")
+        require(self, "rho_min", Range(0.0, 1.0, below=True))
+        require_non_negative(self, "weight_centering", "weight_visibility")
+
+    def key(self) -> tuple[float, ...]:
+        """Return the constants in the order of the fields, by which scores are kept."""
+        return tuple(vars(self).values())
 
 
 PAPER = LumenCfg()
@@ -180,17 +207,17 @@ def score_depth(depth: torch.Tensor, cfg: LumenCfg) -> LumenScores:
     wp.init()  # for images without a simulation
     scores = torch.empty(10, len(depth), dtype=torch.float32, device=depth.device)
     images = wp.from_torch(depth.float().contiguous())
-    args = [images, _constants(cfg), wp.from_torch(scores)]
+    args = [images, _constants(cfg.key()), wp.from_torch(scores)]
     wp.launch(lumen_kernels.score_images, len(depth), args, device=images.device, block_dim=32)
     s_c, s_1, s_2, s_3, s_o, reward, row, column, smallest, largest = scores
     return LumenScores(s_c, s_1, s_2, s_3, s_o, reward, torch.stack((row, column), dim=1), smallest, largest)
 
 
 @cache
-def _constants(cfg: LumenCfg) -> lumen_kernels.LumenConstants:
+def _constants(values: tuple[float, ...]) -> lumen_kernels.LumenConstants:
     constants = lumen_kernels.LumenConstants()
-    for name, value in dataclasses.asdict(cfg).items():
-        setattr(constants, name, value)
+    for field, value in zip(dataclasses.fields(LumenCfg), values, strict=True):
+        setattr(constants, field.name, value)
     return constants
 
 
@@ -209,9 +236,10 @@ def lumen_scores(env: ManagerBasedEnv, lumen: str | LumenCfg | None = None) -> L
     if scored != (id(images), images.frame):
         scores = {}
         _CACHE[env] = ((id(images), images.frame), scores)
-    if cfg not in scores:
-        scores[cfg] = score_depth(images.output["depth"], cfg)
-    return scores[cfg]
+    key = cfg.key()
+    if key not in scores:
+        scores[key] = score_depth(images.output["depth"], cfg)
+    return scores[key]
 
 
 def resolve_lumen(lumen: str | LumenCfg) -> LumenCfg:
@@ -227,4 +255,5 @@ def resolve_lumen(lumen: str | LumenCfg) -> LumenCfg:
     return LUMEN_PRESETS[lumen]
 
 
-_CACHE: WeakKeyDictionary[ManagerBasedEnv, tuple[tuple[int, int], dict[LumenCfg, LumenScores]]] = WeakKeyDictionary()
+_Scores = dict[tuple[float, ...], LumenScores]
+_CACHE: WeakKeyDictionary[ManagerBasedEnv, tuple[tuple[int, int], _Scores]] = WeakKeyDictionary()

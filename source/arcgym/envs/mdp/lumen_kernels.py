@@ -62,7 +62,7 @@ def depth_range(depth: wp.array3d(dtype=float), world: int, far: float) -> wp.ve
 
 @wp.func
 def deep_region(depth: wp.array3d(dtype=float), world: int, threshold: float, far: float) -> DeepRegion:
-    """Number and mean place of the pixels of at least ``threshold`` [m]."""
+    """Return number and mean place of the pixels of at least ``threshold`` [m]."""
     pixels = int(0)
     rows = wp.int64(0)
     columns = wp.int64(0)

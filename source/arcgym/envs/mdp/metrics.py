@@ -88,7 +88,7 @@ def inserted_scope(env: ManagerBasedRLEnv) -> torch.Tensor:
 
 
 def looping_ratio(env: ManagerBasedRLEnv) -> torch.Tensor:
-    """Inserted length over the tip's arc length, shape (N,) (reduce: last).
+    """Return the inserted length over the tip's arc length, shape (N,) (reduce: last).
 
     Above one the shaft has formed loops. Arc lengths below 1 cm count as 1 cm.
     """

@@ -71,7 +71,7 @@ def depth(env: ManagerBasedEnv, far: float = 0.1, sensor_cfg: SceneEntityCfg = _
 
 
 def tip_lumen_direction(env: ManagerBasedEnv) -> torch.Tensor:
-    """Unit direction of the lumen at the tip, in the tip frame (+Z forward), shape (N, 3)."""
+    """Return the unit direction of the lumen at the tip, in the tip frame (+Z forward), shape (N, 3)."""
     data = env.scene["endoscope"].data
     return quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)
 
@@ -140,7 +140,7 @@ def tip_bending(env: ManagerBasedEnv) -> torch.Tensor:
 
 
 def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
-    """Inserted length [m] and its excess over the tip's arc length over 0.1 m (loops), shape (N, 2)."""
+    """Return the inserted length [m] and its excess over the tip's arc length over 0.1 m (loops), shape (N, 2)."""
     data = env.scene["endoscope"].data
     return torch.stack((data.inserted_length, (data.inserted_length - data.tip_arc_length) / 0.1), dim=1)
 

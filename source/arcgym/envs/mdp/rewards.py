@@ -54,7 +54,7 @@ def lumen_visibility(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None
 
 @expects(lumen=LUMEN_PRESETS)
 def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
-    """The paper's reward ``R = w_c s_c + w_o s_o``, see :mod:`arcgym.envs.mdp.lumen`, shape (N,).
+    """Return the paper's reward ``R = w_c s_c + w_o s_o``, see :mod:`arcgym.envs.mdp.lumen`, shape (N,).
 
     Args:
         lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from arcgym.rl.runner_cfg import RslRlPpoAlgorithmCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import Range, require, require_positive
 
 
 @configclass
@@ -48,3 +49,14 @@ class RslRlA2cAlgorithmCfg(RslRlPpoAlgorithmCfg):
 
     optimizer_eps: float = 1.0e-5
     """Term that keeps the optimizer's division finite. Raise it when the first steps are too large."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        super().validate_config()
+        require(self, "num_learning_epochs", Range(1, 1))
+        require(self, "num_mini_batches", Range(1, 1))
+        require_positive(self, "optimizer_eps")

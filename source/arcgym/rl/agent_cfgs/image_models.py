@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from arcgym.rl.runner_cfg import RslRlCnnModelCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import require, require_at_least
 
 
 @configclass
@@ -18,6 +19,15 @@ class AugmentedCnnModelCfg(RslRlCnnModelCfg):
 
     shift: int = 4
     """Largest random shift [px]; 0 switches it off. A twentieth of the image's edge is usual."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        super().validate_config()
+        require_at_least(self, 0, "shift", unit="px")
 
 
 @configclass
@@ -38,3 +48,13 @@ class RecurrentCnnModelCfg(AugmentedCnnModelCfg):
 
     rnn_num_layers: int = 1
     """Recurrent layers."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        super().validate_config()
+        require(self, "rnn_type", ("lstm", "gru"))
+        require_at_least(self, 1, "rnn_hidden_dim", "rnn_num_layers")

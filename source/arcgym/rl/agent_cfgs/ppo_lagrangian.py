@@ -7,6 +7,14 @@ from __future__ import annotations
 
 from arcgym.rl.runner_cfg import RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg, RslRlPpoAlgorithmCfg
 from arcgym.utils.configclass import MISSING, configclass
+from arcgym.utils.validation import (
+    Range,
+    require,
+    require_at_least,
+    require_fraction,
+    require_non_negative,
+    require_positive,
+)
 
 
 @configclass
@@ -18,6 +26,15 @@ class MultiplierCfg:
 
     init: float = 0.001
     """First value, in units of reward per unit of cost."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        require(self, "kind", ("pid", "ascent", "fixed"))
+        require_non_negative(self, "init")
 
 
 @configclass
@@ -45,6 +62,18 @@ class PidMultiplierCfg(MultiplierCfg):
     maximum: float = 100.0
     """Largest value."""
 
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        super().validate_config()
+        require_non_negative(self, "kp", "ki", "kd")
+        require(self, "smoothing", Range(0.0, 1.0, below=True))
+        require_at_least(self, 1, "delay")
+        require_positive(self, "maximum")
+
 
 @configclass
 class AscentMultiplierCfg(MultiplierCfg):
@@ -58,6 +87,15 @@ class AscentMultiplierCfg(MultiplierCfg):
 
     maximum: float = 100.0
     """Largest value."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        super().validate_config()
+        require_positive(self, "learning_rate", "maximum")
 
 
 @configclass
@@ -93,6 +131,18 @@ class RslRlPpoLagrangianAlgorithmCfg(RslRlPpoAlgorithmCfg):
 
     min_episodes: int = 1
     """Episodes that must have ended before the multipliers move again. Raise it when single episodes vary a lot."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        super().validate_config()
+        require_non_negative(self, "limits")
+        require(self, "cost_gamma", Range(0.0, 1.0, above=True))
+        require_fraction(self, "cost_lam")
+        require_at_least(self, 1, "min_episodes")
 
 
 @configclass

@@ -10,6 +10,7 @@ from typing import Any
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
 from arcgym.rl.runner_cfg import CnnCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import FINITE, Range, require, require_at_least, require_positive
 
 
 @configclass
@@ -21,6 +22,14 @@ class SquashedGaussianDistributionCfg:
 
     init_std: float = 1.0
     """First standard deviation before squashing; 1 spreads actions almost evenly."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        require_positive(self, "init_std")
 
 
 @configclass
@@ -91,6 +100,19 @@ class RslRlSacAlgorithmCfg:
 
     max_grad_norm: float = 10.0
     """Gradient clipping by norm."""
+
+    def validate_config(self) -> None:
+        """Check names and bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        require_at_least(self, 1, "replay_size", "frame_stacks", "batch_size", "actor_interval")
+        require(self, "gamma", Range(0.0, 1.0, above=True))
+        require_positive(self, "learning_rate", "updates_per_transition", "init_temperature", "max_grad_norm")
+        require_at_least(self, 0, "learning_starts")
+        require(self, "target_step", Range(0.0, 1.0, above=True))
+        require(self, "target_entropy", FINITE, unit="nat")
 
 
 @configclass

@@ -77,7 +77,7 @@ class PPOLagrangian(PPO):
         shape = (len(limits), *storage.rewards.shape)
         self.costs, self.cost_values, self.cost_returns = (torch.zeros(shape, device=self.device) for _ in range(3))
         self.episode_costs = EpisodeCosts(len(limits), storage.num_envs, self.device)
-        self.mean_episode_costs = dict.fromkeys(limits, float("nan"))
+        self.mean_episode_costs: dict[str, float] = {}
         self._step_values = torch.zeros(shape[0], *shape[2:], device=self.device)
 
     @staticmethod
@@ -155,7 +155,8 @@ class PPOLagrangian(PPO):
         losses |= super().update()
         for name in self.cost_names:
             losses[f"multiplier/{name}"] = self.multipliers[name].value
-            losses[f"episode_cost/{name}"] = self.mean_episode_costs[name]
+            if name in self.mean_episode_costs:
+                losses[f"episode_cost/{name}"] = self.mean_episode_costs[name]
         return losses
 
     def train_mode(self) -> None:

@@ -116,7 +116,6 @@ class SAC:
         size, stacks = alg_cfg.pop("replay_size"), alg_cfg.pop("frame_stacks", None)
         read = {group for groups_of_set in groups.values() for group in groups_of_set}
         replay = ReplayBuffer(obs.select(*read), env.num_actions, size, device, stacks)
-        print(f"replay: {size} observations, {replay.num_bytes / 2**20:.1f} MiB on {device}")
         return alg_class(actor, critics, replay, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
 
     @property

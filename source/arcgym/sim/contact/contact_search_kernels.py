@@ -54,7 +54,13 @@ class Candidates:
 
 @wp.kernel
 def ring_centers(x: wp.array2d[wp.vec3], surface: LumenSurface, centers: wp.array2d[wp.vec3]):
-    """Mean of each ring's inner vertices. Launch (W, R)."""
+    """Compute the mean of each ring's inner vertices. Launch (W, R).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        surface: Inner faces of one world.
+        centers: Ring centres [m], shape (W, R); written.
+    """
     w, r = wp.tid()
     n = surface.rings.shape[1]
     total = wp.vec3(0.0)
@@ -76,6 +82,13 @@ def track_rings(
     Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1.
 
     A link whose center is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
+
+    Args:
+        centers: Ring centers [m], shape (W, R).
+        body_q: Link poses, shape (W*L,).
+        max_shift: Rings that a link may cross since the last call.
+        ring: Ring of each link or -1, shape (W, L); updated.
+        ring_distance: Distance from its center [m], shape (W, L); written.
     """
     w, link = wp.tid()
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
@@ -100,7 +113,7 @@ def track_rings(
 
 @wp.func
 def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> bool:
-    """Whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
+    """Return whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
     gap = wp.abs(wp.dot(normal, a)) - wp.abs(wp.dot(normal, axis))
     return gap <= 0.0 or gap * gap <= limit * limit * wp.length_sq(normal)
 
@@ -184,6 +197,17 @@ def find_candidates(
 
     Far along the colon from the link's own ring, faces count that have the link on their lumen's side: the wall
     gathered around the link, but not the outside of a neighboring loop.
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        bounds: Spheres around rings and patches.
+        law: Contact law.
+        ring: Ring of each link, shape (W, L).
+        ring_distance: Distance from its center, FAR for links outside the anus [m], shape (W, L).
+        candidates: Faces and distances; written.
     """
     w, link = wp.tid()
     n = int(0)
@@ -226,7 +250,7 @@ def allot_slots(candidates: Candidates, records: ContactRecords):
 
 @wp.func
 def face_normal(surface: LumenSurface, face: int, x: wp.array2d[wp.vec3], w: int) -> wp.vec3:
-    """Unit normal of a face, from the lumen into the wall."""
+    """Return the unit normal of a face, from the lumen into the wall."""
     a = x[surface.faces[face, 0], w]
     return wp.normalize(wp.cross(x[surface.faces[face, 1], w] - a, x[surface.faces[face, 2], w] - a))
 
@@ -239,7 +263,7 @@ def edge_proximity(u: float) -> float:
 
 @wp.func
 def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d[wp.vec3], w: int) -> wp.vec3:
-    """Normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
+    """Return the normal at barycentric ``u`` of ``face``; towards an edge, the mean with the face beyond it.
 
     At a sharp fold the face's own normal may be at more than a right angle to the direction to the link, and its sign
     would be wrong
@@ -255,7 +279,7 @@ def surface_normal(surface: LumenSurface, face: int, u: wp.vec3, x: wp.array2d[w
 
 @wp.func
 def face_corners(surface: LumenSurface, face: int) -> wp.vec3i:
-    """Vertices of a face."""
+    """Return the vertices of a face."""
     return wp.vec3i(surface.faces[face, 0], surface.faces[face, 1], surface.faces[face, 2])
 
 
@@ -311,7 +335,13 @@ def past_slide(past: PastContacts, face: int, link: int, w: int, capacity: int) 
 
 @wp.kernel
 def fill_slots(candidates: Candidates, past: PastContacts, records: ContactRecords):
-    """Copy the candidates into the slots of their links. Launch (W, L + 1); the last frees what is left over."""
+    """Copy the candidates into the slots of their links. Launch (W, L + 1); the last frees what is left over.
+
+    Args:
+        candidates: Faces near each link.
+        past: Contacts of the last step, from which friction goes on.
+        records: Contacts; ``link``, ``face``, ``distance`` and ``slide`` are written.
+    """
     w, link = wp.tid()
     first = w * records.capacity
     if link == candidates.count.shape[1]:
@@ -335,7 +365,15 @@ def locate_contacts(
     surface: LumenSurface,
     records: ContactRecords,
 ):
-    """Find where every recorded face comes closest to its link. Launch (W, S)."""
+    """Find where every recorded face comes closest to its link. Launch (W, S).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        records: Contacts; ``corners``, ``bary``, ``weight``, ``normal`` and ``direction`` are written.
+    """
     w, k = wp.tid()
     slot = w * records.capacity + k
     link = records.link[slot]
@@ -376,6 +414,10 @@ def build_contact_lists(vertex_ring: wp.array[int], records: ContactRecords):
     """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
 
     One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
+
+    Args:
+        vertex_ring: Ring of each wall vertex, shape (V,).
+        records: Contacts; the lists, emptied before, are written.
     """
     w = wp.tid()
     first = w * records.capacity

@@ -31,10 +31,22 @@ def contact_load(
     slide: wp.vec3,
     dt: float,
 ) -> ArticulatedBody:
-    """Load of one contact, a ``share`` of a full one, at its point, which moves at ``lin``; the wall's at ``wall_v``.
+    """Return the load of one contact at its point as function of the acceleration of that point.
 
     Springs and damper act with their values at the end of the step; the stiffness of the normal spring is a secant that
-    lets it not pull. ``slide`` is how far the link has come along the wall so far [m].
+    keeps it from pulling.
+
+    Args:
+        law: Contact law.
+        share: Weight of the contact.
+        friction: Coulomb coefficient, dynamic.
+        gap: Distance of the surfaces, negative where they overlap [m].
+        normal: Unit vector from the scope into the wall.
+        lin: Velocity of the link's point [m/s].
+        wall_v: Velocity of the wall's point [m/s].
+        slide: How far the link has come along the wall so far: what friction holds, and the way in this step [m].
+        dt: Substep [s].
+
     """
     out = ArticulatedBody()
     end = gap - dt * wp.dot(normal, lin)
@@ -74,11 +86,23 @@ def load_contacts(
     loads: LinkLoads,
     penetrated: wp.array[int],
 ):
-    """Sum the contacts of each link with the wall where it is. Launch (L, W).
+    """Sum up the contacts of each link with the wall at its present place. Launch (L, W).
 
-    ``body_q_prev`` are the link poses at the start of the physics step, ``elapsed`` [s] before.
-
-    Sets ``penetrated``, shape (W,), where a link's axis is so close to the wall that it may get, or be, behind it.
+    Args:
+        body_q: Link poses, shape (W*L,).
+        body_qd: Link velocities [m/s, rad/s], shape (W*L,).
+        com: Centres of mass in the links' frames [m], shape (W*L,).
+        x: Wall positions [m], shape (V, W).
+        v: Wall velocities [m/s], shape (V, W).
+        links: Capsules of one world.
+        records: Contacts.
+        law: Contact law.
+        friction: Coulomb coefficient of each world, shape (W,).
+        body_q_prev: Link poses at the start of the physics step, shape (W*L,).
+        elapsed: Time since then [s].
+        dt: Substep [s].
+        loads: Loads of the links; written.
+        penetrated: Set to 1 where a link's axis is so close to the wall that it may get behind it, or is, shape (W,).
     """
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
@@ -119,7 +143,15 @@ def record_forces(
     weight: float,
     wall_force: wp.array[wp.vec3],
 ):
-    """Add ``weight`` times each link's contact force at the end of the step to ``wall_force``. Launch (L, W)."""
+    """Add up each link's contact force at the end of the substep. Launch (L, W).
+
+    Args:
+        loads: Loads of the links.
+        acc_lin: Accelerations of the centres of mass [m/s^2], shape (L, W).
+        acc_ang: Angular accelerations [rad/s^2], shape (L, W).
+        weight: Share of the substep in the mean.
+        wall_force: Mean force on each link [N], shape (W*L,); added to.
+    """
     link, w = wp.tid()
     row = w * loads.wrench.shape[0] + link
     given = loads.ll[link, w] * acc_lin[link, w] + loads.la[link, w] * acc_ang[link, w]

@@ -66,7 +66,7 @@ class RingSpheres:
 
 @wp.kernel
 def measure_spheres(x: wp.array2d[wp.vec3], rings: WallRings, spheres: RingSpheres):
-    """Measure the bounding sphere of each ring. Launch (R, W)."""
+    """Write the bounding sphere of each ring at the positions ``x`` [m], shape (V, W). Launch (R, W)."""
     r, w = wp.tid()
     center = wp.vec3(0.0)
     count = float(0.0)
@@ -124,7 +124,7 @@ def pair_gap(
 
 @wp.kernel
 def allow_rest_overlaps(x: wp.array2d[wp.vec3], spheres: RingSpheres, rings: WallRings):
-    """Allow the pairs that overlap at rest to do so. Launch (R, R)."""
+    """Lower ``rings.min_gap`` of pairs that overlap at the rest positions ``x`` [m], shape (V, 1). Launch (R, R)."""
     r, s = wp.tid()
     if rings.min_gap[r, s] > NO_CONTACT:
         n = wp.normalize(xyz(spheres.sphere[s, 0]) - xyz(spheres.sphere[r, 0]))
@@ -206,7 +206,7 @@ def rings_to_skip(rings: WallRings, own: wp.vec4, distance: float) -> int:
 
 @wp.kernel
 def find_near_rings(rings: WallRings, spheres: RingSpheres):
-    """Mark the rings whose spheres meet. Launch (R, W)."""
+    """Mark the rings whose spheres meet in ``spheres.near``. Launch (R, W)."""
     r, w = wp.tid()
     own = spheres.sphere[r, w]
     s = rings.next_candidate[r]
@@ -221,7 +221,7 @@ def find_near_rings(rings: WallRings, spheres: RingSpheres):
 
 @wp.kernel
 def measure_self_contact(x: wp.array2d[wp.vec3], rings: WallRings, spheres: RingSpheres, out: SelfContactForce):
-    """Measure the contact of each ring with all others. Launch (R, W)."""
+    """Measure the contact of each ring with all others at the positions ``x`` [m], shape (V, W). Launch (R, W)."""
     r, w = wp.tid()
     if spheres.near[r, w] == 0 and out.in_contact[r, w] == 0:
         return

@@ -56,17 +56,22 @@ class TwoLevelCoupling:
         sim, state = self.sim, self.sim.state
         count = sim.cfg.scope_substeps
         dt = sim.cfg.dt / count
-        wp.copy(self.body_q_prev, state.body_q)
-        sim.contact.detect(sim.nodal_pos, state.body_q)
+        self.find_contacts()
         for k in range(count):
-            self._load_contacts(k * dt, dt)
+            self.load_contacts(k * dt, dt)
             sim.actuation.apply(state, sim.control, sim.contact.ring, dt)
             self.solver.step(state, state, sim.control, None, dt)
             self._record(1.0 / count)
         sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
         sim.wall.advance_slides(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev)
 
-    def _load_contacts(self, elapsed: float, dt: float) -> None:
+    def find_contacts(self) -> None:
+        """Begin a step: remember where the links are, and find their contacts."""
+        wp.copy(self.body_q_prev, self.sim.state.body_q)
+        self.sim.contact.detect(self.sim.nodal_pos, self.sim.state.body_q)
+
+    def load_contacts(self, elapsed: float, dt: float) -> None:
+        """Write the loads of the contacts on the links for a substep of ``dt`` [s], ``elapsed`` [s] into a step."""
         sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
         inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
         inputs += [contact.links, contact.records, contact.law, contact.friction, self.body_q_prev, elapsed, dt]

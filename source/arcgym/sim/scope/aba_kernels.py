@@ -98,7 +98,7 @@ def free_motion(
     joint_q: wp.array[float],
     joint_qd: wp.array[float],
 ) -> LinkMotion:
-    """Integrate a free root with the accelerations ``lin`` and ``ang``."""
+    """Integrate a free root in place with the accelerations ``lin`` and ``ang``."""
     out = LinkMotion()
     i = w * chain.dofs
     out.lin = wp.vec3(joint_qd[i], joint_qd[i + 1], joint_qd[i + 2]) + dt * lin
@@ -128,7 +128,7 @@ def next_motion(
     joint_q: wp.array[float],
     joint_qd: wp.array[float],
 ) -> LinkMotion:
-    """Motion of a link from that of the one before it and the joint between them."""
+    """Return the motion of a link from that of the one before it and the joint between them."""
     out = LinkMotion()
     joint = before.pose * chain.parent_frame[link]
     shift = wp.vec3(0.0)
@@ -168,9 +168,18 @@ def solve_chain(
     body_q_out: wp.array[wp.transform],
     body_qd_out: wp.array[wp.spatial_vector],
 ):
-    """Accelerations of all joints, then their new places and the links' new poses. Launch (W,).
+    """Solve for the accelerations of all joints, and integrate joints and links. Launch (W,).
 
-    ``joint_q`` and ``joint_qd`` are moved on in place.
+    Args:
+        chain: Links and joints of one world.
+        body_q: Link poses at the start, shape (W*L,).
+        body_qd: Link velocities at the start [m/s, rad/s], shape (W*L,).
+        dt: Substep [s].
+        work: Prepared links and joints; gains, accelerations and drive forces are written.
+        joint_q: Joint coordinates [m or rad], shape (W*J,); advanced in place.
+        joint_qd: Joint velocities [m/s or rad/s], shape (W*D,); advanced in place.
+        body_q_out: Link poses at the end, shape (W*L,).
+        body_qd_out: Link velocities at the end [m/s, rad/s], shape (W*L,).
     """
     w = wp.tid()
     whole = inward_pass(chain, work, w)
@@ -218,7 +227,15 @@ def chain_kinematics(
     body_q: wp.array[wp.transform],
     body_qd: wp.array[wp.spatial_vector],
 ):
-    """Poses and velocities of all links from the joints', as :func:`solve_chain` computes them. Launch (W,)."""
+    """Compute poses and velocities of all links as :func:`solve_chain` does. Launch (W,).
+
+    Args:
+        chain: Links and joints of one world.
+        joint_q: Joint coordinates [m or rad], shape (W*J,).
+        joint_qd: Joint velocities [m/s or rad/s], shape (W*D,).
+        body_q: Link poses, shape (W*L,); written.
+        body_qd: Link velocities [m/s, rad/s], shape (W*L,); written.
+    """
     w = wp.tid()
     now = LinkMotion()
     now.pose = wp.transform_identity()

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What moves the scopes of all worlds: weight, introducer and the actuators of the endoscope."""
+"""Loads that move the scopes of all worlds: weight, introducer and the actuators of the endoscope."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Actuation:
 
     @property
     def memory(self) -> dict[str, wp.array]:
-        """What the drives remember, as ``<actuator>.<array>``, W entries each."""
+        """State that the drives keep, as ``<actuator>.<array>``, W entries each."""
         pairs = [(name, actuator.memory) for name, actuator in self.actuators.items()]
         return {f"{name}.{key}": array for name, memory in pairs for key, array in memory.items()}
 
@@ -90,7 +90,7 @@ class Actuation:
             actuator.record(drive_force, acceleration, weight)
 
     def record_explicit(self, state: newton.State, control: newton.Control, weight: float) -> None:
-        """As :meth:`record`, for solvers that do not tell what the drives do."""
+        """Do as :meth:`record` for solvers that do not report the drives' forces."""
         for actuator in self.actuators.values():
             actuator.record_explicit(state, control, weight)
 

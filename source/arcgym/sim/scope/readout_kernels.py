@@ -14,7 +14,13 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.kernel
 def collect_forces(step_force: wp.array[wp.vec3], total: wp.array[wp.vec3], peak: wp.array[float]):
-    """Add one physics step's mean force to the control step's sum and peak, and clear it. Launch (W*L,)."""
+    """Add one physics step's mean force to the control step's sum and peak, and clear it. Launch (W*L,).
+
+    Args:
+        step_force: Mean of the physics step [N], shape (W*L,); set to zero.
+        total: Sum over the control step [N], shape (W*L,); added to.
+        peak: Largest magnitude [N], shape (W*L,); raised.
+    """
     i = wp.tid()
     f = step_force[i]
     total[i] = total[i] + f
@@ -24,7 +30,7 @@ def collect_forces(step_force: wp.array[wp.vec3], total: wp.array[wp.vec3], peak
 
 @wp.kernel
 def measure_forces(force: wp.array[wp.vec3], magnitude: wp.array[float]):
-    """Magnitude of each link's force [N]. Launch (W*L,)."""
+    """Write the ``magnitude`` of each link's ``force`` [N], shape (W*L,) each. Launch (W*L,)."""
     i = wp.tid()
     magnitude[i] = wp.length(force[i])
 
@@ -40,7 +46,18 @@ def read_tip(
     tip_velocity: wp.array[wp.spatial_vector],
     camera_pose: wp.array[wp.transform],
 ):
-    """Pose and velocity of the front of the last link, and the camera's pose. Launch (W,)."""
+    """Compute pose and velocity of the front of the last link, and the camera's pose. Launch (W,).
+
+    Args:
+        body_q: Link poses, shape (W*L,).
+        body_qd: Link velocities [m/s, rad/s], shape (W*L,).
+        links: Links a world, L.
+        tip_offset: Front of the last link in its frame [m].
+        camera_offset: Camera in the last link's frame.
+        tip_pose: Front of the tip, shape (W,); written.
+        tip_velocity: Its velocity [m/s, rad/s], shape (W,); written.
+        camera_pose: Camera, shape (W,); written.
+    """
     w = wp.tid()
     link = (w + 1) * links - 1
     pose = body_q[link]
@@ -63,9 +80,19 @@ def locate_tip(
     distance: wp.array[float],
     direction: wp.array[wp.vec3],
 ):
-    """Closest point of the deformed centreline to the tip, near the last link's ring. Launch (W,).
+    """Find the closest point of the deformed centreline to the tip, near the last link's ring. Launch (W,).
 
-    ``arc`` is in rest arc length [m]; before the first ring and beyond the last it goes on along the end segments.
+    Before the first ring and beyond the last the centreline goes on along its end segments.
+
+    Args:
+        tip_pose: Front of the tip, shape (W,).
+        centers: Ring centres [m], shape (W, R).
+        ring_arc: Arc length of the rings at rest [m], shape (R,).
+        link_ring: Ring of each link or -1, shape (W, L).
+        span: Rings searched on either side.
+        arc: Arc length of the point at rest [m], shape (W,); written.
+        distance: Distance of the tip from it [m], shape (W,); written.
+        direction: Direction of the centreline there, shape (W,); written.
     """
     w = wp.tid()
     rings = centers.shape[1]
@@ -93,13 +120,13 @@ def locate_tip(
 
 @wp.func
 def broken(p: wp.vec3) -> bool:
-    """Whether a position is not finite or farther than 10 m away."""
+    """Return whether a position is not finite or farther than 10 m away."""
     return not (wp.abs(p[0]) < 10.0 and wp.abs(p[1]) < 10.0 and wp.abs(p[2]) < 10.0)
 
 
 @wp.kernel
 def flag_broken_points(x: wp.array2d[wp.vec3], flag: wp.array[int]):
-    """Mark worlds with a broken wall vertex. Launch (V, W)."""
+    """Set ``flag``, shape (W,), of worlds with a broken position ``x`` [m], shape (V, W). Launch (V, W)."""
     i, w = wp.tid()
     if broken(x[i, w]):
         flag[w] = 1
@@ -107,7 +134,7 @@ def flag_broken_points(x: wp.array2d[wp.vec3], flag: wp.array[int]):
 
 @wp.kernel
 def flag_broken_bodies(body_q: wp.array[wp.transform], per_world: int, flag: wp.array[int]):
-    """Mark worlds with a broken link. Launch (W*L,)."""
+    """Set ``flag``, shape (W,), of worlds with a broken pose ``body_q``, shape (W*L,). Launch (W*L,)."""
     i = wp.tid()
     if broken(wp.transform_get_translation(body_q[i])):
         flag[i // per_world] = 1

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""What the articulated-body algorithm of a serial chain works on: inertias, loads and joint forces at a step's start.
+"""Data of the articulated-body algorithm of a serial chain: inertias, loads and joint forces at a step's start.
 
 Linearly implicit Euler: springs, dampers and contacts act with their values at the end of the step, to first order in
 the acceleration. All vectors have world axes. Inertias refer to the link's joint (its *anchor*; the centre of mass of a
@@ -17,7 +17,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.struct
 class Chain:
-    """What one world's chain is made of."""
+    """Links and joints of one world's chain."""
 
     links: int  # L
     dofs: int  # D
@@ -97,7 +97,7 @@ class ArticulatedBody:
 
 @wp.func
 def skew_times(r: wp.vec3, m: wp.mat33) -> wp.mat33:
-    """Matrix of the cross products of ``r`` with the columns of ``m``."""
+    """Return the matrix of the cross products of ``r`` with the columns of ``m``."""
     return wp.matrix_from_rows(r[1] * m[2] - r[2] * m[1], r[2] * m[0] - r[0] * m[2], r[0] * m[1] - r[1] * m[0])
 
 
@@ -115,7 +115,7 @@ def shift_origin(body: ArticulatedBody, r: wp.vec3) -> ArticulatedBody:
 
 @wp.func
 def anchor(chain: Chain, link: int, pose: wp.transform) -> wp.vec3:
-    """Point that a link's inertia and acceleration refer to."""
+    """Return the point that a link's inertia and acceleration refer to."""
     if link == 0 and chain.free == 1:
         return wp.transform_point(pose, chain.com[0])
     return wp.transform_point(pose, wp.transform_get_translation(chain.child_frame[link]))
@@ -125,7 +125,7 @@ def anchor(chain: Chain, link: int, pose: wp.transform) -> wp.vec3:
 def link_inertia(
     chain: Chain, link: int, pose: wp.transform, omega: wp.vec3, lever: wp.vec3, load: ArticulatedBody
 ) -> ArticulatedBody:
-    """A link with its loads (about the centre of mass), seen from its anchor."""
+    """Return the articulated body of a link with its loads (about the centre of mass) at its anchor."""
     rot = wp.quat_to_matrix(wp.transform_get_rotation(pose))
     inertia = rot * chain.inertia[link] * wp.transpose(rot)
     centripetal = wp.cross(omega, wp.cross(omega, lever))
@@ -160,7 +160,7 @@ def prepare_axes(
     w: int,
     work: ChainWork,
 ):
-    """Axes and velocity products of a link's joint; its first axis is fixed in the link before, its last in its own."""
+    """Write axes and velocity products of a link's joint; the first axis is the parent's, the last the link's."""
     row = w * chain.links + link
     parent = chain.parent_frame[link]
     arm = wp.vec3(0.0)
@@ -201,9 +201,17 @@ def prepare_links(
     loads: LinkLoads,
     work: ChainWork,
 ):
-    """Inertia, bias force, joint axes and velocity products of every link. Launch (L, W).
+    """Compute inertia, bias force, joint axes and velocity products of every link. Launch (L, W).
 
-    ``body_f`` loads the centres of mass; ``resistance`` is the diagonal of its drop by acceleration.
+    Args:
+        chain: Links and joints of one world.
+        body_q: Link poses, shape (W*L,).
+        body_qd: Link velocities [m/s, rad/s], shape (W*L,).
+        body_f: Force [N] and torque [N m] on the centres of mass, shape (W*L,).
+        joint_qd: Joint velocities [m/s or rad/s], shape (W*D,).
+        resistance: Diagonal of the drop of ``body_f`` by acceleration [kg, kg m^2], shape (L, W).
+        loads: Further loads of the links.
+        work: Scratch; all that concerns links, and ``axis``, is written.
     """
     link, w = wp.tid()
     row = w * chain.links + link
@@ -236,7 +244,17 @@ def prepare_joints(
     dt: float,
     work: ChainWork,
 ):
-    """Forces of drives and stops if the joints keep their velocities. Launch (D, W)."""
+    """Compute the forces of drives and stops if the joints keep their velocities. Launch (D, W).
+
+    Args:
+        chain: Links and joints of one world.
+        joint_q: Joint coordinates [m or rad], shape (W*J,), J = D, or D + 1 for a free root.
+        joint_qd: Joint velocities [m/s or rad/s], shape (W*D,).
+        target: Targets of the drives [m or rad], shape (W*J,).
+        joint_f: Further joint forces [N or N m], shape (W*D,).
+        dt: Substep [s].
+        work: Scratch; ``drive``, ``drive_inertia``, ``stop`` and ``stop_inertia`` are written.
+    """
     d, w = wp.tid()
     if chain.free == 1 and d < 6:
         return

@@ -79,8 +79,13 @@ class SolverArticulatedChain(SolverBase):
 
     def forward(self, state: newton.State) -> None:
         """Recompute the links' poses and velocities; to the bit what :meth:`step` leaves if nothing was changed."""
-        args = [self.chain, state.joint_q, state.joint_qd, state.body_q, state.body_qd]
-        wp.launch(chain_kinematics, self.num_envs, args, device=self.model.device)
+        wp.launch(
+            chain_kinematics,
+            self.num_envs,
+            inputs=[self.chain, state.joint_q, state.joint_qd],
+            outputs=[state.body_q, state.body_qd],
+            device=self.model.device,
+        )
 
     def step(
         self,
@@ -95,14 +100,35 @@ class SolverArticulatedChain(SolverBase):
             wp.copy(state_out.joint_q, state_in.joint_q)
             wp.copy(state_out.joint_qd, state_in.joint_qd)
         chain, work, worlds, device = self.chain, self.work, self.num_envs, self.model.device
-        args = [chain, state_in.body_q, state_in.body_qd, state_in.body_f, state_in.joint_qd]
         wp.launch(
-            kernels.prepare_links, (chain.links, worlds), [*args, self.resistance, self.loads, work], device=device
+            kernels.prepare_links,
+            (chain.links, worlds),
+            inputs=[
+                chain,
+                state_in.body_q,
+                state_in.body_qd,
+                state_in.body_f,
+                state_in.joint_qd,
+                self.resistance,
+                self.loads,
+            ],
+            outputs=[work],
+            device=device,
         )
-        args = [chain, state_in.joint_q, state_in.joint_qd, control.joint_target_q, control.joint_f, dt, work]
-        wp.launch(kernels.prepare_joints, (chain.dofs, worlds), args, device=device)
-        args = [chain, state_in.body_q, state_in.body_qd, dt, work, state_out.joint_q, state_out.joint_qd]
-        wp.launch(solve_chain, worlds, [*args, state_out.body_q, state_out.body_qd], device=device)
+        wp.launch(
+            kernels.prepare_joints,
+            (chain.dofs, worlds),
+            inputs=[chain, state_in.joint_q, state_in.joint_qd, control.joint_target_q, control.joint_f, dt],
+            outputs=[work],
+            device=device,
+        )
+        wp.launch(
+            solve_chain,
+            worlds,
+            inputs=[chain, state_in.body_q, state_in.body_qd, dt],
+            outputs=[work, state_out.joint_q, state_out.joint_qd, state_out.body_q, state_out.body_qd],
+            device=device,
+        )
 
 
 def _scratch(work: kernels.ChainWork, links: int, dofs: int, worlds: int, device: wp.Device) -> kernels.ChainWork:

@@ -20,7 +20,7 @@ class Anchors:
 
 @wp.func
 def secant_share(distance: float, loose: float, slack: float) -> float:
-    """Pull at ``distance`` [m] over what the tight spring alone would pull there."""
+    """Return the pull at ``distance`` [m] over what the tight spring alone would pull there."""
     if distance <= slack:
         return loose
     return 1.0 - (1.0 - loose) * slack / distance
@@ -28,14 +28,14 @@ def secant_share(distance: float, loose: float, slack: float) -> float:
 
 @wp.func
 def anchor_pull(anchors: Anchors, i: int, x: wp.vec3) -> wp.vec3:
-    """Force on vertex ``i`` at ``x`` [N]."""
+    """Return the force on vertex ``i`` at ``x`` [N]."""
     u = x - anchors.rest[i]
     return -anchors.stiffness[i] * secant_share(wp.length(u), anchors.loose[i], anchors.slack[i]) * u
 
 
 @wp.func
 def anchor_hessian(anchors: Anchors, i: int, x: wp.vec3) -> wp.mat33:
-    """Stiffness of the spring of vertex ``i`` [N/m], positive definite: tangent along the spring, secant across it."""
+    """Return the stiffness of vertex ``i``'s spring [N/m], positive definite: tangent along it, secant across it."""
     u = x - anchors.rest[i]
     d = wp.length(u)
     secant = secant_share(d, anchors.loose[i], anchors.slack[i])

@@ -37,24 +37,23 @@ class BlockTridiagonalSolver:
         distances = [1 << level for level in range((self.rows - 1).bit_length())]
         for h in distances:
             self._reduce(h)
-        self._launch(kernels.factor_odd, (1,), [0, 1, self.diagonal])
-        self._launch(kernels.solve_root, (), [self.diagonal, self.rhs])
+        self._launch(kernels.factor_odd, (1,), [0, 1], [self.diagonal])
+        self._launch(kernels.solve_root, (), [self.diagonal], [self.rhs])
         for h in reversed(distances):
-            self._launch(
-                kernels.back_substitute, (self._odd(h),), [h, self.diagonal, self._left, self._right, self.rhs]
-            )
+            inputs = [h, self.diagonal, self._left, self._right]
+            self._launch(kernels.back_substitute, (self._odd(h),), inputs, [self.rhs])
 
     def _reduce(self, h: int) -> None:
         odd = self._odd(h)
         even = (self.rows - 1) // (2 * h) + 1
-        self._launch(kernels.factor_odd, (odd,), [h, 2 * h, self.diagonal])
+        self._launch(kernels.factor_odd, (odd,), [h, 2 * h], [self.diagonal])
         sides = [self._left, self._right]
-        self._launch(kernels.eliminate_odd, (odd, 2 * MODES + 1), [h, self.diagonal, self.upper, *sides, self.rhs])
-        self._launch(kernels.reduce_even, (even, MODES), [h, *sides, self.diagonal, self.upper, self.rhs])
+        self._launch(kernels.eliminate_odd, (odd, 2 * MODES + 1), [h, self.diagonal, self.upper], [*sides, self.rhs])
+        self._launch(kernels.reduce_even, (even, MODES), [h, *sides], [self.diagonal, self.upper, self.rhs])
 
     def _odd(self, h: int) -> int:
-        """Number of rows h, 3h, 5h, ... that exist."""
+        """Return the number of rows h, 3h, 5h, ... that exist."""
         return (self.rows - 1 + h) // (2 * h)
 
-    def _launch(self, kernel: wp.Kernel, rows: tuple[int, ...], args: list) -> None:
-        wp.launch(kernel, (*rows, self.num_envs), args, device=self.device)
+    def _launch(self, kernel: wp.Kernel, rows: tuple[int, ...], inputs: list, outputs: list) -> None:
+        wp.launch(kernel, (*rows, self.num_envs), inputs=inputs, outputs=outputs, device=self.device)

@@ -20,7 +20,13 @@ Block = wp.types.matrix(shape=(RING_MODES, RING_MODES), dtype=float)
 
 @wp.kernel
 def factor_odd(first: int, step: int, diagonal: wp.array4d[float]):
-    """Cholesky factor of each odd row's block, in place, its diagonal inverted. Launch (odd rows, W)."""
+    """Replace each odd row's block by its Cholesky factor, with inverted diagonal. Launch (odd rows, W).
+
+    Args:
+        first: First odd row.
+        step: Distance to the next one.
+        diagonal: Blocks, shape (R, M, M, W); changed in place.
+    """
     m, w = wp.tid()
     r = first + m * step
     out = Block()
@@ -73,7 +79,16 @@ def eliminate_odd(
     right: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """Columns of P = L^-1 U_{j-h}^T and Q = L^-1 U_j, and y = L^-1 b. Launch (odd rows, 2 M + 1, W)."""
+    """Compute columns of P = L^-1 U_{j-h}^T and Q = L^-1 U_j, and y = L^-1 b. Launch (odd rows, 2 M + 1, W).
+
+    Args:
+        h: Distance of neighbours.
+        diagonal: Factors L of the odd rows, shape (R, M, M, W).
+        upper: Couplings U, shape (R, M, M, W).
+        left: P, shape (R, M, M, W); written.
+        right: Q, shape (R, M, M, W); written.
+        rhs: Right-hand side, y in the odd rows afterwards, shape (R, M, W).
+    """
     m, c, w = wp.tid()
     r = h * (2 * m + 1)
     b = Unknowns()
@@ -104,7 +119,16 @@ def reduce_even(
     upper: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """Row ``a`` of each even row's new block, coupling and right-hand side. Launch (even rows, M, W)."""
+    """Compute row ``a`` of each even row's new block, coupling and right-hand side. Launch (even rows, M, W).
+
+    Args:
+        h: Distance of neighbours.
+        left: P, shape (R, M, M, W).
+        right: Q, shape (R, M, M, W).
+        diagonal: Blocks, shape (R, M, M, W); changed in place.
+        upper: Couplings, shape (R, M, M, W); changed in place.
+        rhs: Right-hand side, shape (R, M, W); changed in place.
+    """
     m, a, w = wp.tid()
     r = 2 * h * m
     rows = diagonal.shape[0]
@@ -136,7 +160,7 @@ def reduce_even(
 
 @wp.kernel
 def solve_root(diagonal: wp.array4d[float], rhs: wp.array3d[float]):
-    """The one row that is left, its block already factored. Launch (W,)."""
+    """Solve the one row that is left, its block already factored, into ``rhs``. Launch (W,)."""
     w = wp.tid()
     b = Unknowns()
     for k in range(MODES):
@@ -154,7 +178,15 @@ def back_substitute(
     right: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """Odd rows from their even neighbours: x = L^-T (y - P x_{j-h} - Q x_{j+h}). Launch (odd rows, W)."""
+    """Solve the odd rows from their even neighbours: x = L^-T (y - P x_{j-h} - Q x_{j+h}). Launch (odd rows, W).
+
+    Args:
+        h: Distance of neighbours.
+        diagonal: Factors L of the odd rows, shape (R, M, M, W).
+        left: P, shape (R, M, M, W).
+        right: Q, shape (R, M, M, W).
+        rhs: y in the odd and x in the even rows, shape (R, M, W); x in all rows afterwards.
+    """
     m, w = wp.tid()
     r = h * (2 * m + 1)
     y = Unknowns()

@@ -46,7 +46,14 @@ def ring_rotations(
     rotation: wp.array2d[wp.mat33],
     shift: wp.array2d[wp.vec3],
 ):
-    """Rotation of each ring since rest, and shift of its centre [m]. Launch (R, W)."""
+    """Measure how each ring has turned and moved since rest. Launch (R, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        space: Ring modes of one world.
+        rotation: Rotation of each ring, shape (R, W); written.
+        shift: Shift of each ring's centre [m], shape (R, W); written.
+    """
     r, w = wp.tid()
     total = wp.vec3(0.0)
     count = float(0.0)
@@ -67,7 +74,7 @@ def ring_rotations(
 
 @wp.func
 def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int) -> wp.vec3:
-    """How mode ``m`` of ring ``r`` moves the point ``u`` of face ``f``, in the rest frame."""
+    """Return the displacement of the point ``u`` of face ``f`` in mode ``m`` of ring ``r``, in the rest frame."""
     out = wp.vec3(0.0)
     for k in range(3):
         if space.ring[f[k]] == r:
@@ -85,7 +92,7 @@ def apply_contact_stiffness(measured: MeasuredContacts, slot: int, move: wp.vec3
 
 @wp.func
 def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.vec3) -> Unknowns:
-    """How far each mode of ring ``r`` moves the point ``u`` of face ``f`` along ``direction`` (in the rest frame)."""
+    """Return how far each mode of ring ``r`` moves the point ``u`` of ``f`` along ``direction``, in the rest frame."""
     out = Unknowns()
     for k in range(3):
         if space.ring[f[k]] == r:
@@ -96,7 +103,7 @@ def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.
 
 @wp.func
 def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int) -> Unknowns:
-    """Stiffness of the anchors of ring ``r`` between mode ``a`` and all modes [N/m], see ``anchor_hessian``."""
+    """Return the anchor stiffness of ring ``r`` between mode ``a`` and all modes [N/m], see ``anchor_hessian``."""
     d = wp.length(shift)
     secant = secant_share(d, space.loose[r], space.slack[r])
     row = secant * space.anchor[r, a]
@@ -112,7 +119,7 @@ def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int)
 def self_contact_row(
     space: RingSpace, self_contact: SelfContactForce, back: wp.mat33, r: int, a: int, w: int
 ) -> Unknowns:
-    """Stiffness of the contact of ring ``r`` with other loops between its mode ``a`` and all of its modes [N/m]."""
+    """Return the self-contact stiffness of ring ``r`` between its mode ``a`` and all of its modes [N/m]."""
     out = Unknowns()
     for k in range(space.members.shape[1]):
         v = space.members[r, k]
@@ -143,7 +150,23 @@ def assemble(
     upper: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """One row of the system: mode ``a`` of ring ``r``. Launch (R, M, W)."""
+    """Assemble one row of the system, mode ``a`` of ring ``r``. Launch (R, M, W).
+
+    Args:
+        force: Force on each vertex [N], shape (V, W).
+        space: Ring modes of one world.
+        rotation: Rotation of each ring, shape (R, W).
+        shift: Shift of each ring's centre [m], shape (R, W).
+        tissue: Values of each world.
+        inv_dt2: One over the squared physics step [1/s^2].
+        regularisation: Relative addition to the diagonal.
+        records: Contacts, listed by ring.
+        measured: Their normals and stiffness.
+        self_contact: Contact of the wall with itself.
+        diagonal: Blocks of the rings [N/m], shape (R, M, M, W); written.
+        upper: Blocks from each ring to the next [N/m], shape (R, M, M, W); written.
+        rhs: Force on each mode [N], shape (R, M, W); written.
+    """
     r, a, w = wp.tid()
     rings = space.mass.shape[0]
     moduli = tissue.moduli[w]
@@ -189,7 +212,15 @@ def prolong(
     largest_move: float,
     x: wp.array2d[wp.vec3],
 ):
-    """Move every vertex with its ring, at most ``largest_move`` [m]. Launch (V, W)."""
+    """Move every vertex with its ring. Launch (V, W).
+
+    Args:
+        space: Ring modes of one world.
+        rotation: Rotation of each ring, shape (R, W).
+        solution: Amplitude of each mode [m], shape (R, M, W).
+        largest_move: Longest displacement of a vertex [m].
+        x: Wall positions [m], shape (V, W); moved in place.
+    """
     i, w = wp.tid()
     r = space.ring[i]
     d = wp.vec3(0.0)

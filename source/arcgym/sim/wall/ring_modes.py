@@ -19,7 +19,7 @@ PARTS = 3
 
 @dataclass(frozen=True)
 class RingModes:
-    """What the coarse correction needs of one world's wall; R rings, V vertices, M modes."""
+    """One world's wall in the modes of its rings, for the coarse correction; R rings, V vertices, M modes."""
 
     basis: np.ndarray
     """Displacement of every vertex in each mode at rest, shape (V, M, 3)."""
@@ -50,7 +50,7 @@ class ElasticPart:
 
     @staticmethod
     def none() -> ElasticPart:
-        """A part that the wall does not have."""
+        """Return a part without elements."""
         return ElasticPart(np.zeros((0, 1), np.int32), np.zeros((0, 1, 3, 1, 3)))
 
 
@@ -112,7 +112,7 @@ def _ring_basis(points: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def _ring_displacements(plane: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Affine displacements: three translations, two tilts, twist, dilation, two ways of flattening, shape (n, M, 3).
+    """Return affine displacements: three translations, two tilts, twist, dilation, two flattenings, shape (n, M, 3).
 
     Flattening affinely stretches the ring, which a shell would avoid; modes that do avoid it at rest are far softer
     than the wall once it is dented, and the correction then overshoots without bound.

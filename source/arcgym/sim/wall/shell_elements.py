@@ -10,7 +10,7 @@ from arcgym.assets.shell_geometry import ShellGeometry, fold_gradients
 
 
 def stretching_stiffness(points: np.ndarray, geometry: ShellGeometry) -> tuple[np.ndarray, np.ndarray]:
-    """Rest stiffness of the triangles for unit shear and unit second Lamé parameter [N/m per N/m].
+    """Return the rest stiffness of the triangles for unit shear and unit second Lamé parameter [N/m per N/m].
 
     K_ab = A (mu (g_b g_a^T + m_a.m_b F F^T) + lambda g_a g_b^T), with the shape gradients m and g = F m.
 

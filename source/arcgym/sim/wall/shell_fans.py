@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""What kernels need of a shell at rest, in numpy: cotangents, and the fan of triangles around each vertex."""
+"""Rest geometry of a shell for its kernels, in numpy: cotangents, and the fan of triangles around each vertex."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from arcgym.assets.shell_geometry import ShellGeometry, hinge_of_edges
 
 
 def triangle_rest(geometry: ShellGeometry) -> np.ndarray:
-    """Cotangent of each corner over twice the area [1/m^2] and the area [m^2] of every triangle, shape (F, 4).
+    """Return each corner's cotangent over twice the area [1/m^2] and the area [m^2] of every triangle, shape (F, 4).
 
     The cotangents are minus the products of the other two corners' shape gradients.
     """
@@ -27,7 +27,7 @@ def own_hinges(geometry: ShellGeometry) -> np.ndarray:
 
 
 def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
-    """Each corner's view of its triangle and of two of the hinges there.
+    """Return each corner's view of its triangle and of two of the hinges there.
 
     Args:
         geometry: Rest geometry.

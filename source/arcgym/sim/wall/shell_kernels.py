@@ -10,9 +10,9 @@ membrane of Newton's ``SolverVBD`` can; at small strain the two are the same.
 Bending: the triangles' shape operators from their hinges (:func:`arcgym.assets.shell_geometry.bending_coupling`), with
 the Gauss-Newton part of the Hessian.
 
-What several vertices need is measured once a step for each element: the normals and corner forces of the triangles, and
-the angles of the hinges. A hinge's angle is then linear in the moves of its vertices for the rest of the step, which
-spares the sweep its normals and inverse tangents.
+Quantities that several vertices share are measured once a step for each element: the normals and corner forces of the
+triangles, and the angles of the hinges. A hinge's angle is then linear in the moves of its vertices for the rest of the
+step, which spares the sweep its normals and inverse tangents.
 """
 
 import warp as wp
@@ -83,7 +83,7 @@ class Stretch:
 
 @wp.func
 def membrane_stretch(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> Stretch:
-    """Stress S = shear Id + spread C^-1 of a triangle with the edges ``d1`` and ``d2`` from its first triangle.
+    """Return the stress S = shear Id + spread C^-1 of a triangle with edges ``d1`` and ``d2`` from its first corner.
 
     I is the sum of the squared edges, each times the cotangent of the corner opposite over 2 A.
     """
@@ -104,7 +104,7 @@ def membrane_stretch(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -
 
 @wp.func
 def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
-    """The membrane pulls its corners together like springs along its edges: force over length of each [N/m]."""
+    """Return force over length [N/m] of the springs along the edges that the membrane acts like."""
     s = rest[3] * now.shear
     k = rest[3] * now.spread * now.inverse
     return wp.vec3(s * rest[0] + k * now.dots[0], s * rest[1] + k * now.dots[1], s * rest[2] + k * now.dots[2])
@@ -112,7 +112,7 @@ def edge_tensions(now: Stretch, rest: wp.vec4) -> wp.vec3:
 
 @wp.func
 def direction_angle(sine: float, cosine: float) -> float:
-    """Angle whose sine and cosine are in the ratio given [rad].
+    """Return the angle whose sine and cosine are in the ratio given [rad].
 
     Up to 45 degrees from the tangent of its half by the polynomial of ``atanf`` in Cephes (Moshier 1989), which takes
     a CPU a third of the time of ``atan2``.
@@ -128,7 +128,7 @@ def direction_angle(sine: float, cosine: float) -> float:
 
 @wp.func
 def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) -> float:
-    """Dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
+    """Return the dihedral angle of a hinge [rad], between the normals edge x a and b x edge."""
     corners = shell.hinges[h]
     start = x[corners[2], w]
     edge = x[corners[3], w] - start
@@ -140,14 +140,14 @@ def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) ->
 
 
 @wp.kernel
-def measure_hinges(shell: ShellElements, x: wp.array2d[wp.vec3]):
-    """Angle of every hinge from rest. Launch (H, W)."""
+def measure_hinges(x: wp.array2d[wp.vec3], shell: ShellElements):
+    """Write ``shell.angle_change`` at the positions ``x`` [m], shape (V, W). Launch (H, W)."""
     h, w = wp.tid()
     shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
 
 
 @wp.kernel
-def measure_moments(shell: ShellElements, tissue: Tissue):
+def measure_moments(tissue: Tissue, shell: ShellElements):
     """Moment of every hinge, from its own angle and those of the hinges it is coupled with. Launch (H, W)."""
     h, w = wp.tid()
     moduli = tissue.moduli[w]
@@ -161,15 +161,15 @@ def measure_moments(shell: ShellElements, tissue: Tissue):
 
 @wp.func
 def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
-    """Moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
+    """Return the moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
     if h < 0:
         return 0.0
     return shell.inverse_length[h] * shell.moment[h, w]
 
 
 @wp.kernel
-def measure_triangles(shell: ShellElements, tissue: Tissue, x: wp.array2d[wp.vec3]):
-    """Normal and corner forces of every triangle, with the bending of its hinges. Launch (F, W).
+def measure_triangles(x: wp.array2d[wp.vec3], tissue: Tissue, shell: ShellElements):
+    """Write ``shell.scaled_normal`` and ``shell.corner_force`` at ``x`` [m], shape (V, W). Launch (F, W).
 
     A hinge turns its triangle by pulling at the corners along the normal: at the corner opposite with its moment over
     the height, and back at the others by where the foot of the height is.

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def tet_stiffness(points: np.ndarray, tets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness for unit shear modulus and for unit second Lamé parameter [N/m per Pa], each (T, 4, 3, 4, 3).
+    """Return the stiffness for unit shear modulus and unit second Lamé parameter [N/m per Pa], each (T, 4, 3, 4, 3).
 
     K_aibj = V (mu (g_a.g_b d_ij + g_aj g_bi) + lambda g_ai g_bj), g the shape gradients
     (Hughes, The Finite Element Method, section 2.7). It is the stable neo-Hookean Hessian at rest.

@@ -26,7 +26,7 @@ class SolidElements:
 
 @wp.func
 def shape_gradient(inv_rest: wp.mat33, corner: int) -> wp.vec3:
-    """Gradient of the corner's linear shape function at rest [1/m]."""
+    """Return the gradient of the corner's linear shape function at rest [1/m]."""
     if corner == 0:
         return -(inv_rest[0] + inv_rest[1] + inv_rest[2])
     return inv_rest[corner - 1]

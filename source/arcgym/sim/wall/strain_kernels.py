@@ -26,7 +26,7 @@ class RestRings:
 
 @wp.func
 def face_strain(a: wp.vec3, b: wp.vec3, c: wp.vec3, inverse: wp.vec3) -> float:
-    """Largest principal stretch of a triangle, minus one.
+    """Return the largest principal stretch of a triangle, minus one.
 
     At rest its first edge is (a, 0) and its second (b, h) in the plane, so that the columns of the deformation
     gradient are e1 / a and (e2 - e1 b / a) / h. The stretch is the root of the largest eigenvalue of F^T F.
@@ -50,7 +50,17 @@ def measure_rings(
     tension: wp.array2d[float],
     tension_peak: wp.array2d[float],
 ):
-    """Add this step's largest strain and net anchor pull of each ring to the sums and peaks. Launch (R, W)."""
+    """Add this step's largest strain and net anchor pull of each ring to the sums and peaks. Launch (R, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        rings: Lumen faces and springs of one world.
+        anchor_scale: Factor on the springs of each world, shape (W,).
+        strain: Sum of strains, shape (R, W); added to.
+        strain_peak: Largest strain, shape (R, W); raised.
+        tension: Sum of tensions [N], shape (R, W); added to.
+        tension_peak: Largest tension [N], shape (R, W); raised.
+    """
     r, w = wp.tid()
     largest = float(0.0)
     for k in range(rings.face_start[r], rings.face_start[r + 1]):

@@ -45,7 +45,19 @@ def sweep_kernels(
         force: wp.array2d[wp.vec3],
         x: wp.array2d[wp.vec3],
     ):
-        """One Newton step, at most ``largest_move`` [m], of every vertex of one colour. Launch (len(colour), W)."""
+        """Make one Newton step of every vertex of one colour. Launch (C, W).
+
+        Args:
+            color: Vertices that share no element, shape (C,).
+            nodes: Vertices of one world.
+            elements: Elements of one world.
+            tissue: Values of each world.
+            inertial: Positions that inertia pulls to [m], shape (V, W).
+            contacts: Contacts of this step.
+            largest_move: Longest displacement of a vertex [m].
+            force: Residual of each vertex [N], shape (V, W).
+            x: Positions [m], shape (V, W); moved in place.
+        """
         k, w = wp.tid()
         i = color[k]
         if tissue.rigid[w] == 1 or converged(force[i, w], x[i, w] - inertial[i, w]):
@@ -67,7 +79,18 @@ def sweep_kernels(
         x: wp.array2d[wp.vec3],
         force: wp.array2d[wp.vec3],
     ):
-        """Total force on every mobile vertex where elements and contacts were measured. Launch (V, W)."""
+        """Compute the total force on every mobile vertex where elements and contacts were measured. Launch (V, W).
+
+        Args:
+            nodes: Vertices of one world.
+            elements: Elements of one world, measured.
+            tissue: Values of each world.
+            inertial: Positions that inertia pulls to [m], shape (V, W).
+            contacts: Contacts of this step.
+            measured: The same, measured.
+            x: Positions [m], shape (V, W).
+            force: Force [N], shape (V, W); written.
+        """
         i, w = wp.tid()
         block = VertexBlock()
         if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:

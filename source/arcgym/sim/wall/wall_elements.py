@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Elements of a wall on the device: what its kernels need, and which kernels those are."""
+"""Elements of a wall on the device, with their kernels."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class WallElements(Protocol):
 
 
 def wall_elements(wall: WallParameters, num_envs: int, device: str) -> WallElements:
-    """Elements of the wall's kind for ``num_envs`` worlds."""
+    """Return elements of the wall's kind for ``num_envs`` worlds."""
     if isinstance(wall.elements, ShellParameters):
         return Shell(wall.elements.geometry, len(wall.points), num_envs, device)
     return Solid(wall.points, wall.elements.tets, device)
@@ -111,6 +111,8 @@ class Shell:
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data = self.data
-        wp.launch(shell_kernels.measure_hinges, data.angle_change.shape, [data, x], device=self.device)
-        wp.launch(shell_kernels.measure_moments, data.moment.shape, [data, tissue], device=self.device)
-        wp.launch(shell_kernels.measure_triangles, data.scaled_normal.shape, [data, tissue, x], device=self.device)
+        shape = data.angle_change.shape
+        wp.launch(shell_kernels.measure_hinges, shape, inputs=[x], outputs=[data], device=self.device)
+        wp.launch(shell_kernels.measure_moments, shape, inputs=[tissue], outputs=[data], device=self.device)
+        shape = data.scaled_normal.shape
+        wp.launch(shell_kernels.measure_triangles, shape, inputs=[x, tissue], outputs=[data], device=self.device)

@@ -34,7 +34,7 @@ class WallNodes:
 
 @wp.struct
 class Tissue:
-    """What may differ from world to world."""
+    """Values that may differ from world to world."""
 
     moduli: wp.array[wp.vec3]  # shear, second Lame parameter, bending: solid [Pa, Pa, -], shell [N/m, N/m, N m]
     anchor: wp.array[float]  # factor on the anchor springs, shape (W,)
@@ -68,7 +68,7 @@ def converged(force: wp.vec3, correction: wp.vec3) -> bool:
 def inertia_and_anchor(
     nodes: WallNodes, tissue: Tissue, inertial: wp.vec3, x: wp.vec3, i: int, w: int, inv_dt2: float
 ) -> VertexBlock:
-    """Block of the vertex's inertia and of its spring to the rest position."""
+    """Return the block of the vertex's inertia and of its spring to the rest position."""
     inertia = nodes.mass[i] * inv_dt2
     scale = tissue.anchor[w]
     block = VertexBlock()
@@ -193,7 +193,7 @@ def advance_slides(contacts: WallContacts, x: wp.array2d[wp.vec3]):
 
 @wp.func
 def vertex_contact_force(records: ContactRecords, measured: MeasuredContacts, i: int, w: int) -> wp.vec3:
-    """Sum of the measured contacts on vertex ``i`` of world ``w`` [N]."""
+    """Return the sum of the measured contacts on vertex ``i`` of world ``w`` [N]."""
     out = wp.vec3(0.0)
     entry = records.vertex_head[i, w]
     while entry >= 0:
@@ -218,16 +218,27 @@ def add_self_contact(block: VertexBlock, self_contact: SelfContactForce, x: wp.v
 
 @wp.kernel
 def predict(
-    x: wp.array2d[wp.vec3],
     v: wp.array2d[wp.vec3],
     nodes: WallNodes,
     tissue: Tissue,
     decay: float,
     dt: float,
+    x: wp.array2d[wp.vec3],
     x_prev: wp.array2d[wp.vec3],
     inertial: wp.array2d[wp.vec3],
 ):
-    """Move mobile vertices on at their damped velocity; the result is also the inertial target. Launch (V, W)."""
+    """Move mobile vertices on at their damped velocity. Launch (V, W).
+
+    Args:
+        v: Velocities [m/s], shape (V, W).
+        nodes: Vertices of one world.
+        tissue: Values of each world.
+        decay: Factor on the velocity over the step.
+        dt: Physics step [s].
+        x: Positions [m], shape (V, W); moved on in place.
+        x_prev: Positions before [m], shape (V, W); written.
+        inertial: Positions that inertia pulls to [m], shape (V, W); written.
+    """
     i, w = wp.tid()
     target = x[i, w]
     x_prev[i, w] = target
@@ -238,7 +249,7 @@ def predict(
 
 
 @wp.kernel
-def finish(x_prev: wp.array2d[wp.vec3], dt: float, x: wp.array2d[wp.vec3], v: wp.array2d[wp.vec3]):
-    """Velocity of the step. Launch (V, W)."""
+def finish(x: wp.array2d[wp.vec3], x_prev: wp.array2d[wp.vec3], dt: float, v: wp.array2d[wp.vec3]):
+    """Write the velocity ``v`` [m/s] of a step from ``x_prev`` to ``x`` [m], shape (V, W) each. Launch (V, W)."""
     i, w = wp.tid()
     v[i, w] = (x[i, w] - x_prev[i, w]) / dt

@@ -43,7 +43,7 @@ class WallParameters:
     points: np.ndarray
     """Rest positions [m], shape (V, 3)."""
     elements: SolidParameters | ShellParameters
-    """What it is made of."""
+    """Its elements."""
     moduli: tuple[float, float, float]
     """Shear, second Lamé parameter, bending: solid [Pa, Pa, -] or shell [N/m, N/m, N m]."""
     mass: np.ndarray
@@ -61,7 +61,7 @@ class WallParameters:
 
 
 def wall_nodes(wall: WallParameters, device: str) -> WallNodes:
-    """Vertices on the device."""
+    """Copy the vertices to the device."""
     nodes = WallNodes()
     nodes.mass = wp.array(wall.mass, dtype=float, device=device)
     nodes.mobile = wp.array(wall.mobile.astype(np.int32), dtype=int, device=device)
@@ -70,7 +70,7 @@ def wall_nodes(wall: WallParameters, device: str) -> WallNodes:
 
 
 def wall_anchors(points: np.ndarray, springs: AnchorSprings, device: str) -> Anchors:
-    """Anchor springs to ``points`` [m], shape (V, 3), on the device."""
+    """Copy the anchor springs to ``points`` [m], shape (V, 3), to the device."""
     anchors = Anchors()
     for name in ("stiffness", "loose", "slack"):
         setattr(anchors, name, wp.array(getattr(springs, name), dtype=float, device=device))

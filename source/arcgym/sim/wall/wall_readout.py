@@ -60,9 +60,14 @@ class WallReadout:
             array.zero_()
 
     def measure(self, x: wp.array) -> None:
-        """Take the wall positions ``x`` [m], shape (V, W), of one physics step in."""
-        results = [self.strain, self.strain_peak, self.tension, self.tension_peak]
-        wp.launch(measure_rings, self._shape, [x, self._rings, self._anchor_scale, *results], device=self._device)
+        """Add one physics step with wall positions ``x`` [m], shape (V, W), vec3."""
+        wp.launch(
+            measure_rings,
+            self._shape,
+            inputs=[x, self._rings, self._anchor_scale],
+            outputs=[self.strain, self.strain_peak, self.tension, self.tension_peak],
+            device=self._device,
+        )
 
     def finish(self, steps: int) -> None:
         """End a control step of ``steps`` physics steps: sums become means."""
@@ -93,7 +98,7 @@ def _rest_rings(
 
 
 def inverse_rest(corners: np.ndarray) -> np.ndarray:
-    """What :func:`arcgym.sim.wall.strain_kernels.face_strain` needs of triangles at rest.
+    """Return the rest shape of triangles for :func:`arcgym.sim.wall.strain_kernels.face_strain`.
 
     Args:
         corners: Corners [m], shape (F, 3, 3).

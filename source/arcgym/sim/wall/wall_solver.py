@@ -27,7 +27,7 @@ REGULARISATION = 1.0e-5
 def wall_contacts(
     contact: ContactSearch, dt: float, x_prev: wp.array, body_q: wp.array, body_q_prev: wp.array
 ) -> wall_kernels.WallContacts:
-    """What kernels need of the contacts in one wall step.
+    """Return the contacts of one wall step as a struct.
 
     Args:
         contact: Contacts found at the start of the step.
@@ -133,7 +133,8 @@ class WallSolver:
         wp.launch(
             wall_kernels.predict,
             shape,
-            [x, v, self.nodes, self.tissue, decay, self.dt, self.x_prev, self.inertial],
+            inputs=[v, self.nodes, self.tissue, decay, self.dt],
+            outputs=[x, self.x_prev, self.inertial],
             device=self.device,
         )
         for _ in range(self.cfg.repeats):
@@ -142,7 +143,7 @@ class WallSolver:
                 self._correct_rings(x, contacts)
             for _ in range(self.cfg.iterations):
                 self._sweep(x, contacts)
-        wp.launch(wall_kernels.finish, x.shape, [self.x_prev, self.dt, x, v], device=self.device)
+        wp.launch(wall_kernels.finish, x.shape, inputs=[x, self.x_prev, self.dt], outputs=[v], device=self.device)
 
     def advance_slides(self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
         """Keep of each contact's displacement along the wall what friction holds; arguments as in :meth:`step`."""
@@ -152,16 +153,17 @@ class WallSolver:
 
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         for color in self.colors:
-            args = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
+            inputs = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
             wp.launch(
                 self.elements.sweep_color,
                 (len(color), self.num_envs),
-                [*args, self.cfg.largest_move, self.force, x],
+                inputs=[*inputs, self.cfg.largest_move, self.force],
+                outputs=[x],
                 device=self.device,
             )
 
     def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
-        """Force on every mobile vertex at rest [N], shape (V, W), vec3: elements, anchors and contacts, no friction.
+        """Return the force on every mobile vertex at rest [N], shape (V, W), vec3, without friction.
 
         Args:
             x: Wall positions [m], shape (V, W), vec3.
@@ -177,27 +179,39 @@ class WallSolver:
         self.elements.measure(x, self.tissue)
         contacts.self_contact = self.self_contact.measure(contacts.x_prev)
         slots = (contacts.records.capacity, self.num_envs)
-        wp.launch(wall_kernels.measure_contacts, slots, [contacts, x, self.measured], device=self.device)
-        args = [self.nodes, self.elements.data, self.tissue, inertial, contacts, self.measured, x, force]
-        wp.launch(self.elements.residual, x.shape, args, device=self.device)
+        measured = self.measured
+        wp.launch(wall_kernels.measure_contacts, slots, inputs=[contacts, x], outputs=[measured], device=self.device)
+        wp.launch(
+            self.elements.residual,
+            x.shape,
+            inputs=[self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x],
+            outputs=[force],
+            device=self.device,
+        )
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
-        shape, rings = (self.vertex_count, self.num_envs), (self.ring_count, self.num_envs)
-        wp.launch(coarse_kernels.ring_rotations, rings, [x, self.space, self.rotation, self.shift], device=self.device)
-        args = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
-        args += [
-            contacts.records,
-            self.measured,
-            contacts.self_contact,
-            self.ring_system.diagonal,
-            self.ring_system.upper,
-            self.ring_system.rhs,
-        ]
-        wp.launch(coarse_kernels.assemble, (self.ring_count, MODES, self.num_envs), args, device=self.device)
-        self.ring_system.solve()
+        """Solve for the modes of all rings and move every vertex with its ring."""
+        rings, system = (self.ring_count, self.num_envs), self.ring_system
+        wp.launch(
+            coarse_kernels.ring_rotations,
+            rings,
+            inputs=[x, self.space],
+            outputs=[self.rotation, self.shift],
+            device=self.device,
+        )
+        inputs = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
+        wp.launch(
+            coarse_kernels.assemble,
+            (self.ring_count, MODES, self.num_envs),
+            inputs=[*inputs, contacts.records, self.measured, contacts.self_contact],
+            outputs=[system.diagonal, system.upper, system.rhs],
+            device=self.device,
+        )
+        system.solve()
         wp.launch(
             coarse_kernels.prolong,
-            shape,
-            [self.space, self.rotation, self.ring_system.rhs, self.cfg.largest_move, x],
+            x.shape,
+            inputs=[self.space, self.rotation, system.rhs, self.cfg.largest_move],
+            outputs=[x],
             device=self.device,
         )

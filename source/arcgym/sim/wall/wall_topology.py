@@ -76,7 +76,7 @@ def _patches(ring_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool) -> np.ndarray:
-    """Vertices of each ring as a rectangular array, padded with the ring's first vertex or with -1.
+    """Return the vertices of each ring as a rectangular array, padded with the ring's first vertex or with -1.
 
     Raises:
         ValueError: If a ring has no vertices.
@@ -94,14 +94,14 @@ def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool)
 
 
 def ring_mean(values: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Mean over each ring's vertices of ``values``, shape (V, ...), with ``ring`` (V,); shape (R, ...)."""
+    """Return the mean over each ring's vertices of ``values``, shape (V, ...), with ``ring`` (V,); shape (R, ...)."""
     out = np.zeros((int(ring.max()) + 1, *values.shape[1:]))
     np.add.at(out, ring, values)
     return out / np.bincount(ring).reshape(-1, *[1] * (values.ndim - 1))
 
 
 def face_neighbors(faces: np.ndarray) -> np.ndarray:
-    """Face across the edge opposite to each corner, or -1 at a border, shape (F, 3), int32."""
+    """Return the face across the edge opposite to each corner, or -1 at a border, shape (F, 3), int32."""
     edges = np.sort(np.stack([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]], axis=1), axis=2).reshape(-1, 2)
     key = edges[:, 0].astype(np.int64) * (int(faces.max()) + 1) + edges[:, 1]
     order = np.argsort(key, kind="stable")
@@ -113,7 +113,11 @@ def face_neighbors(faces: np.ndarray) -> np.ndarray:
 
 
 def vertex_entries(elements: np.ndarray, vertices: int) -> tuple[np.ndarray, np.ndarray]:
-    """Elements of n corners around each vertex: start, shape (V + 1,), entry = n * element + corner, shape (n*E,)."""
+    """List the elements of n corners around each vertex.
+
+    Returns:
+        First entry of each vertex, shape (V + 1,), and the entries n * element + corner, shape (n*E,).
+    """
     flat = elements.ravel()
     entry = np.argsort(flat, kind="stable").astype(np.int32)
     start = np.searchsorted(flat[entry], np.arange(vertices + 1)).astype(np.int32)

@@ -1,0 +1,101 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Configurations of behaviour cloning and distillation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
+from arcgym.rl.runner_cfg import GaussianDistributionCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class RslRlBehaviorCloningAlgorithmCfg:
+    """Supervised learning of recorded actions."""
+
+    class_name: str = "arcgym.rl.algorithms.behavior_cloning:BehaviorCloning"
+    """Algorithm class."""
+
+    demonstrations: str = ""
+    """Folder of recorded episodes with ``obs/<group>`` for every group that the actor reads. Must be set."""
+
+    successful_only: bool = True
+    """Whether episodes that did not succeed are left out."""
+
+    learning_rate: float = 3.0e-4
+    """Learning rate."""
+
+    batch_size: int = 256
+    """Recorded steps of one gradient step."""
+
+    steps_per_update: int = 100
+    """Gradient steps of one iteration."""
+
+    max_grad_norm: float = 1.0
+    """Gradient clipping by norm."""
+
+
+@configclass
+class RslRlBehaviorCloningRunnerCfg(RslRlOnPolicyRunnerCfg):
+    """Runner of behaviour cloning; the steps in the environment only show how good the policy is."""
+
+    num_steps_per_env: int = 4
+    """Control steps of each world between updates. More make the curves of success less noisy."""
+
+    actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(distribution_cfg=GaussianDistributionCfg(init_std=0.3))
+    """Policy network. Give it the shape of the PPO policy that it is to start."""
+
+    algorithm: Any = RslRlBehaviorCloningAlgorithmCfg()
+    """Learning algorithm."""
+
+
+@configclass
+class RslRlDistillationAlgorithmCfg:
+    """rsl_rl's distillation: the student acts and is taught what the teacher would have done."""
+
+    class_name: str = "Distillation"
+    """Algorithm class."""
+
+    num_learning_epochs: int = 2
+    """Passes over the rollout in one update."""
+
+    gradient_length: int = 4
+    """Steps whose losses are added up for one gradient step, and through which a recurrent student remembers. Must
+    divide ``num_learning_epochs * num_steps_per_env``."""
+
+    learning_rate: float = 3.0e-4
+    """Learning rate."""
+
+    max_grad_norm: float = 1.0
+    """Gradient clipping by norm."""
+
+    loss_type: str = "mse"
+    """``mse`` or ``huber``."""
+
+
+@configclass
+class RslRlDistillationRunnerCfg(RslRlOnPolicyRunnerCfg):
+    """Runner of distillation from a privileged teacher."""
+
+    class_name: str = "arcgym.rl.distillation_runner:DistillationRunner"
+    """Runner class."""
+
+    teacher_checkpoint: str = ""
+    """Checkpoint of a PPO run whose actor has the shape of ``teacher``. Must be set, unless the run is resumed."""
+
+    obs_groups: dict[str, list[str]] = {"student": ["policy"], "teacher": ["critic"]}
+    """Observation groups that each model reads."""
+
+    student: RslRlMlpModelCfg = AugmentedCnnModelCfg(distribution_cfg=GaussianDistributionCfg(init_std=0.1))
+    """Policy to learn; its deviation is the noise it acts with."""
+
+    teacher: RslRlMlpModelCfg = RslRlMlpModelCfg(
+        obs_normalization=True, distribution_cfg=GaussianDistributionCfg(init_std=0.6)
+    )
+    """Policy to imitate."""
+
+    algorithm: Any = RslRlDistillationAlgorithmCfg()
+    """Learning algorithm."""

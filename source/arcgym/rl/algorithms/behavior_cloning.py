@@ -1,0 +1,158 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Behaviour cloning: supervised learning of recorded actions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from rsl_rl.env import VecEnv
+from rsl_rl.models import MLPModel
+from rsl_rl.utils import reduce_gradients_in_buckets, resolve_class, resolve_obs_groups
+from tensordict import TensorDict
+from torch import nn
+
+from arcgym.rl.demonstrations import Demonstrations
+
+
+class BehaviorCloning:
+    """Fits the mean action of a policy to demonstrations by their mean squared difference.
+
+    The shape is that of rsl_rl's PPO, so that the same runner drives it: the policy acts in the environment between
+    updates, which shows how good it is and teaches it nothing. Recorded actions are raw ones; those beyond [-1, 1]
+    count as the bound, which is what the action terms carry out.
+    """
+
+    rnd = None
+
+    def __init__(
+        self,
+        actor: MLPModel,
+        demonstrations: Demonstrations,
+        learning_rate: float = 3.0e-4,
+        batch_size: int = 256,
+        steps_per_update: int = 100,
+        max_grad_norm: float = 1.0,
+        device: str = "cpu",
+        multi_gpu_cfg: dict | None = None,
+        grad_reduce_bucket_mb: float = 25,
+    ):
+        """Build the optimizer.
+
+        Args:
+            actor: Policy without memory.
+            demonstrations: What to imitate.
+            learning_rate: Learning rate.
+            batch_size: Recorded steps of one gradient step.
+            steps_per_update: Gradient steps of one iteration.
+            max_grad_norm: Gradient clipping by norm.
+            device: Device of the network.
+            multi_gpu_cfg: Rank and number of processes, from the runner.
+            grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
+
+        Raises:
+            ValueError: If the policy has a memory, or its actions are not those recorded.
+        """
+        if actor.is_recurrent:
+            raise ValueError("Cloning draws single steps, expected a policy without memory, such as ByteCnnModel.")
+        self.device, self.learning_rate, self.demonstrations = device, learning_rate, demonstrations
+        self.batch_size, self.steps_per_update, self.max_grad_norm = batch_size, steps_per_update, max_grad_norm
+        self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
+        self.gpu_world_size = multi_gpu_cfg["world_size"] if multi_gpu_cfg else 1
+        self.actor = actor.to(device)
+        self.optimizer = torch.optim.Adam(self.actor.parameters(), lr=learning_rate)
+        self._knows_scale = False
+
+    @staticmethod
+    def construct_algorithm(obs: TensorDict, env: VecEnv, cfg: dict, device: str) -> BehaviorCloning:
+        """Build the policy and read the demonstrations.
+
+        Raises:
+            ValueError: If no folder is given, or its actions are not as many as the task's.
+        """
+        alg_class, alg_cfg = resolve_class(cfg["algorithm"])
+        actor_class, actor_cfg = resolve_class(cfg["actor"])
+        groups = cfg["obs_groups"] = resolve_obs_groups(obs, cfg["obs_groups"], ["actor"])
+        folder, successful_only = alg_cfg.pop("demonstrations", None), alg_cfg.pop("successful_only", True)
+        if not folder:
+            raise ValueError(
+                "No demonstrations to clone: set agent.algorithm.demonstrations to a folder of recorded episodes."
+            )
+        demonstrations = Demonstrations(folder, groups["actor"], device, successful_only)
+        if demonstrations.actions.shape[1] != env.num_actions:
+            raise ValueError(
+                f"The demonstrations in '{folder}' have {demonstrations.actions.shape[1]} actions, expected the task's "
+                f"{env.num_actions}."
+            )
+        actor = actor_class(obs, groups, "actor", env.num_actions, **actor_cfg)
+        return alg_class(actor, demonstrations, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+
+    def act(self, obs: TensorDict) -> torch.Tensor:
+        """Return the mean actions, shape (N, A)."""
+        self.actor(obs, stochastic_output=True)
+        return self.actor.output_mean
+
+    def process_env_step(
+        self, obs: TensorDict, rewards: torch.Tensor, dones: torch.Tensor, extras: dict[str, Any]
+    ) -> None:
+        """Do nothing: the environment only shows how good the policy is."""
+
+    def compute_returns(self, obs: TensorDict) -> None:
+        """Do nothing."""
+
+    def update(self) -> dict[str, float]:
+        """Make the gradient steps of an iteration and return the mean loss."""
+        if not self._knows_scale:
+            self.actor.update_normalization(self.demonstrations.observations)
+            self._knows_scale = True
+        total = torch.zeros((), device=self.device)
+        for _ in range(self.steps_per_update):
+            total += self.step_on(*self.demonstrations.sample(self.batch_size))
+        return {"behavior": float(total) / self.steps_per_update}
+
+    def step_on(self, obs: TensorDict, actions: torch.Tensor) -> torch.Tensor:
+        """Make one gradient step and return the loss."""
+        loss = (self.actor(obs) - actions.clamp(-1.0, 1.0)).square().mean()
+        self.optimizer.zero_grad()
+        loss.backward()
+        if self.is_multi_gpu:
+            reduce_gradients_in_buckets(self.actor.parameters(), self.gpu_world_size, self.grad_reduce_bucket_mb)
+        nn.utils.clip_grad_norm_(self.actor.parameters(), self.max_grad_norm)
+        self.optimizer.step()
+        return loss.detach()
+
+    def train_mode(self) -> None:
+        """Set train mode."""
+        self.actor.train()
+
+    def eval_mode(self) -> None:
+        """Set evaluation mode."""
+        self.actor.eval()
+
+    def get_policy(self) -> MLPModel:
+        """Return the actor."""
+        return self.actor
+
+    def save(self) -> dict:
+        """Return the actor under the name that PPO gives its own, and the optimizer."""
+        return {
+            "actor_state_dict": self.actor.state_dict(),
+            "optimizer_state_dict": self.optimizer.state_dict(),
+            "knows_scale": self._knows_scale,
+        }
+
+    def load(self, loaded_dict: dict, load_cfg: dict | None, strict: bool) -> bool:
+        """Load a checkpoint: all of it, or only the actor when ``load_cfg`` says so."""
+        self.actor.load_state_dict(loaded_dict["actor_state_dict"], strict=strict)
+        if load_cfg is not None and not load_cfg.get("optimizer"):
+            return load_cfg.get("iteration", False)
+        self.optimizer.load_state_dict(loaded_dict["optimizer_state_dict"])
+        self._knows_scale = loaded_dict["knows_scale"]
+        return True
+
+    def broadcast_parameters(self) -> None:
+        """Send the first process's policy to all."""
+        for tensor in self.actor.state_dict().values():
+            torch.distributed.broadcast(tensor, src=0)

@@ -1,0 +1,53 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Learning from a teacher or from recorded episodes, for the navigation tasks."""
+
+from __future__ import annotations
+
+from arcgym.rl import GaussianDistributionCfg, RslRlMlpModelCfg
+from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
+from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningRunnerCfg, RslRlDistillationRunnerCfg
+from arcgym.utils.configclass import configclass
+from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
+
+
+@configclass
+class NavigationTeacherRunnerCfg(NavigationPPORunnerCfg):
+    """PPO whose policy sees the privileged state: a teacher for distillation, and a bound on what images can do."""
+
+    obs_groups: dict[str, list[str]] = {"actor": ["critic"], "critic": ["critic"]}
+    actor: RslRlMlpModelCfg = RslRlMlpModelCfg(
+        hidden_dims=[256, 128], obs_normalization=True, distribution_cfg=GaussianDistributionCfg(init_std=0.6)
+    )
+
+
+@configclass
+class NavigationDistillationRunnerCfg(RslRlDistillationRunnerCfg):
+    """From ``ppo_teacher`` to images: ``agent.teacher_checkpoint=logs/rsl_rl/.../model_499.pt``."""
+
+    num_steps_per_env: int = 24
+    max_iterations: int = 300
+    save_interval: int = 25
+    experiment_name: str = "arc_navigation"
+    student: RslRlMlpModelCfg = AugmentedCnnModelCfg(
+        hidden_dims=[256], distribution_cfg=GaussianDistributionCfg(init_std=0.1)
+    )
+    teacher: RslRlMlpModelCfg = RslRlMlpModelCfg(
+        hidden_dims=[256, 128], obs_normalization=True, distribution_cfg=GaussianDistributionCfg(init_std=0.6)
+    )
+
+
+@configclass
+class NavigationBehaviorCloningRunnerCfg(RslRlBehaviorCloningRunnerCfg):
+    """From recorded episodes: ``agent.algorithm.demonstrations=logs/episodes``.
+
+    Its checkpoints start the other agents with a CNN: ``--agent ppo agent.init_policy=...``.
+    """
+
+    max_iterations: int = 200
+    save_interval: int = 25
+    experiment_name: str = "arc_navigation"
+    actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(
+        hidden_dims=[256], distribution_cfg=GaussianDistributionCfg(init_std=0.6)
+    )

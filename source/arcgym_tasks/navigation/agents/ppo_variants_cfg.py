@@ -1,0 +1,66 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Relatives of the navigation tasks' PPO: with memory, with rules on actions, with limits on costs, and A2C."""
+
+from __future__ import annotations
+
+from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlMlpModelCfg, RslRlPpoAlgorithmCfg
+from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
+from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
+from arcgym.rl.agent_cfgs.ppo_lagrangian import RslRlPpoLagrangianAlgorithmCfg, RslRlPpoLagrangianRunnerCfg
+from arcgym.rl.agent_cfgs.ppo_masked import RslRlConstrainedRunnerCfg
+from arcgym.utils.configclass import configclass
+from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
+
+
+@configclass
+class NavigationRecurrentPPORunnerCfg(NavigationPPORunnerCfg):
+    """PPO with an LSTM behind the CNN.
+
+    It also sees the frame stack of the task; ``env.observations.policy.rgb.history_length=1`` leaves the past to the
+    memory alone. Mini-batches are of whole worlds, so that there must be at least as many worlds as mini-batches.
+    """
+
+    actor: RslRlMlpModelCfg = RecurrentCnnModelCfg(
+        hidden_dims=[256], cnn_cfg=CnnCfg(), distribution_cfg=GaussianDistributionCfg(init_std=0.6)
+    )
+
+
+@configclass
+class NavigationMaskedPPORunnerCfg(NavigationPPORunnerCfg, RslRlConstrainedRunnerCfg):
+    """PPO whose actions obey the paper's rules on simulated depth, in training and in evaluation.
+
+    Report it also with ``agent.action_constraint.in_evaluation=false``: with the rules on, the policy is not one of
+    colour images alone.
+    """
+
+    class_name: str = "arcgym.rl.constrained_runner:ConstrainedRunner"
+
+
+@configclass
+class NavigationLagrangianPPORunnerCfg(NavigationPPORunnerCfg, RslRlPpoLagrangianRunnerCfg):
+    """PPO under limits on the seconds of an episode in which the tip presses unsafely or sees nothing but wall."""
+
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoLagrangianAlgorithmCfg(
+        limits={"tip_force": 0.5, "view_blocked": 1.0},
+        num_learning_epochs=3,
+        num_mini_batches=6,
+        learning_rate=3.0e-4,
+        schedule="fixed",
+        gamma=0.97,
+        lam=0.95,
+        clip_param=0.2,
+        entropy_coef=0.003,
+        max_grad_norm=0.5,
+    )
+
+
+@configclass
+class NavigationA2CRunnerCfg(NavigationPPORunnerCfg):
+    """A2C with five steps a rollout, as in the paper's code, and the discount of the other agents."""
+
+    num_steps_per_env: int = 5
+    max_iterations: int = 2500
+    save_interval: int = 100
+    algorithm: RslRlPpoAlgorithmCfg = RslRlA2cAlgorithmCfg(gamma=0.97, entropy_coef=0.003)

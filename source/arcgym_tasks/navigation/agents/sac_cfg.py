@@ -1,0 +1,47 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Soft actor-critic for the navigation tasks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.rl.agent_cfgs.sac import RslRlSacAlgorithmCfg, RslRlSacRunnerCfg
+from arcgym.utils.configclass import configclass
+
+
+@configclass
+class NavigationSACRunnerCfg(RslRlSacRunnerCfg):
+    """SAC for many worlds, with critics on the privileged state and shifted images for the actor.
+
+    The memory takes 8.5 GB; lower ``agent.algorithm.replay_size`` or the camera's size where that is too much.
+    """
+
+    max_iterations: int = 1500
+    save_interval: int = 100
+    experiment_name: str = "arc_navigation"
+    algorithm: Any = RslRlSacAlgorithmCfg(frame_stacks={"policy": 5})
+
+
+@configclass
+class PaperSACRunnerCfg(NavigationSACRunnerCfg):
+    """The paper's setting, five worlds and a memory of 10 000 transitions: one gradient step for 25 transitions.
+
+    What the paper's code has: fixed temperature 0.5, learning starts when the memory is full, two gradient steps after
+    ten control steps of five worlds. Network and critics are the project's.
+    """
+
+    num_steps_per_env: int = 10
+    algorithm: Any = RslRlSacAlgorithmCfg(
+        frame_stacks={"policy": 5},
+        replay_size=12_000,
+        learning_starts=10_000,
+        updates_per_transition=0.04,
+        batch_size=256,
+        actor_interval=1,
+        target_step=0.005,
+        gamma=0.99,
+        init_temperature=0.5,
+        learn_temperature=False,
+    )

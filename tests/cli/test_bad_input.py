@@ -1,0 +1,101 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bad input is answered in one line with exit status 2, before anything is compiled or any folder is made."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+
+import gymnasium
+import pytest
+import torch
+
+from arcgym.cli.main import main
+
+TASK = ["--task", "ARC-Splenic-Proximal"]
+TRAIN, PLAY, ZERO = ["train", *TASK], ["play", *TASK], ["zero", *TASK]
+
+
+@pytest.fixture(autouse=True)
+def nothing_is_built(tmp_path, monkeypatch):
+    """Run in an empty folder that must stay empty, without environments and loggers."""
+
+    def make(*_, **__):
+        raise AssertionError("the environment was built")
+
+    monkeypatch.setattr(gymnasium, "make", make)
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    find_spec = importlib.util.find_spec
+    missing = ("wandb", "neptune", "h5py")
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *a: None if name in missing else find_spec(name, *a))
+    monkeypatch.chdir(tmp_path)
+    yield
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (["trian"], "unknown subcommand 'trian'. Did you mean 'train'?"),
+        (["train"], "required: --task"),
+        (["train", "--task", "ARC-Splenic-Proxmal"], "'ARC-Splenic-Proxmal'. Did you mean 'ARC-Splenic-Proximal'"),
+        ([*TRAIN, "--num_env", "3"], "unknown flag '--num_env'. Did you mean '--num_envs'?"),
+        ([*TRAIN, "seed=3"], "unexpected argument 'seed=3'. An override is written env.path=value"),
+        ([*TRAIN, "--num_envs", "0"], "--num_envs: 0 is too small, expected 1 or more"),
+        ([*TRAIN, "--num_envs", "-3"], "--num_envs: -3 is too small, expected 1 or more"),
+        ([*TRAIN, "--num_envs", "many"], "--num_envs: 'many' is no whole number, expected 1 or more"),
+        ([*TRAIN, "env.scene.num_envs=0"], "env.scene.num_envs is 0, expected"),
+        ([*TRAIN, "--max_iterations", "-1"], "--max_iterations: -1 is too small, expected 1 or more"),
+        ([*TRAIN, "--device", "tpu"], "--device is 'tpu', expected cpu, cuda or cuda:<n>"),
+        (
+            [*TRAIN, "--device", "cuda:7"],
+            "--device is 'cuda:7', which torch does not find",
+        ),
+        ([*TRAIN, "env.sim.dt=fast"], "'env.sim.dt' expects float, got str 'fast'"),
+        ([*TRAIN, "env.simm.dt=0.01"], "'env' has no field 'simm'. Did you mean 'sim'?"),
+        ([*TRAIN, "env.lumen=metrik"], "metrik"),
+        ([*TRAIN, "env.segment=cecu"], "cecu"),
+        ([*TRAIN, "env.scene.colon.material=in_sit"], "'in_sit'"),
+        ([*TRAIN, "env.scene.colon.usd_path=colon_9/colon.usda"], "colon_9/colon.usda"),
+        ([*TRAIN, "env.scene.camera.width=20", "env.scene.camera.height=20"], "does not fit the 20x20 px images"),
+        ([*TRAIN, "--num_envs", "1", "agent.num_steps_per_env=4"], "num_mini_batches is 6, but 1 worlds x 4 steps"),
+        ([*TRAIN, "agent.algorithm.learning_rate=-1.0"], "learning_rate is -1.0, expected a number above 0"),
+        ([*TRAIN, "agent.algorithm.optimizer=adamm"], "'adamm'. Did you mean 'adam'"),
+        ([*TRAIN, "agent.algorithm.class_name=PPOO"], "agent.algorithm.class_name is 'PPOO'"),
+        ([*TRAIN, "agent.obs_groups.actor=[polcy]"], "agent.obs_groups.actor reads 'polcy'"),
+        ([*TRAIN, "--logger", "wandbb"], "invalid choice: 'wandbb'"),
+        ([*TRAIN, "--logger", "wandb"], "agent.logger=wandb needs the package 'wandb', which is not installed"),
+        ([*TRAIN, "agent.logger=papyrus"], "'papyrus'"),
+        ([*TRAIN, "--experiment_name", "a/b"], "experiment_name is 'a/b', expected a name without '/'"),
+        ([*TRAIN, "--distributed"], "--distributed needs torchrun"),
+        ([*TRAIN, "--resume", "--load_run", "["], "load_run '[' is no regular expression"),
+        ([*PLAY, "--checkpoint", "model_7.pt"], "No checkpoint 'model_7.pt'"),
+        ([*PLAY, "--policy", "rando"], "invalid choice: 'rando'"),
+        (
+            [*PLAY, "--policy", "zero", "--record", "x.hdf5"],
+            "not installed: pip install 'arcgym[recorder]'",
+        ),
+        ([*ZERO, "--steps", "0"], "--steps: 0 is too small, expected 1 or more"),
+        ([*ZERO, "env.scene.colon.material=none"], "'none'"),
+    ],
+)
+def test_bad_input(command, message, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(command)
+    output = capsys.readouterr()
+    assert stop.value.code == 2
+    assert message in output.err
+    assert output.err.count("\n") == 1
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_folder_that_cannot_be_written(tmp_path, monkeypatch, capsys):
+    locked = tmp_path / "locked"
+    locked.mkdir(mode=0o500)
+    monkeypatch.chdir(locked)
+    with pytest.raises(SystemExit):
+        main(TRAIN)
+    assert "no permission to write" in capsys.readouterr().err
+    monkeypatch.chdir(tmp_path)
+    locked.rmdir()

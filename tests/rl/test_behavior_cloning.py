@@ -1,0 +1,109 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from pixel_tasks import SteerToDot, mean_reward
+from small_agents import actor_cfg, runner_cfg
+
+from arcgym.managers.recorder_files import Episode
+from arcgym.rl import OnPolicyRunner
+from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningAlgorithmCfg, RslRlBehaviorCloningRunnerCfg
+from arcgym.rl.demonstrations import Demonstrations
+from arcgym.utils.threads import one_thread
+
+
+def save_episode(folder, number: int, success: bool = True, **data: np.ndarray) -> None:
+    Episode(data, {"success": success, "length": len(data["actions"])}).save(folder / f"episode_{number:06d}.npz")
+
+
+def record_expert(folder, worlds: int = 64) -> None:
+    """Record one episode of each world, steered straight to the dot."""
+    env, images, actions = SteerToDot(worlds), [], []
+    for _ in range(env.episode_steps):
+        images.append(env.observe()["policy"].numpy())
+        actions.append((-4.0 * env.offset).clamp(-1.0, 1.0))
+        env.step(actions[-1])
+    for world in range(worlds):
+        steps = {"obs/policy": np.stack([image[world] for image in images])}
+        save_episode(folder, world, actions=np.stack([action[world].numpy() for action in actions]), **steps)
+
+
+def make_runner(folder, num_envs: int = 16, **algorithm) -> OnPolicyRunner:
+    torch.manual_seed(0)
+    settings = {"demonstrations": str(folder), "learning_rate": 3e-3, "batch_size": 64, "steps_per_update": 20}
+    cfg = RslRlBehaviorCloningRunnerCfg(
+        actor=actor_cfg(), algorithm=RslRlBehaviorCloningAlgorithmCfg(**(settings | algorithm))
+    )
+    return OnPolicyRunner(SteerToDot(num_envs), cfg.to_dict(), device="cpu")
+
+
+def test_failed_episodes_are_left_out(tmp_path):
+    for number, success in enumerate((True, False)):
+        steps = np.full((3, 1), number, dtype=np.float32)
+        save_episode(tmp_path, number, success, actions=steps, **{"obs/policy": steps})
+    assert Demonstrations(tmp_path, ["policy"], "cpu").actions.flatten().tolist() == [0, 0, 0]
+    assert len(Demonstrations(tmp_path, ["policy"], "cpu", successful_only=False)) == 6
+
+
+def test_missing_observations_name_the_cure(tmp_path):
+    save_episode(tmp_path, 0, actions=np.zeros((3, 1)))
+    with pytest.raises(KeyError, match="no 'obs/policy'.*holds: actions.*PreStepObservationsRecorderCfg"):
+        Demonstrations(tmp_path, ["policy"], "cpu")
+
+
+def test_empty_folder_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match="No successful episodes"):
+        Demonstrations(tmp_path, ["policy"], "cpu")
+
+
+def test_folder_must_be_given(tmp_path):
+    with pytest.raises(ValueError, match="agent.algorithm.demonstrations"):
+        make_runner("")
+
+
+def test_actions_must_be_the_tasks(tmp_path):
+    save_episode(tmp_path, 0, actions=np.zeros((3, 5)), **{"obs/policy": np.zeros((3, 1, 16, 16), dtype=np.uint8)})
+    with pytest.raises(ValueError, match="have 5 actions, expected the task's 2"):
+        make_runner(tmp_path)
+
+
+def test_loss_is_the_mean_square_to_the_clipped_action(tmp_path):
+    """A policy that answers zero, recorded actions 3 and -0.5: (1 + 0.25) / 2."""
+    record_expert(tmp_path, worlds=2)
+    alg = make_runner(tmp_path).alg
+    alg.actor.mlp[-1].weight.data.zero_()
+    alg.actor.mlp[-1].bias.data.zero_()
+    obs = SteerToDot(1).get_observations()
+    assert float(alg.step_on(obs, torch.tensor([[3.0, -0.5]]))) == pytest.approx(0.625)
+
+
+@one_thread()
+def test_solves_the_dot_and_starts_ppo(tmp_path):
+    record_expert(tmp_path)
+    runner = make_runner(tmp_path)
+    runner.learn(15)
+    policy = runner.get_inference_policy()
+    assert mean_reward(SteerToDot(64, seed=1), policy, 80) > 0.75
+    runner.save(str(tmp_path / "model_14.pt"))
+    ppo = OnPolicyRunner(SteerToDot(16), runner_cfg().to_dict(), device="cpu")
+    ppo.load(str(tmp_path / "model_14.pt"), load_cfg={"actor": True})
+    obs = SteerToDot(16).get_observations()
+    torch.testing.assert_close(ppo.get_inference_policy()(obs), policy(obs))
+
+
+@one_thread()
+def test_resumed_run_makes_the_same_step(tmp_path):
+    record_expert(tmp_path, worlds=4)
+    runner, resumed = make_runner(tmp_path), make_runner(tmp_path)
+    runner.learn(2)
+    runner.save(str(tmp_path / "model_1.pt"))
+    resumed.load(str(tmp_path / "model_1.pt"))
+    for each in (runner, resumed):
+        torch.manual_seed(3)
+        each.alg.update()
+    for old, new in zip(runner.alg.actor.parameters(), resumed.alg.actor.parameters(), strict=True):
+        assert torch.equal(old, new)
