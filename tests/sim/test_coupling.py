@@ -119,3 +119,16 @@ def test_no_wall_element_is_crushed(two_level: Simulation) -> None:
     ]
     ratio = area[0] / area[1]
     assert 0.7 < ratio.min() and ratio.max() < 1.3
+
+
+def test_what_the_links_owe_the_wall_is_paid_while_they_move(narrow: TinySim) -> None:
+    # What the wall has not been given is at any time the debt: over a push of half a second it is a small part.
+    sim = narrow(links=10, colon=SOFT)
+    sim.endoscope.set_insertion_command(torch.tensor([0.1]), torch.tensor([0.0]))
+    sim.endoscope.set_bending_command(torch.tensor([1.2]), torch.tensor([0.2]))
+    given, most = torch.zeros(3), 0.0
+    for _ in range(240):
+        sim.step(1)
+        given += sim.endoscope.data.wall_force_w[0].sum(dim=0)
+        most = max(most, sim.contact.memory["contact_debt"][0].view(-1, 3).sum(dim=0).norm().item())
+    assert 0.0 < most < 0.02 * given.norm().item()

@@ -45,6 +45,7 @@ class ContactRecords:
     direction: wp.array[wp.vec3]  # unit vector there from the link's axis
     normal: wp.array[wp.vec3]  # outward normal of the wall there at detection
     slide: wp.array[wp.vec3]  # elastic displacement of the link along the wall, which friction bounds [m]
+    owed: wp.array[wp.vec3]  # part of the force on the wall that is still owed from earlier steps [N]
     vertex_head: wp.array2d[int]  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array[int]  # shape (3*W*S,)
     ring_head: wp.array2d[int]  # first record whose lowest ring is this one, shape (R, W)

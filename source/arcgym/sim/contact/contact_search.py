@@ -65,6 +65,8 @@ class ContactSearch:
         self.bounds.ring = wp.zeros((num_envs, self.ring_count), dtype=wp.vec4, device=device)
         self.bounds.patch = wp.zeros((num_envs, len(topology.patch_start) - 1), dtype=wp.vec4, device=device)
         self.candidates = self._candidates(cfg.link_capacity)
+        self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
+        """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
         self.records = self._records(max(cfg.link_capacity, cfg.capacity * self.link_count))
         self.past = kernels.PastContacts()
         for name in ("start", "face", "slide"):
@@ -104,7 +106,7 @@ class ContactSearch:
         records.corners = wp.zeros(slots, dtype=wp.vec3i, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(slots, dtype=float, device=self.device))
-        for name in ("bary", "direction", "normal", "slide"):
+        for name in ("bary", "direction", "normal", "slide", "owed"):
             setattr(records, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
         records.vertex_next = wp.full(3 * slots, -1, dtype=int, device=self.device)
@@ -114,12 +116,13 @@ class ContactSearch:
 
     @property
     def memory(self) -> dict[str, torch.Tensor]:
-        """What friction remembers of each world's contacts, as views of shape (N, ...)."""
+        """What each world's contacts remember from step to step, as views of shape (N, ...)."""
         records, n = self.records, self.num_envs
         return {
             "contact_start": wp.to_torch(records.start),
             "contact_face": wp.to_torch(records.face).view(n, -1),
             "contact_slide": wp.to_torch(records.slide).view(n, -1),
+            "contact_debt": wp.to_torch(self.debt).view(n, -1),
         }
 
     def update_centers(self, x: wp.array) -> None:

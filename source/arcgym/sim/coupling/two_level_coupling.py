@@ -63,7 +63,8 @@ class TwoLevelCoupling:
             self.solver.step(state, state, sim.control, None, dt)
             self._record(1.0 / count)
         sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
-        sim.wall.advance_slides(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev)
+        link_force = sim.scope_readout.step_force
+        sim.wall.finish_contacts(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev, link_force)
 
     def find_contacts(self) -> None:
         """Begin a step: remember where the links are, and find their contacts."""

@@ -77,6 +77,10 @@ def inertia_and_anchor(
     return block
 
 
+REPAYMENT = wp.constant(0.5)
+"""Share of a link's debt that it pays back in a step: less delays, all at once repeats every jump a step later."""
+
+
 @wp.struct
 class WallContacts:
     """Contacts of one wall step, and how the links and the wall have moved in it."""
@@ -151,6 +155,7 @@ def add_contact(block: VertexBlock, contacts: WallContacts, x: wp.array2d[wp.vec
             along = wp.outer(c.normal, c.normal)
             out.force += weight * (c.normal_force * c.normal - c.friction * c.slip)
             out.hessian += (weight * weight) * (c.stiffness * along + c.friction * (eye - along))
+        out.force += weight * contacts.records.owed[slot]
         entry = contacts.records.vertex_next[entry]
     return out
 
@@ -172,9 +177,64 @@ def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: M
     if contacts.records.link[slot] < 0:
         return
     c = contact_force_at(contacts, slot, x, w)
-    measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip
+    measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[slot]
     measured.normal[slot] = c.normal
     measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
+
+
+@wp.kernel
+def share_debts(links: LinkShapes, law: ContactLaw, debt: wp.array2d[wp.vec3], records: ContactRecords):
+    """Have every link pay some of its debt to the wall where it touches, by depth. Launch (W, L).
+
+    Args:
+        links: Capsules of one world.
+        law: Contact law.
+        debt: Impulse over the step that each link owes the wall [N], shape (W, L).
+        records: Contacts; ``owed`` is written.
+    """
+    w, link = wp.tid()
+    first = w * records.capacity
+    touch = links.radius[link] + law.wall_radius
+    total = float(0.0)
+    for k in range(records.start[w, link], records.start[w, link + 1]):
+        total += records.weight[first + k] * wp.max(touch - records.distance[first + k], 0.0)
+    for k in range(records.start[w, link], records.start[w, link + 1]):
+        owed = wp.vec3(0.0)
+        if total > 0.0:
+            depth = records.weight[first + k] * wp.max(touch - records.distance[first + k], 0.0)
+            owed = (REPAYMENT * depth / total) * debt[w, link]
+        records.owed[first + k] = owed
+
+
+@wp.kernel
+def settle_debts(
+    contacts: WallContacts, x: wp.array2d[wp.vec3], link_force: wp.array[wp.vec3], debt: wp.array2d[wp.vec3]
+):
+    """Add what each link has had from the wall in this step and not given back to its debt. Launch (W, L).
+
+    The links are moved first, against the wall where it was, and the wall then against the links where they are: while
+    they move, the two forces differ by a few percent. Paid back, action and reaction are the same but for a delay of
+    some steps. A link that touches nothing forgets a tenth of its debt.
+
+    Args:
+        contacts: Contacts of the step.
+        x: Wall positions at its end [m], shape (V, W).
+        link_force: Mean force of the wall on each link in it [N], shape (W*L,).
+        debt: Impulse over the step that each link owes the wall [N], shape (W, L); updated.
+    """
+    w, link = wp.tid()
+    first = w * contacts.records.capacity
+    paid = wp.vec3(0.0)
+    touching = int(0)
+    for k in range(contacts.records.start[w, link], contacts.records.start[w, link + 1]):
+        c = contact_force_at(contacts, first + k, x, w)
+        paid += c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[first + k]
+        if c.normal_force > 0.0:
+            touching += 1
+    rest = debt[w, link] - link_force[w * debt.shape[1] + link] - paid
+    if touching == 0:
+        rest = 0.9 * rest
+    debt[w, link] = rest
 
 
 @wp.kernel

@@ -129,6 +129,13 @@ class WallSolver:
             return
         shape = (self.vertex_count, self.num_envs)
         contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
+        wp.launch(
+            wall_kernels.share_debts,
+            contact.debt.shape,
+            inputs=[contact.links, contact.law, contact.debt],
+            outputs=[contact.records],
+            device=self.device,
+        )
         decay = math.exp(-self.cfg.drag * self.dt)
         wp.launch(
             wall_kernels.predict,
@@ -145,9 +152,22 @@ class WallSolver:
                 self._sweep(x, contacts)
         wp.launch(wall_kernels.finish, x.shape, inputs=[x, self.x_prev, self.dt], outputs=[v], device=self.device)
 
-    def advance_slides(self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
-        """Keep of each contact's displacement along the wall what friction holds; arguments as in :meth:`step`."""
+    def finish_contacts(
+        self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array, link_force: wp.array
+    ) -> None:
+        """Keep what friction holds and what the links owe the wall; arguments as in :meth:`step`.
+
+        ``link_force`` is the mean force of the wall on each link in this step [N], shape (W*L,), vec3.
+        """
         contacts = wall_contacts(contact, self.dt, self.x_prev if self.moves else x, body_q, body_q_prev)
+        if self.moves:
+            wp.launch(
+                wall_kernels.settle_debts,
+                contact.debt.shape,
+                inputs=[contacts, x, link_force],
+                outputs=[contact.debt],
+                device=self.device,
+            )
         slots = (contacts.records.capacity, self.num_envs)
         wp.launch(wall_kernels.advance_slides, slots, inputs=[contacts, x], device=self.device)
 
