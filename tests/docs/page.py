@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Code blocks of a page, written to a folder and run there as a reader would."""
+"""Code blocks of a page, written to a folder and run there with the installed wheel, as a reader would."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import os
 import re
 import shlex
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
+
+from wheel import WheelPython
 
 ROOT = Path(__file__).parents[2]
 
@@ -21,9 +22,9 @@ class Page:
     A Python block whose first line is a comment with a path goes to that file; the others are run in their order.
     """
 
-    def __init__(self, path: str, folder: Path):
+    def __init__(self, path: str, folder: Path, wheel: WheelPython):
         text = (ROOT / path).read_text()
-        self.folder = folder
+        self.folder, self.wheel = folder, wheel
         self.blocks = re.findall(r"^```(\w+)\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
         self.files = dict(found.groups() for code in self.of("python") if (found := _FILE.fullmatch(code)))
         for name, code in self.files.items():
@@ -48,12 +49,12 @@ class Page:
     def run(self, command: str, timeout: float = 500.0) -> str:
         """Run a command in the folder and return what it printed; the test fails if it does."""
         words = shlex.split(command.replace("$PWD", str(self.folder)))
-        program = {"python": [sys.executable], "arcgym": [sys.executable, "-m", "arcgym"]}[words[0]]
-        path = os.pathsep.join([str(self.folder), str(ROOT / "source")])
+        python = self.wheel.executable
+        program = {"python": [str(python)], "arcgym": [str(python), str(python.parent / "arcgym")]}[words[0]]
         result = subprocess.run(
             [*program, *words[1:]],
             cwd=self.folder,
-            env={**os.environ, "PYTHONPATH": path},
+            env={**os.environ, "PYTHONPATH": str(self.folder)},
             capture_output=True,
             text=True,
             timeout=timeout,
