@@ -45,7 +45,7 @@ def test_train_then_play(tmp_path):
     assert {path.name for path in (checkpoint.parent / "params").iterdir()} == {"run.yaml", "env.yaml", "agent.yaml"}
 
     played = run(tmp_path, "rsl_rl/play.py", *EXPERIMENT, "--video", "--video_length", "4", "--steps", "4", LUMEN)
-    assert "changed: env.lumen: paper -> metric" in played
+    assert "changed: env.lumen.mix: 0.6 -> 0.9" in played
     assert path_after(played, "checkpoint") == checkpoint
     assert {path.name for path in (checkpoint.parent / "exported").iterdir()} == {"policy.pt", "policy.onnx"}
     frames = iio.imread(path_after(played, "video"))
