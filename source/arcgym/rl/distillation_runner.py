@@ -8,7 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import torch
-from rsl_rl.env import VecEnv
 
 from arcgym.rl.runner import OnPolicyRunner
 
@@ -18,11 +17,6 @@ class DistillationRunner(OnPolicyRunner):
 
     The teacher is the actor of a PPO checkpoint, ``cfg["teacher_checkpoint"]``; a resumed run brings its own.
     """
-
-    def __init__(self, env: VecEnv, train_cfg: dict, log_dir: str | None = None, device: str = "cpu"):
-        """Build student, teacher and logger; arguments as in rsl_rl."""
-        super().__init__(env, train_cfg, log_dir, device)
-        self.alg.learning_rate = train_cfg["algorithm"]["learning_rate"]
 
     def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
         """Load the teacher unless a checkpoint brought it, and learn.

@@ -131,8 +131,9 @@ class PPOLagrangian(PPO):
         super().process_env_step(obs, rewards, dones, extras)
 
     def compute_returns(self, obs: TensorDict) -> None:
-        """Compute returns of reward and costs, and the advantages of the Lagrangian."""
+        """Move the multipliers by the episodes that ended, then compute returns and the Lagrangian's advantages."""
         super().compute_returns(obs)
+        self._move_multipliers()
         st, last = self.storage, self._values(obs).detach()
         mixed, total = st.returns - st.values, 1.0
         for k, name in enumerate(self.cost_names):
@@ -146,11 +147,7 @@ class PPOLagrangian(PPO):
             st.advantages = (st.advantages - st.advantages.mean()) / (st.advantages.std() + 1e-8)
 
     def update(self) -> dict[str, float]:
-        """Move the multipliers, fit the costs' critics, update the policy, and return what to log."""
-        means = self.episode_costs.take_means(self.min_episodes)
-        for name, mean in zip(self.cost_names, means or (), strict=False):
-            self.mean_episode_costs[name] = mean
-            self.multipliers[name].update(mean)
+        """Fit the costs' critics, update the policy, and return what to log."""
         losses = self._fit_cost_critics()
         losses |= super().update()
         for name in self.cost_names:
@@ -203,6 +200,12 @@ class PPOLagrangian(PPO):
         super().broadcast_parameters()
         for tensor in self.cost_critics.state_dict().values():
             torch.distributed.broadcast(tensor, src=0)
+
+    def _move_multipliers(self) -> None:
+        means = self.episode_costs.take_means(self.min_episodes)
+        for name, mean in zip(self.cost_names, means or (), strict=False):
+            self.mean_episode_costs[name] = mean
+            self.multipliers[name].update(mean)
 
     def _values(self, obs: TensorDict) -> torch.Tensor:
         """Value of each cost, shape (K, N, 1)."""
