@@ -80,6 +80,7 @@ def nothing_is_built(tmp_path, monkeypatch):
             [*PLAY, "--policy", "zero", "--record", "x.hdf5"],
             "not installed: pip install 'arcgym[recorder]'",
         ),
+        (["snapshots", *TASK, "--device", "tpu"], "--device is 'tpu', expected cpu, cuda or cuda:<n>"),
         ([*ZERO, "--steps", "0"], "--steps: 0 is too small, expected 1 or more"),
         ([*ZERO, "env.scene.colon.material=none"], "'none'"),
     ],
