@@ -72,5 +72,5 @@ def test_pipeline_result_has_the_size_of_the_image(tmp_path, monkeypatch):
 
 
 def test_missing_weights_are_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="nowhere"):
+    with pytest.raises(ValueError, match="nowhere"):
         TransformersDepth(tmp_path / "nowhere")

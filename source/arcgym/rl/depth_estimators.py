@@ -11,6 +11,8 @@ from typing import Any, Protocol
 
 import torch
 
+from arcgym.utils.errors import UsageError
+
 
 class DepthSource(Protocol):
     """Gives the depth of the latest view of N worlds."""
@@ -86,15 +88,15 @@ class TransformersDepth:
             gives_depth: Whether the network answers with depth, as the metric variants do, and not with its inverse.
 
         Raises:
-            FileNotFoundError: If the folder does not exist.
-            ImportError: If transformers is not installed.
+            UsageError: If the folder does not exist.
+            UsageError: If transformers is not installed.
         """
         if not Path(weights).is_dir():
-            raise FileNotFoundError(f"No depth network in '{weights}', expected a folder with config.json and weights.")
+            raise UsageError(f"No depth network in '{weights}', expected a folder with config.json and weights.")
         try:
             from transformers import pipeline  # type: ignore[import-not-found]
         except ImportError as error:
-            raise ImportError("Depth estimation needs transformers: pip install transformers.") from error
+            raise UsageError("Depth estimation needs transformers: pip install transformers.") from error
         self._pipeline = pipeline("depth-estimation", model=str(weights), device=device)
         self._batch_size, self._gives_depth = batch_size, gives_depth
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import torch
 
 from arcgym.rl.runner import OnPolicyRunner
+from arcgym.utils.errors import UsageError
 
 
 class DistillationRunner(OnPolicyRunner):
@@ -22,7 +23,7 @@ class DistillationRunner(OnPolicyRunner):
         """Load the teacher unless a checkpoint brought it, and learn.
 
         Raises:
-            ValueError: If there is no teacher.
+            UsageError: If there is no teacher.
         """
         if not self.alg.teacher_loaded:  # type: ignore[attr-defined]
             self._load_teacher(self.cfg.get("teacher_checkpoint"))
@@ -37,8 +38,8 @@ class DistillationRunner(OnPolicyRunner):
 
     def _load_teacher(self, path: str | None) -> None:
         if not path:
-            raise ValueError("No teacher: set agent.teacher_checkpoint to a checkpoint of a privileged PPO policy.")
+            raise UsageError("No teacher: set agent.teacher_checkpoint to a checkpoint of a privileged PPO policy.")
         if not Path(path).is_file():
-            raise FileNotFoundError(f"No teacher checkpoint '{path}'.")
+            raise UsageError(f"No teacher checkpoint '{path}'.")
         checkpoint = torch.load(path, weights_only=False, map_location=self.device)
         self.alg.load(checkpoint, {"teacher": True}, strict=True)
