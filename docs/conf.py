@@ -53,7 +53,6 @@ autodoc_default_options = {"ignore-module-all": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
-autodoc_mock_imports = ["viser"]
 
 html_theme = "furo"
 html_title = f"ARCGym {version}"

@@ -12,13 +12,14 @@ from pathlib import Path
 import imageio.v3 as iio
 import numpy as np
 import pytest
-import torch
 
 from arcgym.rl import find_checkpoint
+from arcgym.rl.checkpoint import read_checkpoint
 
 ROOT = Path(__file__).resolve().parents[2]
 TASK = ["--task", "ARC-Rectum-Proximal", "--num_envs", "1", "--device", "cpu"]
 SMALL = ["agent.num_steps_per_env=4", "agent.algorithm.num_mini_batches=2", "agent.save_interval=1"]
+LUMEN = "env.lumen=metric"
 EXPERIMENT = ["--experiment_name", "trial"]
 
 
@@ -41,9 +42,10 @@ def test_train_then_play(tmp_path):
     trained = run(tmp_path, "rsl_rl/train.py", *EXPERIMENT, "--max_iterations", "1", *SMALL)
     checkpoint = path_after(trained, "checkpoint")
     assert checkpoint.is_file()
-    assert {path.name for path in (checkpoint.parent / "params").iterdir()} == {"env.yaml", "agent.yaml"}
+    assert {path.name for path in (checkpoint.parent / "params").iterdir()} == {"run.yaml", "env.yaml", "agent.yaml"}
 
-    played = run(tmp_path, "rsl_rl/play.py", *EXPERIMENT, "--video", "--video_length", "4")
+    played = run(tmp_path, "rsl_rl/play.py", *EXPERIMENT, "--video", "--video_length", "4", "--steps", "4", LUMEN)
+    assert "changed: env.lumen.mix: 0.6 -> 0.9" in played
     assert path_after(played, "checkpoint") == checkpoint
     assert {path.name for path in (checkpoint.parent / "exported").iterdir()} == {"policy.pt", "policy.onnx"}
     frames = iio.imread(path_after(played, "video"))
@@ -65,9 +67,10 @@ def test_kill_then_resume(tmp_path):
         process.communicate(timeout=300)
     assert process.returncode == 128 + signal.SIGTERM
     checkpoint = find_checkpoint("trial", root=tmp_path / "logs" / "rsl_rl")
-    done = torch.load(checkpoint, weights_only=False)["infos"]["completed_iterations"]
-    resumed = run(tmp_path, "rsl_rl/train.py", *EXPERIMENT, "--resume", "--max_iterations", "1", *SMALL)
+    done = read_checkpoint(checkpoint)["infos"]["completed_iterations"]
+    resumed = run(tmp_path, "rsl_rl/train.py", *EXPERIMENT, "--resume", "--max_iterations", "1")
     assert f"at iteration {done}" in resumed
+    assert "changed: agent.max_iterations: 1000 -> 1" in resumed
     assert path_after(resumed, "checkpoint").name == f"model_{done}.pt"
 
 

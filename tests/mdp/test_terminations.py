@@ -29,6 +29,16 @@ def test_scope_out_at_the_anal_verge(env) -> None:
     assert mdp.scope_out(env).tolist() == [True, False]
 
 
+def test_episode_cost_above_its_limit(env) -> None:
+    sums = {"force": torch.tensor([0.3, 0.6]), "view": torch.tensor([0.9, 0.0])}
+    assert mdp.episode_cost_above(env, limit=0.5).tolist() == [False, False]
+    env.cost_manager = SimpleNamespace(episode_sums=sums)
+    assert mdp.episode_cost_above(env, limit=0.5, cost="force").tolist() == [False, True]
+    assert mdp.episode_cost_above(env, limit=1.0).tolist() == [True, False]
+    with pytest.raises(ValueError, match="'strain', expected one of: force, view"):
+        mdp.episode_cost_above(env, limit=1.0, cost="strain")
+
+
 def test_wall_penetrated_is_what_the_simulation_says(env) -> None:
     env.sim = SimpleNamespace(wall_penetrated=torch.tensor([False, True]))
     assert mdp.wall_penetrated(env).tolist() == [False, True]

@@ -12,7 +12,9 @@ from small_agents import actor_cfg, runner_cfg
 from arcgym.managers.recorder_files import Episode
 from arcgym.rl import OnPolicyRunner
 from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningAlgorithmCfg, RslRlBehaviorCloningRunnerCfg
+from arcgym.rl.behavior_cloning_runner import BehaviorCloningRunner
 from arcgym.rl.demonstrations import Demonstrations
+from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
 
@@ -32,13 +34,13 @@ def record_expert(folder, worlds: int = 64) -> None:
         save_episode(folder, world, actions=np.stack([action[world].numpy() for action in actions]), **steps)
 
 
-def make_runner(folder, num_envs: int = 16, **algorithm) -> OnPolicyRunner:
+def make_runner(folder, num_envs: int = 16, log_dir=None, **algorithm) -> BehaviorCloningRunner:
     torch.manual_seed(0)
     settings = {"demonstrations": str(folder), "learning_rate": 3e-3, "batch_size": 64, "steps_per_update": 20}
     cfg = RslRlBehaviorCloningRunnerCfg(
         actor=actor_cfg(), algorithm=RslRlBehaviorCloningAlgorithmCfg(**(settings | algorithm))
     )
-    return OnPolicyRunner(SteerToDot(num_envs), cfg.to_dict(), device="cpu")
+    return BehaviorCloningRunner(SteerToDot(num_envs), cfg.to_dict(), log_dir=log_dir, device="cpu")
 
 
 def test_failed_episodes_are_left_out(tmp_path):
@@ -51,24 +53,24 @@ def test_failed_episodes_are_left_out(tmp_path):
 
 def test_missing_observations_name_the_cure(tmp_path):
     save_episode(tmp_path, 0, actions=np.zeros((3, 1)))
-    with pytest.raises(KeyError, match="no 'obs/policy'.*holds: actions.*PreStepObservationsRecorderCfg"):
+    with pytest.raises(UsageError, match="no 'obs/policy'.*holds: actions.*PreStepObservationsRecorderCfg"):
         Demonstrations(tmp_path, ["policy"], "cpu")
 
 
 def test_empty_folder_is_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="No successful episodes"):
+    with pytest.raises(UsageError, match="No successful episodes"):
         Demonstrations(tmp_path, ["policy"], "cpu")
 
 
 def test_folder_must_be_given(tmp_path):
-    with pytest.raises(ValueError, match="agent.algorithm.demonstrations"):
-        make_runner("")
+    with pytest.raises(UsageError, match="agent.algorithm.demonstrations"):
+        make_runner("", log_dir=str(tmp_path))
 
 
 def test_actions_must_be_the_tasks(tmp_path):
     save_episode(tmp_path, 0, actions=np.zeros((3, 5)), **{"obs/policy": np.zeros((3, 1, 16, 16), dtype=np.uint8)})
-    with pytest.raises(ValueError, match="have 5 actions, expected the task's 2"):
-        make_runner(tmp_path)
+    with pytest.raises(UsageError, match="have 5 actions, expected 2"):
+        make_runner(tmp_path, log_dir=str(tmp_path / "run"))
 
 
 def test_loss_is_the_mean_square_to_the_clipped_action(tmp_path):
@@ -93,6 +95,15 @@ def test_solves_the_dot_and_starts_ppo(tmp_path):
     ppo.load(str(tmp_path / "model_14.pt"), load_cfg={"actor": True})
     obs = SteerToDot(16).get_observations()
     torch.testing.assert_close(ppo.get_inference_policy()(obs), policy(obs))
+
+
+def test_playing_needs_no_demonstrations(tmp_path):
+    record_expert(tmp_path, worlds=2)
+    runner, player = make_runner(tmp_path), make_runner("moved away")
+    runner.save(str(tmp_path / "model_0.pt"))
+    player.load(str(tmp_path / "model_0.pt"), load_cfg={"actor": True})
+    obs = SteerToDot(2).get_observations()
+    torch.testing.assert_close(player.get_inference_policy()(obs), runner.get_inference_policy()(obs))
 
 
 @one_thread()

@@ -64,11 +64,13 @@ def test_pipeline_result_has_the_size_of_the_image(tmp_path, monkeypatch):
     stub = ModuleType("transformers")
     stub.pipeline = pipeline
     monkeypatch.setitem(sys.modules, "transformers", stub)
-    depth = TransformersDepth(tmp_path)(torch.zeros(3, 4, 6, 3, dtype=torch.uint8))
-    assert depth.shape == (3, 4, 6)
+    images = torch.zeros(3, 4, 6, 3, dtype=torch.uint8)
+    inverse = TransformersDepth(tmp_path)(images)
+    assert inverse.shape == (3, 4, 6)
+    assert float(TransformersDepth(tmp_path, gives_depth=True)(images)[0, 0, 0]) == 1.0 / float(inverse[0, 0, 0])
     assert asked == {"task": "depth-estimation", "model": str(tmp_path)}
 
 
 def test_missing_weights_are_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="nowhere"):
+    with pytest.raises(ValueError, match="nowhere"):
         TransformersDepth(tmp_path / "nowhere")

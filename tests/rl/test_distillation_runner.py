@@ -73,5 +73,5 @@ def test_teacher_must_be_given():
 
 
 def test_missing_teacher_is_named():
-    with pytest.raises(FileNotFoundError, match="nowhere.pt"):
+    with pytest.raises(ValueError, match="nowhere.pt"):
         make_runner("nowhere.pt").learn(1)

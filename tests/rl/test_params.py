@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 import yaml
 
+from arcgym.envs.mdp import METRIC
 from arcgym.rl.params import differences, read_params, restore, without
 from arcgym.rl.run_folder import write_params
 from arcgym.utils.coerce import to_plain
@@ -30,7 +31,7 @@ def test_without_leaves_the_rest():
 
 
 def test_a_run_comes_back_as_it_was(env_cfg, tmp_path):
-    env_cfg.rewards.progress.weight, env_cfg.rewards.action_rate, env_cfg.lumen = 7.0, None, "metric"
+    env_cfg.rewards.progress.weight, env_cfg.rewards.action_rate, env_cfg.lumen = 7.0, None, METRIC.copy()
     agent_cfg = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
     agent_cfg.actor.hidden_dims = [64]
     write_params(tmp_path, run={"task": TASK}, env=env_cfg, agent=agent_cfg)
@@ -45,11 +46,11 @@ def test_a_run_comes_back_as_it_was(env_cfg, tmp_path):
 
 
 def test_play_variant_keeps_its_changes(env_cfg):
-    env_cfg.lumen, env_cfg.scene.num_envs = "metric", 500
+    env_cfg.lumen, env_cfg.scene.num_envs = METRIC.copy(), 500
     play = load_cfg_from_registry(f"{TASK}-Play", "env_cfg_entry_point")
     plain = load_cfg_from_registry(TASK, "env_cfg_entry_point")
     restore(play, to_plain(env_cfg), "env", list(differences(to_plain(plain), to_plain(play))))
-    assert (play.lumen, play.scene.num_envs, play.events.light) == ("metric", 4, None)
+    assert (play.lumen, play.scene.num_envs, play.events.light) == (METRIC, 4, None)
 
 
 @pytest.mark.parametrize("code", ["subprocess:call", "arcgym.rl.run_folder:shutil.rmtree"])

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+
 import numpy as np
 import torch
 
@@ -20,6 +23,18 @@ class FrameList:
 
     def close(self):
         self.closed = True
+
+
+def test_full_disk_ends_the_clip_alone(counting_env, tmp_path, capsys):
+    class FullDisk(FrameList):
+        def write(self, frame):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    counting_env.render = lambda: np.zeros((2, 2, 3), dtype=np.uint8)
+    env = PeriodicVideo(counting_env, tmp_path, lambda path: FullDisk(), length=2, interval=5)
+    for _ in range(3):
+        env.step(torch.zeros(2, 2))
+    assert capsys.readouterr().out.count("No space left on device") == 1
 
 
 def test_clips_start_at_the_interval(counting_env, tmp_path):

@@ -127,7 +127,7 @@ def test_checkpoint_resumes_critics_and_multipliers(tmp_path):
 
 def test_unknown_cost_lists_the_known():
     runner = make_runner(SteerToDot(4), RslRlPpoLagrangianAlgorithmCfg(limits={"force": 1.0}))
-    with pytest.raises(KeyError, match="'force'; the task's are: effort, total"):
+    with pytest.raises(UsageError, match="'force'; the task's are: effort, total"):
         roll(runner)
 
 

@@ -12,6 +12,7 @@ from tensordict import TensorDict
 
 from arcgym.rl import GaussianDistributionCfg, OnPolicyRunner, export_policy_as_jit, export_policy_as_onnx
 from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
+from arcgym.rl.networks.augmented_cnn import AugmentedCnnModel
 from arcgym.rl.networks.recurrent_cnn import RecurrentCnnModel
 from arcgym.utils.threads import one_thread
 
@@ -86,6 +87,15 @@ def test_onnx_equals_the_policy(tmp_path, kind, layers, groups):
         actions, state = session.run(None, inputs)
         with torch.no_grad():
             torch.testing.assert_close(torch.from_numpy(actions), model(obs[step]), rtol=1e-4, atol=1e-5)
+
+
+def test_image_critic_without_memory_beside_a_recurrent_actor():
+    """Two environments' rollouts of three steps: the critic's values are those of the single images."""
+    obs = make_obs(3, 2)
+    critic = AugmentedCnnModel(make_obs(2), {"critic": ["policy"]}, "critic", 1, [8], cnn_cfg=CNN)
+    pieces, masks = split_and_pad_trajectories(obs, torch.zeros(3, 2, 1, dtype=torch.uint8))
+    values = critic(pieces, masks=masks)
+    torch.testing.assert_close(values, torch.stack([critic(obs[step]) for step in range(3)]))
 
 
 def test_unknown_layer_is_refused():

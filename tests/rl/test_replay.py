@@ -89,6 +89,14 @@ def test_each_frame_is_stored_once():
     assert make_replay(Episodes()).num_bytes == 20 * 3 * (8 * 2 + 4)
 
 
+def test_memory_is_taken_with_the_first_transition():
+    episodes = Episodes()
+    replay = make_replay(episodes)
+    assert replay._obs == {}
+    episodes.step_into(replay)
+    assert sum(value.numel() * value.element_size() for value in replay._obs.values()) == replay.num_bytes
+
+
 def test_saved_replay_goes_on_with_a_fresh_start():
     torch.manual_seed(0)
     episodes = Episodes()

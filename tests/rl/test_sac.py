@@ -177,4 +177,4 @@ def test_unread_groups_are_not_stored():
     wide = TensorDict({**dict(obs.items()), "extra": torch.zeros(8, 3)}, batch_size=[8])
     runner.env.get_observations = lambda: wide
     alg = type(runner.alg).construct_algorithm(wide, runner.env, runner.cfg, "cpu")
-    assert set(alg.replay._obs) == {"policy", "critic"}
+    assert set(alg.replay._layout) == {"policy", "critic"}

@@ -59,8 +59,7 @@ def run(namespace: argparse.Namespace) -> None:
 
 def _env_cfg(args: SnapshotArguments) -> Any:
     """Return the task's configuration on the chosen device, checked."""
-    import torch
-
+    from arcgym.rl.device import choose_device
     from arcgym.utils.configclass import validate
     from arcgym.utils.hydra import apply_overrides
     from arcgym.utils.registry import load_cfg_from_registry
@@ -71,6 +70,5 @@ def _env_cfg(args: SnapshotArguments) -> Any:
         validate(cfg, "env")
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
-    device = args.device or ("cuda:0" if torch.cuda.is_available() else "cpu")
-    cfg.sim.device = "cuda:0" if device == "cuda" else device
+    cfg.sim.device = choose_device(args.device)
     return cfg

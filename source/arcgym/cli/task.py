@@ -44,7 +44,7 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     Raises:
         UsageError: The task, an override, the checkpoint or the run's parameters are wrong.
     """
-    from arcgym.rl.params import differences, read_params, restore
+    from arcgym.rl.params import NOT_RESTORED, differences, read_params, restore
     from arcgym.rl.run_folder import find_checkpoint
     from arcgym.utils.coerce import to_plain
 
@@ -66,8 +66,10 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     before = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
     _write(args, env_cfg, agent_cfg)
     after = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
+    passing = {f"{kind}.{path}" for kind, paths in NOT_RESTORED.items() for path in paths}
     for path, (old, new) in differences(before, after).items():
-        print(f"changed: {path}: {old} -> {new}")
+        if path not in passing:
+            print(f"changed: {path}: {old} -> {new}")
     return env_cfg, agent_cfg, checkpoint
 
 

@@ -34,7 +34,7 @@ def check_agent(env_cfg: Any, agent_cfg: Any, trains: bool) -> None:
     """
     _check_classes(agent_cfg)
     _check_groups(env_cfg, agent_cfg)
-    for name in ("actor", "critic"):
+    for name in agent_cfg.obs_groups:
         _check_images(env_cfg, agent_cfg, name)
     if trains:
         num_mini_batches = getattr(agent_cfg.algorithm, "num_mini_batches", 1)
@@ -65,9 +65,8 @@ def check_installed(package: str, reason: str, extra: str | None = None) -> None
 
 
 def _check_classes(agent_cfg: Any) -> None:
-    owners = {"agent": agent_cfg} | {
-        f"agent.{name}": getattr(agent_cfg, name) for name in ("actor", "critic", "algorithm")
-    }
+    parts = {f"agent.{name}": value for name, value in vars(agent_cfg).items() if hasattr(value, "class_name")}
+    owners = {"agent": agent_cfg, **parts}
     for path, owner in owners.items():
         try:
             resolve_in_rsl_rl(owner.class_name)
@@ -88,7 +87,7 @@ def _check_groups(env_cfg: Any, agent_cfg: Any) -> None:
 
 def _check_images(env_cfg: Any, agent_cfg: Any, name: str) -> None:
     """Raise if the images that a model reads are too small for its encoder."""
-    cnn_cfg = getattr(getattr(agent_cfg, name), "cnn_cfg", None)
+    cnn_cfg = getattr(getattr(agent_cfg, name, None), "cnn_cfg", None)
     if cnn_cfg is None:
         return
     for group in agent_cfg.obs_groups.get(name, ()):

@@ -102,5 +102,5 @@ def make_depth(env: VecEnv, cfg: dict[str, Any]) -> DepthSource:
     weights = cfg.get("weights")
     if weights is None:
         return SimulatorDepth(env)
-    network = TransformersDepth(weights, device=str(env.device))
+    network = TransformersDepth(weights, device=str(env.device), gives_depth=cfg["gives_depth"])
     return EstimatedDepth(env, network, cfg["near"], cfg["far"], cfg["align_to_simulator"])

@@ -12,6 +12,7 @@ import torch
 from tensordict import TensorDict
 
 from arcgym.managers.recorder_files import Episode, episode_paths
+from arcgym.utils.errors import UsageError
 
 
 class Demonstrations:
@@ -27,14 +28,13 @@ class Demonstrations:
             successful_only: Whether episodes that the task's success did not end are left out.
 
         Raises:
-            FileNotFoundError: If there is no episode, or none that succeeded.
-            KeyError: If an episode lacks an observation group.
+            UsageError: If there is no episode, or none that succeeded, or one lacks an observation group.
         """
         paths = episode_paths(folder)
         episodes = [episode for path in paths if (episode := Episode.load(path)).info["success"] or not successful_only]
         if not episodes:
             wanted = "successful episodes" if successful_only else "episodes"
-            raise FileNotFoundError(f"No {wanted} in '{folder}', which holds {len(paths)} recorded episodes.")
+            raise UsageError(f"No {wanted} in '{folder}', which holds {len(paths)} recorded episodes.")
         self.num_episodes = len(episodes)
         names = {group: f"obs/{group}" for group in groups} | {"actions": "actions"}
         for path_name in names.values():
@@ -59,7 +59,7 @@ class Demonstrations:
 def _check(episodes: list[Episode], name: str, folder: str | Path) -> None:
     for episode in episodes:
         if name not in episode.data:
-            raise KeyError(
+            raise UsageError(
                 f"An episode in '{folder}' has no '{name}'; it holds: {', '.join(sorted(episode.data))}. Record with "
                 "env.recorders.observations set to PreStepObservationsRecorderCfg()."
             )

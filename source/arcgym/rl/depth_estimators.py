@@ -11,6 +11,8 @@ from typing import Any, Protocol
 
 import torch
 
+from arcgym.utils.errors import UsageError
+
 
 class DepthSource(Protocol):
     """Gives the depth of the latest view of N worlds."""
@@ -76,26 +78,27 @@ class TransformersDepth:
     Nothing is downloaded: the weights are a folder that the user gives.
     """
 
-    def __init__(self, weights: str | Path, device: str = "cpu", batch_size: int = 16):
+    def __init__(self, weights: str | Path, device: str = "cpu", batch_size: int = 16, gives_depth: bool = False):
         """Load the network.
 
         Args:
             weights: Folder with the network as ``save_pretrained`` of transformers writes it.
             device: Device of the network.
             batch_size: Images at a time.
+            gives_depth: Whether the network answers with depth, as the metric variants do, and not with its inverse.
 
         Raises:
-            FileNotFoundError: If the folder does not exist.
-            ImportError: If transformers is not installed.
+            UsageError: If the folder does not exist.
+            UsageError: If transformers is not installed.
         """
         if not Path(weights).is_dir():
-            raise FileNotFoundError(f"No depth network in '{weights}', expected a folder with config.json and weights.")
+            raise UsageError(f"No depth network in '{weights}', expected a folder with config.json and weights.")
         try:
             from transformers import pipeline  # type: ignore[import-not-found]
         except ImportError as error:
-            raise ImportError("Depth estimation needs transformers: pip install transformers.") from error
+            raise UsageError("Depth estimation needs transformers: pip install transformers.") from error
         self._pipeline = pipeline("depth-estimation", model=str(weights), device=device)
-        self._batch_size = batch_size
+        self._batch_size, self._gives_depth = batch_size, gives_depth
 
     def __call__(self, images: torch.Tensor) -> torch.Tensor:
         """Return inverse depth of any scale, shape (N, H, W), of uint8 images, shape (N, H, W, 3)."""
@@ -106,7 +109,8 @@ class TransformersDepth:
         depths = [torch.as_tensor(result["predicted_depth"]).reshape(1, 1, *_edges(result)) for result in results]
         size = images.shape[1:3]
         resized = [torch.nn.functional.interpolate(d, size=tuple(size), mode="bilinear") for d in depths]
-        return torch.cat(resized)[:, 0].to(images.device)
+        answer = torch.cat(resized)[:, 0].to(images.device)
+        return 1.0 / answer.clamp(min=1.0e-6) if self._gives_depth else answer
 
 
 def align_to_range(inverse: torch.Tensor, near: float, far: float) -> torch.Tensor:

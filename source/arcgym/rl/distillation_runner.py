@@ -8,9 +8,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import torch
-from rsl_rl.env import VecEnv
 
 from arcgym.rl.runner import OnPolicyRunner
+from arcgym.utils.errors import UsageError
 
 
 class DistillationRunner(OnPolicyRunner):
@@ -19,16 +19,11 @@ class DistillationRunner(OnPolicyRunner):
     The teacher is the actor of a PPO checkpoint, ``cfg["teacher_checkpoint"]``; a resumed run brings its own.
     """
 
-    def __init__(self, env: VecEnv, train_cfg: dict, log_dir: str | None = None, device: str = "cpu"):
-        """Build student, teacher and logger; arguments as in rsl_rl."""
-        super().__init__(env, train_cfg, log_dir, device)
-        self.alg.learning_rate = train_cfg["algorithm"]["learning_rate"]
-
     def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
         """Load the teacher unless a checkpoint brought it, and learn.
 
         Raises:
-            ValueError: If there is no teacher.
+            UsageError: If there is no teacher.
         """
         if not self.alg.teacher_loaded:  # type: ignore[attr-defined]
             self._load_teacher(self.cfg.get("teacher_checkpoint"))
@@ -43,8 +38,8 @@ class DistillationRunner(OnPolicyRunner):
 
     def _load_teacher(self, path: str | None) -> None:
         if not path:
-            raise ValueError("No teacher: set agent.teacher_checkpoint to a checkpoint of a privileged PPO policy.")
+            raise UsageError("No teacher: set agent.teacher_checkpoint to a checkpoint of a privileged PPO policy.")
         if not Path(path).is_file():
-            raise FileNotFoundError(f"No teacher checkpoint '{path}'.")
+            raise UsageError(f"No teacher checkpoint '{path}'.")
         checkpoint = torch.load(path, weights_only=False, map_location=self.device)
         self.alg.load(checkpoint, {"teacher": True}, strict=True)

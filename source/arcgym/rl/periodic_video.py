@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
@@ -61,7 +62,7 @@ class PeriodicVideo(gym.Wrapper):
         if self._video is None and self._step % self.interval == 0:
             self._start()
         if self._video is not None:
-            self._video.write(np.asarray(self.env.render()))
+            self._record(np.asarray(self.env.render()))
         self._step += 1
         if self._step >= self._end:
             self._finish()
@@ -71,6 +72,16 @@ class PeriodicVideo(gym.Wrapper):
         """Finish the clip and close the environment."""
         self._finish()
         super().close()
+
+    def _record(self, frame: np.ndarray) -> None:
+        """Append a frame; after an error of the disk the clip ends, and the run goes on."""
+        try:
+            self._video.write(frame)  # type: ignore[union-attr]
+        except OSError as error:
+            print(f"video {self.paths[-1]} ends at step {self._step}: {error.strerror or error}", flush=True)
+            with contextlib.suppress(OSError):
+                self._finish()
+            self._video = None
 
     def _start(self) -> None:
         path = self.folder / f"rl-video-step-{self._step}.mp4"

@@ -11,6 +11,8 @@ from typing import Any, cast
 import torch
 from tensordict import TensorDict
 
+from arcgym.utils.errors import UsageError
+
 
 @dataclass(frozen=True)
 class ReplayBatch:
@@ -48,7 +50,7 @@ class ReplayBuffer:
         device: str,
         frame_stacks: dict[str, int] | None = None,
     ):
-        """Allocate the memory.
+        """Plan the memory; images and vectors take theirs with the first transition, so that playing needs none.
 
         Args:
             obs: Observations of one step of all worlds; dtypes are kept.
@@ -58,23 +60,23 @@ class ReplayBuffer:
             frame_stacks: Frames in the channels of each stacked image group, oldest first; others count one.
 
         Raises:
-            ValueError: If a stack does not divide the channels, or the memory is too small for one.
-            KeyError: If a stacked group is not observed.
+            UsageError: If a stack does not divide the channels of its group, or the memory is too small for one.
         """
         self.device, self.num_envs = device, int(obs.batch_size[0])
         self.frame_stacks = _check_stacks(obs, frame_stacks or {})
         self.num_rows = capacity // self.num_envs
         self._history = max([1, *self.frame_stacks.values()]) - 1
         if self.num_rows < self._history + 3:
-            raise ValueError(
+            raise UsageError(
                 f"A replay of {capacity} observations has {self.num_rows} for each of {self.num_envs} worlds, expected "
                 f"at least {self._history + 3}: raise agent.algorithm.replay_size or lower the number of worlds."
             )
         shape = (self.num_rows, self.num_envs)
-        self._obs = {
-            name: torch.zeros(*shape, *self._newest(name, value).shape[1:], dtype=value.dtype, device=device)
+        self._layout = {
+            name: (torch.Size((*shape, *self._newest(name, value).shape[1:])), value.dtype)
             for name, value in cast(dict[str, torch.Tensor], obs).items()
         }
+        self._obs: dict[str, torch.Tensor] = {}
         self._actions = torch.zeros(*shape, num_actions, device=device)
         self._rewards = torch.zeros(shape, device=device)
         self._terminated = torch.zeros(shape, dtype=torch.bool, device=device)
@@ -89,7 +91,7 @@ class ReplayBuffer:
     @property
     def num_bytes(self) -> int:
         """Memory taken by observations [bytes]."""
-        return sum(value.numel() * value.element_size() for value in self._obs.values())
+        return sum(shape.numel() * torch.empty(0, dtype=dtype).element_size() for shape, dtype in self._layout.values())
 
     def add(
         self,
@@ -111,8 +113,9 @@ class ReplayBuffer:
             final_obs: Observations after the step and before the reset; needed where ``time_outs``.
 
         Raises:
-            ValueError: If a time-out comes without final observations.
+            UsageError: If a time-out comes without final observations.
         """
+        self._allocate()
         done, time_outs = dones.to(self.device) > 0, time_outs.to(self.device) > 0
         row = self._count % self.num_rows
         self._write(row, self._worlds, obs)
@@ -156,17 +159,24 @@ class ReplayBuffer:
         """Restore what was stored by a memory of the same shapes, and cut the episodes that were under way.
 
         Raises:
-            ValueError: If the shapes differ.
+            UsageError: If the shapes differ.
         """
         if state["_actions"].shape != self._actions.shape:
             have, want = tuple(state["_actions"].shape), tuple(self._actions.shape)
-            raise ValueError(f"The saved replay has rows, worlds, actions {have}, expected {want}.")
+            raise UsageError(f"The saved replay has rows, worlds, actions {have}, expected {want}.")
+        self._allocate()
         for name, value in self._obs.items():
             value.copy_(state["_obs"][name])
         for name in _STATE - {"_obs", "num_transitions"}:
             getattr(self, name).copy_(state[name])
         self.num_transitions = state["num_transitions"]
         self.cut()
+
+    def _allocate(self) -> None:
+        if not self._obs:
+            layout = self._layout.items()
+            with torch.inference_mode(False):  # written in the rollout, read by the update
+                self._obs = {name: torch.zeros(s, dtype=dtype, device=self.device) for name, (s, dtype) in layout}
 
     def _write(self, row: torch.Tensor, world: torch.Tensor, obs: Any) -> None:
         for name, store in self._obs.items():
@@ -177,7 +187,7 @@ class ReplayBuffer:
         if len(world) == 0:
             return
         if final_obs is None:
-            raise ValueError(
+            raise UsageError(
                 "A world timed out and extras hold no final_obs, which off-policy learning bootstraps from. "
                 "Set env.compute_final_obs=True."
             )
@@ -235,9 +245,9 @@ _STATE = {"_obs", "_actions", "_rewards", "_terminated", "_is_start", "_age", "_
 def _check_stacks(obs: TensorDict, stacks: dict[str, int]) -> dict[str, int]:
     for name, stack in stacks.items():
         if name not in obs.keys():  # noqa: SIM118 - a TensorDict iterates over its batch
-            raise KeyError(f"frame_stacks names the group '{name}'; observed are: {', '.join(map(str, obs.keys()))}.")
+            raise UsageError(f"frame_stacks names the group '{name}'; observed are: {', '.join(map(str, obs.keys()))}.")
         if stack < 1 or obs[name].shape[1] % stack:
-            raise ValueError(
+            raise UsageError(
                 f"frame_stacks['{name}'] is {stack}, which does not divide the {obs[name].shape[1]} channels."
             )
     return dict(stacks)

@@ -20,6 +20,7 @@ from rsl_rl.utils.log_writer import LogWriter
 from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
 from arcgym.rl.divergence import check_finite
 from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
+from arcgym.rl.learning_rate import linear_rate, set_learning_rate
 from arcgym.rl.patient_writer import PatientWriter
 from arcgym.utils.errors import UsageError
 
@@ -38,6 +39,11 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         """Build algorithm and logger; arguments as in rsl_rl."""
         with contextlib.redirect_stdout(io.StringIO()):  # rsl_rl prints every layer
             super().__init__(env, train_cfg, log_dir, device)
+        if train_cfg.get("final_learning_rate") is not None and train_cfg["algorithm"].get("schedule") == "adaptive":
+            raise UsageError(
+                "agent.final_learning_rate is set and agent.algorithm.schedule is 'adaptive', expected 'fixed': "
+                "the two would set the learning rate in turns."
+            )
         self.completed_iterations = 0
         self.best_reward = float("-inf")
         self.last_checkpoint: Path | None = None
@@ -128,6 +134,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():
+            self._decay()
             losses: dict[str, float] = {}
             try:
                 losses = update()
@@ -136,6 +143,14 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 check_finite(losses, weights, self.completed_iterations)
             self.completed_iterations += 1
         return losses
+
+    def _decay(self) -> None:
+        """Set the learning rate of this iteration where the configuration lets it fall."""
+        end = self.cfg.get("final_learning_rate")
+        if end is not None:
+            start = self.cfg["algorithm"]["learning_rate"]
+            rate = linear_rate(start, end, self.completed_iterations, self.cfg["max_iterations"])
+            set_learning_rate(self.alg, rate)
 
     def _models(self) -> dict[str, torch.nn.Module]:
         """Return the algorithm's networks by name."""

@@ -304,6 +304,10 @@ class RslRlOnPolicyRunnerCfg:
     init_at_random_ep_len: bool = True
     """Whether the worlds start at random places of their time limit, so that time-outs do not come all at once."""
 
+    final_learning_rate: float | None = None
+    """Learning rate of the last of ``max_iterations``, reached on a line from ``algorithm.learning_rate``; None keeps
+    it constant. Set it for long runs that get worse late. Needs the schedule ``fixed``."""
+
     check_for_nan: bool = True
     """Whether the runner stops at a NaN in observation or reward. The environment resets broken worlds before that."""
 

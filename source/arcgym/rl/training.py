@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -58,7 +59,8 @@ def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = Train
     device = place(env_cfg, agent_cfg, options.device, options.distributed)
     with contextlib.ExitStack() as stack:
         if not is_main_process():
-            stack.enter_context(contextlib.redirect_stdout(None))
+            silence = stack.enter_context(open(os.devnull, "w"))
+            stack.enter_context(contextlib.redirect_stdout(silence))
         folder = _start_folder(task, env_cfg, agent_cfg) if is_main_process() else None
         with removed_on_failure(folder):
             env = make_env(task, env_cfg, agent_cfg, _video(options, folder))

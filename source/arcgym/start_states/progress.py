@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from arcgym.start_states.drive import Drive
+from arcgym.utils.progress import paused
 
 
 def say(text: str) -> None:
@@ -33,7 +34,7 @@ def shown(label: str, goal: float) -> Iterator[Callable[[Drive], Any]]:
         TextColumn("{task.fields[way]}"),
         TimeElapsedColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    with paused(), Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         line = progress.add_task(label, total=goal, way="compiling")
 
         def report(drive: Drive) -> None:

@@ -13,8 +13,10 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 _listeners: list[Callable[[str], None]] = []
+_moving_lines: list[Any] = []
 
 
 def report(stage: str) -> None:
@@ -45,11 +47,28 @@ def shown(title: str) -> Iterator[None]:
         from rich.console import Console
 
         with Console().status(f"{title} …") as status, listening(lambda stage: status.update(f"{title}: {stage} …")):
-            yield
+            _moving_lines.append(status)
+            try:
+                yield
+            finally:
+                _moving_lines.remove(status)
     else:
         with listening(lambda stage: print(f"{title}: {stage}", flush=True)):
             yield
     print(f"{title}: ready after {time.perf_counter() - start:.1f} s", flush=True)
+
+
+@contextmanager
+def paused() -> Iterator[None]:
+    """Take the line of :func:`shown` away while the block shows a line of its own."""
+    hidden = list(_moving_lines)
+    for line in hidden:
+        line.stop()
+    try:
+        yield
+    finally:
+        for line in hidden:
+            line.start()
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from arcgym.utils.worlds import fill_worlds
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
 
-__all__ = ["lumen_not_visible", "scope_out", "stuck", "time_out", "wall_penetrated"]
+__all__ = ["episode_cost_above", "lumen_not_visible", "scope_out", "stuck", "time_out", "wall_penetrated"]
 
 
 def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
@@ -39,6 +39,29 @@ def scope_out(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
         arc_length: Arc length of the tip at which it counts as out [m].
     """
     return env.scene["endoscope"].data.tip_arc_length < arc_length
+
+
+@expects(limit=FINITE)
+def episode_cost_above(env: ManagerBasedRLEnv, limit: float, cost: str | None = None) -> torch.Tensor:
+    """Whether an episode's cost has exceeded its limit up to the last step, bool, shape (N,).
+
+    The early termination that constrained algorithms are compared with. The cost of a step is known after the
+    terminations of that step, so that the episode ends one step later.
+
+    Args:
+        limit: Largest cost of an episode, as ``Episode_Cost/...`` is logged.
+        cost: Name of the cost term; None takes the sum of all.
+
+    Raises:
+        ValueError: If the task has no such cost.
+    """
+    manager = getattr(env, "cost_manager", None)
+    if manager is None:  # the first evaluation, which only looks at the shape, comes before the costs
+        return torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
+    sums = manager.episode_sums
+    if cost is not None and cost not in sums:
+        raise ValueError(f"episode_cost_above names the cost '{cost}', expected one of: {', '.join(sums)}.")
+    return (sum(sums.values(), torch.zeros(env.num_envs, device=env.device)) if cost is None else sums[cost]) > limit
 
 
 def wall_penetrated(env: ManagerBasedRLEnv) -> torch.Tensor:

@@ -42,6 +42,9 @@ class RslRlBehaviorCloningAlgorithmCfg:
 class RslRlBehaviorCloningRunnerCfg(RslRlOnPolicyRunnerCfg):
     """Runner of behaviour cloning; the steps in the environment only show how good the policy is."""
 
+    class_name: str = "arcgym.rl.behavior_cloning_runner:BehaviorCloningRunner"
+    """Runner class."""
+
     num_steps_per_env: int = 4
     """Control steps of each world between updates. More make the curves of success less noisy."""
 

@@ -42,6 +42,9 @@ class ConstraintDepthCfg:
     """Folder of a network for monocular depth in the format of transformers, such as Depth Anything; None takes the
     simulator's depth, as the paper does."""
 
+    gives_depth: bool = False
+    """Whether the network answers with depth, as the metric variants do; the others give its inverse."""
+
     near: float = 0.003
     """Depth [m] of the nearest pixel of every estimated frame."""
 

@@ -142,3 +142,17 @@ class RslRlSacRunnerCfg(RslRlOnPolicyRunnerCfg):
     save_replay: bool = False
     """Whether the memory is saved with every checkpoint, so that a resumed run goes on at once. Takes
     ``replay_size`` images of disk."""
+
+
+@configclass
+class RslRlDistributionalSacAlgorithmCfg(RslRlSacAlgorithmCfg):
+    """Soft actor-critic with categorical critics, as in Squint: more robust to the scale of the reward's tail."""
+
+    class_name: str = "arcgym.rl.algorithms.distributional_sac:DistributionalSAC"
+    """Algorithm class."""
+
+    num_atoms: int = 101
+    """Atoms of the distribution of the return."""
+
+    value_range: list[float] = [-10.0, 40.0]
+    """First and last atom, in units of discounted return. Widen it when ``Loss/value`` comes near an end."""

@@ -12,6 +12,8 @@ from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 from tensordict import TensorDict
 
+from arcgym.utils.errors import UsageError
+
 
 class A2C(PPO):
     """Synchronous advantage actor-critic (Mnih et al. 2016): one gradient step on the whole rollout.
@@ -43,11 +45,11 @@ class A2C(PPO):
             kwargs: Further arguments of PPO.
 
         Raises:
-            ValueError: If there is more than one epoch or batch.
+            UsageError: If there is more than one epoch or batch.
         """
         for name, value in (("num_learning_epochs", num_learning_epochs), ("num_mini_batches", num_mini_batches)):
             if value != 1:
-                raise ValueError(f"A2C takes one gradient step a rollout: {name} is {value}, expected 1; or use PPO.")
+                raise UsageError(f"A2C takes one gradient step a rollout: {name} is {value}, expected 1; or use PPO.")
         super().__init__(actor, critic, storage, num_learning_epochs, num_mini_batches, **kwargs)
         for group in self.optimizer.param_groups:
             if "eps" in group:

@@ -15,6 +15,7 @@ from tensordict import TensorDict
 from torch import nn
 
 from arcgym.rl.demonstrations import Demonstrations
+from arcgym.utils.errors import UsageError
 
 
 class BehaviorCloning:
@@ -30,7 +31,9 @@ class BehaviorCloning:
     def __init__(
         self,
         actor: MLPModel,
-        demonstrations: Demonstrations,
+        groups: list[str],
+        demonstrations: str = "",
+        successful_only: bool = True,
         learning_rate: float = 3.0e-4,
         batch_size: int = 256,
         steps_per_update: int = 100,
@@ -43,7 +46,9 @@ class BehaviorCloning:
 
         Args:
             actor: Policy without memory.
-            demonstrations: What to imitate.
+            groups: Observation groups that the policy reads.
+            demonstrations: Folder of the recorded episodes, see :class:`arcgym.rl.demonstrations.Demonstrations`.
+            successful_only: Whether episodes that did not succeed are left out.
             learning_rate: Learning rate.
             batch_size: Recorded steps of one gradient step.
             steps_per_update: Gradient steps of one iteration.
@@ -53,11 +58,13 @@ class BehaviorCloning:
             grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
 
         Raises:
-            ValueError: If the policy has a memory, or its actions are not those recorded.
+            UsageError: If the policy has a memory.
         """
         if actor.is_recurrent:
-            raise ValueError("Cloning draws single steps, expected a policy without memory, such as ByteCnnModel.")
-        self.device, self.learning_rate, self.demonstrations = device, learning_rate, demonstrations
+            raise UsageError("Cloning draws single steps, expected a policy without memory, such as ByteCnnModel.")
+        self.device, self.learning_rate = device, learning_rate
+        self.groups, self.folder, self.successful_only = groups, demonstrations, successful_only
+        self._demonstrations: Demonstrations | None = None
         self.batch_size, self.steps_per_update, self.max_grad_norm = batch_size, steps_per_update, max_grad_norm
         self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
         self.gpu_world_size = multi_gpu_cfg["world_size"] if multi_gpu_cfg else 1
@@ -67,27 +74,31 @@ class BehaviorCloning:
 
     @staticmethod
     def construct_algorithm(obs: TensorDict, env: VecEnv, cfg: dict, device: str) -> BehaviorCloning:
-        """Build the policy and read the demonstrations.
-
-        Raises:
-            ValueError: If no folder is given, or its actions are not as many as the task's.
-        """
+        """Build policy and algorithm from the training dictionary."""
         alg_class, alg_cfg = resolve_class(cfg["algorithm"])
         actor_class, actor_cfg = resolve_class(cfg["actor"])
         groups = cfg["obs_groups"] = resolve_obs_groups(obs, cfg["obs_groups"], ["actor"])
-        folder, successful_only = alg_cfg.pop("demonstrations", None), alg_cfg.pop("successful_only", True)
-        if not folder:
-            raise ValueError(
-                "No demonstrations to clone: set agent.algorithm.demonstrations to a folder of recorded episodes."
-            )
-        demonstrations = Demonstrations(folder, groups["actor"], device, successful_only)
-        if demonstrations.actions.shape[1] != env.num_actions:
-            raise ValueError(
-                f"The demonstrations in '{folder}' have {demonstrations.actions.shape[1]} actions, expected the task's "
-                f"{env.num_actions}."
-            )
         actor = actor_class(obs, groups, "actor", env.num_actions, **actor_cfg)
-        return alg_class(actor, demonstrations, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+        return alg_class(actor, groups["actor"], device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+
+    def read_demonstrations(self) -> Demonstrations:
+        """Return the demonstrations, which are read once; playing never needs them.
+
+        Raises:
+            UsageError: If no folder is given, it holds nothing to imitate, or other actions than the task's.
+        """
+        if self._demonstrations is None:
+            if not self.folder:
+                raise UsageError(
+                    "No demonstrations to clone: set agent.algorithm.demonstrations to a folder of recorded episodes."
+                )
+            found = Demonstrations(self.folder, self.groups, self.device, self.successful_only)
+            expected = self.actor.distribution.output_dim
+            if found.actions.shape[1] != expected:
+                have = found.actions.shape[1]
+                raise UsageError(f"The demonstrations in '{self.folder}' have {have} actions, expected {expected}.")
+            self._demonstrations = found
+        return self._demonstrations
 
     def act(self, obs: TensorDict) -> torch.Tensor:
         """Return the mean actions, shape (N, A)."""
@@ -104,12 +115,13 @@ class BehaviorCloning:
 
     def update(self) -> dict[str, float]:
         """Make the gradient steps of an iteration and return the mean loss."""
+        demonstrations = self.read_demonstrations()
         if not self._knows_scale:
-            self.actor.update_normalization(self.demonstrations.observations)
+            self.actor.update_normalization(demonstrations.observations)
             self._knows_scale = True
         total = torch.zeros((), device=self.device)
         for _ in range(self.steps_per_update):
-            total += self.step_on(*self.demonstrations.sample(self.batch_size))
+            total += self.step_on(*demonstrations.sample(self.batch_size))
         return {"behavior": float(total) / self.steps_per_update}
 
     def step_on(self, obs: TensorDict, actions: torch.Tensor) -> torch.Tensor:

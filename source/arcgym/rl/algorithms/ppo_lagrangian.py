@@ -19,6 +19,7 @@ from torch import nn
 from arcgym.rl.cost_advantages import discounted_advantages
 from arcgym.rl.episode_costs import EpisodeCosts
 from arcgym.rl.lagrange import Multiplier, make_multiplier
+from arcgym.utils.errors import UsageError
 
 TOTAL = "total"
 """Name of the sum of all cost terms."""
@@ -63,10 +64,10 @@ class PPOLagrangian(PPO):
             kwargs: Further arguments of PPO.
 
         Raises:
-            ValueError: If there is no limit.
+            UsageError: If there is no limit.
         """
         if not limits:
-            raise ValueError("agent.algorithm.limits is empty, expected a limit for at least one cost term.")
+            raise UsageError("agent.algorithm.limits is empty, expected a limit for at least one cost term.")
         super().__init__(actor, critic, storage, **kwargs)
         self.cost_names = list(limits)
         settings = {"kind": "pid"} | (multiplier or {})
@@ -100,10 +101,10 @@ class PPOLagrangian(PPO):
         """Give every cost its value function.
 
         Raises:
-            ValueError: If one is recurrent; they are fitted on single steps.
+            UsageError: If one is recurrent; they are fitted on single steps.
         """
         if any(getattr(model, "is_recurrent", False) for model in critics.values()):
-            raise ValueError("agent.cost_critic is recurrent, expected a model without memory, such as MLPModel.")
+            raise UsageError("agent.cost_critic is recurrent, expected a model without memory, such as MLPModel.")
         self.cost_critics = nn.ModuleDict(critics).to(self.device)
         self.cost_optimizer = resolve_optimizer(optimizer)(self.cost_critics.parameters(), lr=self.learning_rate)
 
@@ -118,7 +119,7 @@ class PPOLagrangian(PPO):
         """Record rewards and costs of one step; costs go on after a time-out as rewards do.
 
         Raises:
-            KeyError: If a limited cost is not among the environment's.
+            UsageError: If a limited cost is not among the environment's.
         """
         step = self.storage.step
         costs = torch.stack([self._cost(name, extras) for name in self.cost_names])
@@ -131,8 +132,9 @@ class PPOLagrangian(PPO):
         super().process_env_step(obs, rewards, dones, extras)
 
     def compute_returns(self, obs: TensorDict) -> None:
-        """Compute returns of reward and costs, and the advantages of the Lagrangian."""
+        """Move the multipliers by the episodes that ended, then compute returns and the Lagrangian's advantages."""
         super().compute_returns(obs)
+        self._move_multipliers()
         st, last = self.storage, self._values(obs).detach()
         mixed, total = st.returns - st.values, 1.0
         for k, name in enumerate(self.cost_names):
@@ -146,11 +148,7 @@ class PPOLagrangian(PPO):
             st.advantages = (st.advantages - st.advantages.mean()) / (st.advantages.std() + 1e-8)
 
     def update(self) -> dict[str, float]:
-        """Move the multipliers, fit the costs' critics, update the policy, and return what to log."""
-        means = self.episode_costs.take_means(self.min_episodes)
-        for name, mean in zip(self.cost_names, means or (), strict=False):
-            self.mean_episode_costs[name] = mean
-            self.multipliers[name].update(mean)
+        """Fit the costs' critics, update the policy, and return what to log."""
         losses = self._fit_cost_critics()
         losses |= super().update()
         for name in self.cost_names:
@@ -204,6 +202,12 @@ class PPOLagrangian(PPO):
         for tensor in self.cost_critics.state_dict().values():
             torch.distributed.broadcast(tensor, src=0)
 
+    def _move_multipliers(self) -> None:
+        means = self.episode_costs.take_means(self.min_episodes)
+        for name, mean in zip(self.cost_names, means or (), strict=False):
+            self.mean_episode_costs[name] = mean
+            self.multipliers[name].update(mean)
+
     def _values(self, obs: TensorDict) -> torch.Tensor:
         """Value of each cost, shape (K, N, 1)."""
         return torch.stack([self.cost_critics[name](obs) for name in self.cost_names])
@@ -212,7 +216,7 @@ class PPOLagrangian(PPO):
         """One cost of the step, shape (N,)."""
         terms = {**extras.get("costs", {}), **({TOTAL: extras["cost"]} if "cost" in extras else {})}
         if name not in terms:
-            raise KeyError(f"agent.algorithm.limits names the cost '{name}'; the task's are: {', '.join(terms)}.")
+            raise UsageError(f"agent.algorithm.limits names the cost '{name}'; the task's are: {', '.join(terms)}.")
         return terms[name].to(self.device)
 
     def _fit_cost_critics(self) -> dict[str, float]:

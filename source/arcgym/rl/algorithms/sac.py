@@ -112,11 +112,17 @@ class SAC:
         groups = cfg["obs_groups"] = resolve_obs_groups(obs, cfg["obs_groups"], ["actor", "critic"])
         actor = actor_class(obs, groups, "actor", env.num_actions, **actor_cfg)
         with_actions = with_action(obs, torch.zeros(env.num_envs, env.num_actions, device=obs.device))
-        critics = [critic_class(with_actions, groups, "critic", 1, **critic_cfg) for _ in range(2)]
+        outputs = alg_class.critic_outputs(alg_cfg)
+        critics = [critic_class(with_actions, groups, "critic", outputs, **critic_cfg) for _ in range(2)]
         size, stacks = alg_cfg.pop("replay_size"), alg_cfg.pop("frame_stacks", None)
         read = {group for groups_of_set in groups.values() for group in groups_of_set}
         replay = ReplayBuffer(obs.select(*read), env.num_actions, size, device, stacks)
         return alg_class(actor, critics, replay, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+
+    @staticmethod
+    def critic_outputs(alg_cfg: dict[str, Any]) -> int:
+        """Return the number of outputs of a critic."""
+        return 1
 
     @property
     def temperature(self) -> torch.Tensor:
@@ -252,8 +258,7 @@ class SAC:
         distribution.update(self.actor.mlp(self.actor.get_latent(obs)))
         return distribution.sample_with_log_prob()
 
-    @staticmethod
-    def _values(critics: nn.ModuleList, obs: TensorDict) -> torch.Tensor:
+    def _values(self, critics: nn.ModuleList, obs: TensorDict) -> torch.Tensor:
         """Value of each critic, shape (2, B)."""
         return torch.stack([critic(obs).squeeze(-1) for critic in critics])
 

@@ -41,7 +41,12 @@ class AugmentedCnnModel(ByteCnnModel):
     def get_latent(
         self, obs: TensorDict, masks: torch.Tensor | None = None, hidden_state: HiddenState = None
     ) -> torch.Tensor:
-        """Return the features of the images and the normalized vectors, shape (N, D)."""
+        """Return the features of the images and the normalized vectors, shape (N, D).
+
+        Beside a recurrent policy a model without memory is given whole rollouts, batch (T, N), and returns (T, N, D).
+        """
+        if obs.batch_dims > 1:
+            return self.get_latent(obs.flatten(0, 1)).unflatten(0, obs.batch_size)
         return super().get_latent(self._augment(obs), masks, hidden_state)
 
     def _augment(self, obs: TensorDict) -> TensorDict:

@@ -14,6 +14,7 @@ AGENTS: dict[str, str] = {
     "rsl_rl_ppo_lagrangian_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationLagrangianPPORunnerCfg",
     "rsl_rl_a2c_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationA2CRunnerCfg",
     "rsl_rl_sac_cfg_entry_point": f"{_AGENTS}.sac_cfg:NavigationSACRunnerCfg",
+    "rsl_rl_sac_squint_cfg_entry_point": f"{_AGENTS}.sac_cfg:SquintSACRunnerCfg",
     "rsl_rl_sac_paper_cfg_entry_point": f"{_AGENTS}.sac_cfg:PaperSACRunnerCfg",
     "rsl_rl_ppo_teacher_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationTeacherRunnerCfg",
     "rsl_rl_distillation_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationDistillationRunnerCfg",

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arcgym.rl.agent_cfgs.sac import RslRlSacAlgorithmCfg, RslRlSacRunnerCfg
+from arcgym.rl.agent_cfgs.sac import RslRlDistributionalSacAlgorithmCfg, RslRlSacAlgorithmCfg, RslRlSacRunnerCfg
 from arcgym.utils.configclass import configclass
 
 
@@ -22,6 +22,16 @@ class NavigationSACRunnerCfg(RslRlSacRunnerCfg):
     save_interval: int = 100
     experiment_name: str = "arc_navigation"
     algorithm: Any = RslRlSacAlgorithmCfg(frame_stacks={"policy": 5})
+
+
+@configclass
+class SquintSACRunnerCfg(NavigationSACRunnerCfg):
+    """SAC with categorical critics and a memory of a million observations, as Squint has for a thousand worlds.
+
+    Squint draws at 128 px and learns at 16 px; here the camera's size is the task's, 84 px, and the memory takes 21 GB.
+    """
+
+    algorithm: Any = RslRlDistributionalSacAlgorithmCfg(frame_stacks={"policy": 5}, replay_size=1_000_000)
 
 
 @configclass

@@ -65,7 +65,7 @@ def limits(robot: str) -> Any:
 def commander(sim: Any, robot: str) -> tuple[int, Callable[[Any], None]]:
     """Return the number of actions, and the function that gives actions in [-1, 1], shape (N, A), to the robot."""
     term, scope = limits(robot), sim.endoscope
-    if robot != "proximal":
+    if "tip" in scope.actuators:
 
         def pull(action: Any) -> None:
             scope.set_tip_velocity_command(term.linear_scale * action[:, :3], term.angular_scale * action[:, 3:])
@@ -117,10 +117,9 @@ def speeds(run: Run, robot: str) -> list[Row]:
     import torch
 
     corners = torch.tensor(list(itertools.product((-1.0, 1.0), repeat=4)), device=run.device)
-    if robot != "proximal":
-        corners = torch.cat([corners, corners[:, 3:], corners[:, 3:]], dim=1)
     sim = scene(run, robot, len(corners))
-    _, command = commander(sim, robot)
+    actions, command = commander(sim, robot)
+    corners = torch.cat([corners, *[corners[:, 3:]] * (actions - 4)], dim=1)
     watch = Watch(sim)
     for _ in range(round(SPEED_TIME / CONTROL_STEP)):
         command(corners)

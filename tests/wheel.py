@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 HIDDEN = ("PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "ARCGYM_ASSETS")
 """Environment variables that could lead to the checkout."""
 
@@ -47,11 +47,9 @@ class WheelPython:
         return result.stdout
 
 
-@pytest.fixture(scope="session")
-def wheel_python(tmp_path_factory: pytest.TempPathFactory) -> WheelPython:
-    """Build the wheel and install it beside the packages of this environment, without the network."""
+def install_wheel(base: Path) -> WheelPython:
+    """Build the wheel and install it in ``base`` beside the packages of this environment, without the network."""
     pytest.importorskip("hatchling", reason="builds the wheel: pip install 'arcgym[dev]'")
-    base = tmp_path_factory.mktemp("wheel")
     run_here("-m", "hatchling", "build", "--target", "wheel", "--directory", str(base))
     (wheel,) = base.glob("arcgym-*.whl")
     venv.create(base / "venv", with_pip=False)

@@ -1,0 +1,43 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from __future__ import annotations
+
+import pytest
+import torch
+from pixel_tasks import SteerToDot
+from small_agents import runner_cfg
+
+from arcgym.rl import OnPolicyRunner, RslRlPpoAlgorithmCfg
+from arcgym.rl.learning_rate import linear_rate
+from arcgym.utils.errors import UsageError
+from arcgym.utils.threads import one_thread
+
+
+def make_runner(schedule: str = "fixed") -> OnPolicyRunner:
+    torch.manual_seed(0)
+    algorithm = RslRlPpoAlgorithmCfg(learning_rate=4e-3, schedule=schedule, num_learning_epochs=1)
+    cfg = runner_cfg(algorithm=algorithm, final_learning_rate=1e-3, max_iterations=4)
+    return OnPolicyRunner(SteerToDot(4), cfg.to_dict(), device="cpu")
+
+
+def test_rate_is_on_a_line_and_stays_at_its_end():
+    rates = [linear_rate(4.0, 1.0, iteration, 4) for iteration in range(6)]
+    assert rates == [4.0, 3.0, 2.0, 1.0, 1.0, 1.0]
+
+
+@one_thread()
+def test_resumed_run_goes_on_along_the_line(tmp_path):
+    runner = make_runner()
+    runner.learn(2)
+    assert runner.alg.optimizer.param_groups[0]["lr"] == pytest.approx(3e-3)
+    runner.save(str(tmp_path / "model_1.pt"))
+    resumed = make_runner()
+    resumed.load(str(tmp_path / "model_1.pt"))
+    resumed.learn(1)
+    assert resumed.alg.optimizer.param_groups[0]["lr"] == resumed.alg.learning_rate == pytest.approx(2e-3)
+
+
+def test_adaptive_schedule_is_refused():
+    with pytest.raises(UsageError, match="'adaptive', expected 'fixed'"):
+        make_runner("adaptive")
