@@ -26,7 +26,7 @@ PANELS = {
     "reward an episode": ("Train/mean_reward", "reward_per_episode"),
     "centring s_c": ("Episode_Metrics/s_c", "metrics"),
     "success": ("Episode_Metrics/success", "metrics"),
-    "largest wall force [N]": ("Episode_Metrics/max_wall_force", "metrics"),
+    "largest shaft force [N]": ("Episode_Metrics/max_shaft_force", "metrics"),
 }
 """Title of each panel, its tag in the log, and where the zero agent's figure is."""
 

@@ -126,7 +126,7 @@ def test_a_rigid_colon_does_not_move(tiny: TinySim) -> None:
     sim.forward()
     sim.step(5)
     assert not sim.colon.data.nodal_displacement.any()
-    assert sim.endoscope.data.wall_force_w.norm() > 0.0
+    assert sim.endoscope.data.link_force_w.norm() > 0.0
 
 
 def test_a_solid_takes_no_thickness(tiny: TinySim) -> None:

@@ -34,8 +34,8 @@ def test_shapes_of_a_scope_with_a_shaft(sim: Simulation) -> None:
     assert scope.joint_names == ["slide", "roll", *hinges]
     assert scope.body_names == [f"link_{i}" for i in range(6)]
     assert data.joint_pos.shape == data.joint_vel.shape == data.joint_pos_target.shape == (2, 9)
-    assert data.body_pos_w.shape == data.body_lin_vel_w.shape == data.wall_force_w.shape == (2, 6, 3)
-    assert data.body_quat_w.shape == (2, 6, 4) and data.wall_force_peak.shape == (2, 6)
+    assert data.body_pos_w.shape == data.body_lin_vel_w.shape == data.link_force_w.shape == (2, 6, 3)
+    assert data.body_quat_w.shape == (2, 6, 4) and data.link_force_peak.shape == (2, 6)
     assert data.tip_pos_w.shape == data.tip_lumen_direction_w.shape == data.tip_pull_force_w.shape == (2, 3)
     assert data.bending.shape == (2, 2) and data.base_force.shape == data.tip_arc_length.shape == (2,)
 
@@ -135,8 +135,8 @@ def test_friction_slows_its_own_world_only(tiny: TinySim) -> None:
     sim.endoscope.data.joint_vel[:, 2] = 0.05
     sim.forward()
     sim.step(2)
-    assert (sim.endoscope.data.wall_force_w[1, 0, 2] < -0.01).item()
-    assert abs(sim.endoscope.data.wall_force_w[0, 0, 2].item()) < 1e-3
+    assert (sim.endoscope.data.link_force_w[1, 0, 2] < -0.01).item()
+    assert abs(sim.endoscope.data.link_force_w[0, 0, 2].item()) < 1e-3
 
 
 def test_rigidity_overrides_scale_the_hinges(tiny: TinySim) -> None:

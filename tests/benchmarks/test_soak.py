@@ -138,14 +138,14 @@ def test_findings_of_all_sessions_add_up(tmp_path):
     path = tmp_path / "soak.jsonl"
     journal = Journal(path)
     journal.write("start", TASK, seed=0)
-    journal.write_part(TASK, Tally(env_steps=10, seconds=1.0, largest={"wall_force": {"push": 3.0}}))
+    journal.write_part(TASK, Tally(env_steps=10, seconds=1.0, largest={"shaft_force": {"push": 3.0}}))
     again = Journal(path)
     again.write("start", TASK, seed=1)
-    again.write_part(TASK, Tally(env_steps=5, recovered_worlds=1, largest={"wall_force": {"push": 2.0}}))
+    again.write_part(TASK, Tally(env_steps=5, recovered_worlds=1, largest={"shaft_force": {"push": 2.0}}))
     again.write("event", TASK, what="recovered", seed=1, world=2, step=7, action="push")
     total = Journal(path).tally(TASK)
     assert (again.sessions(TASK), total.env_steps, total.recovered_worlds) == (2, 15, 1)
-    assert total.largest == {"wall_force": {"push": 3.0}}
+    assert total.largest == {"shaft_force": {"push": 3.0}}
     assert [event["world"] for event in Journal(path).events(TASK)] == [2]
 
 

@@ -29,9 +29,8 @@ def test_unfinished_episodes_of_both_worlds_are_recorded(tmp_path):
     assert "recorded: 2 episodes in demos" in play(tmp_path, "demos")
     first, second = load_episodes(tmp_path / "demos")
     assert (first.info["length"], first.info["complete"], second.info["env_id"]) == (4, False, 1)
-    links = first.data["forces/link"].shape[1]
-    assert first.data["forces/link"].shape == (4, links, 3)
-    assert first.data["poses/body_pos_w"].shape == (4, links, 3)
+    assert first.data["forces/window"].shape == (4, 1, 3) and first.data["forces/tip_peak"].shape == (4,)
+    assert first.data["poses/body_pos_w"].shape == (4, 1, 3) and "forces/link" not in first.data
     assert first.data["wall/strain"].shape[0] == first.data["rewards/total"].shape[0] == 4
     assert not np.array_equal(first.data["actions"], second.data["actions"])
 

@@ -19,12 +19,16 @@ class FakeEndoscopeData(SimpleNamespace):
     """Readings that a test sets."""
 
     @property
-    def wall_force_norm(self) -> torch.Tensor:
-        return self.wall_force_w.norm(dim=-1)
+    def window_force_norm(self) -> torch.Tensor:
+        return self.window_force_w.norm(dim=-1)
+
+    @property
+    def tip_force(self) -> torch.Tensor:
+        return self.tip_force_w.norm(dim=-1)
 
 
 class FakeEndoscope:
-    """Records commands; its data are plain tensors of two worlds with three links."""
+    """Records commands; its data are plain tensors of two worlds with three windows of force and three links."""
 
     def __init__(self, num_envs: int, num_links: int) -> None:
         zeros = torch.zeros
@@ -41,9 +45,9 @@ class FakeEndoscope:
             base_force=zeros(num_envs),
             bending=zeros(num_envs, 2),
             inserted_length=zeros(num_envs),
-            wall_force_w=zeros(num_envs, num_links, 3),
-            wall_force_peak=zeros(num_envs, num_links),
-            tip_force=zeros(num_envs),
+            window_force_w=zeros(num_envs, 3, 3),
+            window_force_peak=zeros(num_envs, 3),
+            tip_force_w=zeros(num_envs, 3),
             tip_force_peak=zeros(num_envs),
             joint_pos=zeros(num_envs, 2 + num_links - 1),
         )

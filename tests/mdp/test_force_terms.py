@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Terms of force, strain and pull on numbers set by hand: two worlds, three links, six rings, 10 Hz."""
+"""Terms of force, strain and pull on numbers set by hand: two worlds, three windows, six rings, 10 Hz."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import pytest
 import torch
 
 from arcgym.envs import mdp
-from arcgym.managers import MetricsTermCfg, RewardTermCfg, SceneEntityCfg
+from arcgym.managers import MetricsTermCfg, RewardTermCfg
 
 
 @pytest.fixture
 def loaded(env):
-    """World 0 presses with 3 N at the tip and 4 N at the base link, world 1 with 20 N at the tip."""
-    env.scope.wall_force_w[0] = torch.tensor([[0.0, 4.0, 0.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
-    env.scope.wall_force_w[1, 2] = torch.tensor([0.0, 12.0, 16.0])
-    env.scope.tip_force[:] = torch.tensor([3.0, 20.0])
+    """World 0 presses with 3 N at the tip and 4 N at the shaft, world 1 with 20 N at the tip."""
+    env.scope.window_force_w[0] = torch.tensor([[3.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 4.0, 0.0]])
+    env.scope.window_force_w[1, 0] = torch.tensor([0.0, 12.0, 16.0])
+    env.scope.tip_force_w[:] = env.scope.window_force_w[:, 0]
     env.scope.tip_force_peak[:] = torch.tensor([5.5, 25.0])
     env.scene["colon"].data.wall_strain[:, 2] = torch.tensor([0.3, 0.7])
     env.scene["colon"].data.wall_strain_peak[:, 2] = torch.tensor([0.4, 0.8])
@@ -30,7 +30,7 @@ def loaded(env):
 
 def test_observations_are_in_newtons(loaded) -> None:
     torch.testing.assert_close(mdp.load_parts(loaded, "tip_force"), torch.tensor([[3.0], [20.0]]))
-    torch.testing.assert_close(mdp.load_parts(loaded, "wall_force"), torch.tensor([[4.0, 0.0, 3.0], [0.0, 0.0, 20.0]]))
+    torch.testing.assert_close(mdp.load_parts(loaded, "shaft_force"), torch.tensor([[3.0, 0.0, 4.0], [20.0, 0.0, 0.0]]))
     assert mdp.load_parts(loaded, "wall_strain").shape == (2, 6)
     assert mdp.load_parts(loaded, "anchor_tension").shape == (2, 6)
     assert mdp.base_force(loaded).shape == (2, 1)
@@ -46,14 +46,14 @@ def test_tip_force_vector_is_in_the_tip_frame(loaded) -> None:
 def test_penalties(loaded) -> None:
     torch.testing.assert_close(mdp.load_l2(loaded, "tip_force"), torch.tensor([9.0, 400.0]))
     torch.testing.assert_close(mdp.load_excess(loaded, "tip_force", "comfort"), torch.tensor([1.0, 18.0]))
-    torch.testing.assert_close(mdp.load_excess(loaded, "wall_force", "comfort"), torch.tensor([2.0, 18.0]))
+    torch.testing.assert_close(mdp.load_excess(loaded, "shaft_force", "comfort"), torch.tensor([2.0, 18.0]))
     torch.testing.assert_close(mdp.load_excess(loaded, "wall_strain", limit=0.5), torch.tensor([0.0, 0.2]))
 
 
 def test_above_a_tier_or_a_number(loaded) -> None:
     assert mdp.load_above(loaded, "tip_force", "unsafe").tolist() == [False, True]
     assert mdp.load_above(loaded, "tip_force", "comfort").tolist() == [True, True]
-    assert mdp.load_above(loaded, "wall_force", 3.5).tolist() == [True, True]
+    assert mdp.load_above(loaded, "shaft_force", 3.5).tolist() == [True, True]
     assert mdp.load_above(loaded, "wall_strain", 0.5).tolist() == [False, True]
     assert mdp.load_above(loaded, "wall_strain", 0.75, reduce="peak").tolist() == [False, True]
 
@@ -65,23 +65,21 @@ def test_pull_on_the_anchors(loaded) -> None:
 
 
 def test_peaks_on_request(loaded) -> None:
-    loaded.scope.wall_force_peak[0, 1] = 7.0
+    loaded.scope.window_force_peak[0, 1] = 7.0
     torch.testing.assert_close(mdp.load_parts(loaded, "tip_force", "peak"), torch.tensor([[5.5], [25.0]]))
     assert mdp.load_excess(loaded, "tip_force", 5.0, reduce="peak").tolist() == [0.5, 20.0]
-    assert mdp.load_excess(loaded, "wall_force", 5.0, reduce="peak").tolist() == [2.0, 0.0]
-    assert mdp.load_above(loaded, "wall_force", 6.0, reduce="peak").tolist() == [True, False]
+    assert mdp.load_excess(loaded, "shaft_force", 5.0, reduce="peak").tolist() == [2.0, 0.0]
+    assert mdp.load_above(loaded, "shaft_force", 6.0, reduce="peak").tolist() == [True, False]
 
 
 def test_tip_force_leaves_the_shaft_out(loaded) -> None:
-    loaded.scope.wall_force_w[0, 0] = 30.0
+    loaded.scope.window_force_w[0, 2] = 30.0
     assert mdp.load_above(loaded, "tip_force", "perforation").tolist() == [False, True]
-    assert mdp.load_above(loaded, "wall_force", "perforation").tolist() == [True, True]
+    assert mdp.load_above(loaded, "shaft_force", "perforation").tolist() == [True, True]
 
 
-def test_load_of_chosen_links(loaded) -> None:
-    tip = SceneEntityCfg("endoscope", body_ids=[2])
-    torch.testing.assert_close(mdp.load(loaded, "wall_force", asset_cfg=tip), torch.tensor([3.0, 20.0]))
-    torch.testing.assert_close(mdp.load(loaded, "wall_force"), torch.tensor([4.0, 20.0]))
+def test_load_is_that_of_the_hardest_pressing_window(loaded) -> None:
+    torch.testing.assert_close(mdp.load(loaded, "shaft_force"), torch.tensor([4.0, 20.0]))
 
 
 def test_a_load_of_ones_own_has_all_terms(loaded, monkeypatch) -> None:
@@ -102,7 +100,7 @@ def test_metrics_of_one_step(loaded) -> None:
 def test_percentile_over_the_episode(env) -> None:
     term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
     for force in range(1, 21):
-        env.scope.tip_force[:] = torch.tensor([float(force), 0.0])
+        env.scope.tip_force_w[0, 2] = force
         value = term(env, "tip_force")
     # 19 of 20 steps, 95 %, are at most 19 N; bins are 5 % wide.
     assert 19.0 <= float(value[0]) <= 19.0 * 1.05
@@ -111,10 +109,10 @@ def test_percentile_over_the_episode(env) -> None:
 
 def test_percentile_forgets_at_reset(env) -> None:
     term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
-    env.scope.tip_force[:] = 10.0
+    env.scope.tip_force_w[:, 2] = 10.0
     term(env, "tip_force")
     term.reset(torch.tensor([1]))
-    env.scope.tip_force[:] = 1.0
+    env.scope.tip_force_w[:, 2] = 1.0
     value = term(env, "tip_force", percentile=95.0)
     assert value[0] > 9.9 and value[1] < 1.06
 

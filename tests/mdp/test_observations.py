@@ -71,8 +71,10 @@ def test_centerline_ends_at_its_last_point(env) -> None:
 
 
 def test_forces_are_logarithmic(env) -> None:
-    env.scope.wall_force_w[0, 0, 0] = math.e - 1.0
-    torch.testing.assert_close(mdp.wall_forces(env)[0], torch.tensor([0.0, 1.0, 1.0]))
+    env.scope.window_force_w[0, :, 0] = torch.tensor([1.0, 2.0, 1.0]) * (math.e - 1.0)
+    # Windows 0 and 2 abut, window 1 overlaps both: together they bear 2 (e - 1) N.
+    expected = torch.tensor([0.0, math.log(2.0 * math.e - 1.0), math.log(2.0 * math.e - 1.0)])
+    torch.testing.assert_close(mdp.wall_forces(env)[0], expected)
 
 
 def test_lumen_state_sees_the_image_after_a_reset(env) -> None:

@@ -39,10 +39,10 @@ def test_unknown_segment_lists_the_known(env) -> None:
         mdp.success(env, segment="colon")
 
 
-def test_wall_force_counts_above_the_tier(env) -> None:
-    env.scope.wall_force_w[0, 1] = torch.tensor([3.0, 0.0, 4.0])
-    env.scope.wall_force_w[1, 1] = torch.tensor([1.0, 0.0, 0.0])
-    torch.testing.assert_close(mdp.load_excess(env, "wall_force", limit=2.0), torch.tensor([3.0, 0.0]))
+def test_shaft_force_counts_above_the_tier(env) -> None:
+    env.scope.window_force_w[0, 1] = torch.tensor([3.0, 0.0, 4.0])
+    env.scope.window_force_w[1, 1] = torch.tensor([1.0, 0.0, 0.0])
+    torch.testing.assert_close(mdp.load_excess(env, "shaft_force", limit=2.0), torch.tensor([3.0, 0.0]))
 
 
 def test_action_rate_is_squared_and_summed(env) -> None:
@@ -60,7 +60,7 @@ def test_lumen_terms_agree_with_the_scores(env) -> None:
 
 
 def test_costs_are_indicators(env) -> None:
-    env.scope.tip_force[:] = torch.tensor([6.0, 0.0])
+    env.scope.tip_force_w[:, 0] = torch.tensor([6.0, 0.0])
     assert mdp.load_above(env, "tip_force", limit=5.0).tolist() == [1.0, 0.0]
     env.scene["camera"].data.output["depth"][0] = 0.004
     assert mdp.view_blocked(env).tolist() == [1.0, 0.0]

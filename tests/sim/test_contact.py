@@ -237,13 +237,13 @@ def test_a_resting_capsule_dents_by_its_weight_over_the_stiffness(tiny_sim: Tiny
     sim = resting(tiny_sim, along=0.0)
     depth = sim.endoscope.data.body_pos_w[0, 0].numpy() @ SIDE - (APOTHEM - REACH)
     assert depth * 2000.0 * touching(sim) == pytest.approx(0.005 * 9.81, rel=0.1)
-    np.testing.assert_allclose(sim.endoscope.data.wall_force_w[0, 0].numpy(), -0.005 * 9.81 * SIDE, atol=1e-4)
+    np.testing.assert_allclose(sim.endoscope.data.link_force_w[0, 0].numpy(), -0.005 * 9.81 * SIDE, atol=1e-4)
 
 
 def test_a_pull_below_the_friction_does_not_move_it(tiny_sim: TinySim) -> None:
     sim = resting(tiny_sim, along=0.05)  # friction holds 0.1 times the weight
     assert abs(sim.endoscope.data.body_lin_vel_w[0, 0, 2].item()) < 1e-5
-    assert sim.endoscope.data.wall_force_w[0, 0, 2].item() == pytest.approx(-0.05 * 0.005 * 9.81, rel=0.02)
+    assert sim.endoscope.data.link_force_w[0, 0, 2].item() == pytest.approx(-0.05 * 0.005 * 9.81, rel=0.02)
 
 
 def test_a_pull_above_the_friction_accelerates_it_by_the_rest(tiny_sim: TinySim) -> None:

@@ -43,7 +43,7 @@ def test_two_level_agrees_with_plain_newton(narrow: TinySim) -> None:
         [read(sim) for sim in (two_level, newton)]
         for read in (
             lambda sim: sim.endoscope.data.tip_pos_w[0],
-            lambda sim: sim.endoscope.data.wall_force_w[0].norm(dim=1).max().item(),
+            lambda sim: sim.endoscope.data.link_force_w[0].norm(dim=1).max().item(),
             lambda sim: sim.colon.data.nodal_displacement.max().item(),
         )
     )
@@ -82,7 +82,7 @@ def frictionless(narrow: TinySim) -> Simulation:
 def test_at_rest_the_wall_is_pushed_as_hard_as_the_scope(frictionless: Simulation) -> None:
     sim = frictionless
     sim.step(1)
-    on_scope = sim.endoscope.data.wall_force_w[0].numpy()
+    on_scope = sim.endoscope.data.link_force_w[0].numpy()
     on_wall = force_on_wall(sim, with_contact=True) - force_on_wall(sim, with_contact=False)
     size = np.linalg.norm(on_scope, axis=1).sum()
     assert size > 1.0
@@ -92,7 +92,7 @@ def test_at_rest_the_wall_is_pushed_as_hard_as_the_scope(frictionless: Simulatio
 def test_base_and_introducer_carry_what_the_wall_pushes(frictionless: Simulation) -> None:
     sim = frictionless
     sim.step(48)
-    along = sim.endoscope.data.wall_force_w[0, :, 2].sum().item()
+    along = sim.endoscope.data.link_force_w[0, :, 2].sum().item()
     assert sim.endoscope.data.base_force.item() == pytest.approx(-along, abs=0.01)
 
 
@@ -129,6 +129,6 @@ def test_what_the_links_owe_the_wall_is_paid_while_they_move(narrow: TinySim) ->
     given, most = torch.zeros(3), 0.0
     for _ in range(240):
         sim.step(1)
-        given += sim.endoscope.data.wall_force_w[0].sum(dim=0)
+        given += sim.endoscope.data.link_force_w[0].sum(dim=0)
         most = max(most, sim.contact.memory["contact_debt"][0].view(-1, 3).sum(dim=0).norm().item())
     assert 0.0 < most < 0.02 * given.norm().item()

@@ -41,7 +41,7 @@ def state(sim: Simulation) -> dict[str, torch.Tensor]:
         "body_quat": data.body_quat_w,
         "tip": data.tip_pos_w,
         "arc": data.tip_arc_length,
-        "force": data.wall_force_w,
+        "force": data.link_force_w,
         "centres": sim.colon.data.centerline_pos_w,
     }
     return {name: array.clone() for name, array in {**sim.world_arrays(), **read}.items()}
@@ -56,7 +56,7 @@ def differing(a: Simulation | dict, b: Simulation | dict, world: int | slice = s
 def test_the_driven_scope_touches_the_wall(narrow: TinySim) -> None:
     sim = build(narrow)
     drive(sim, [144, 48])
-    assert (sim.endoscope.data.wall_force_w.norm(dim=-1).amax(dim=1) > 1.0).all()
+    assert (sim.endoscope.data.link_force_w.norm(dim=-1).amax(dim=1) > 1.0).all()
     assert (sim.colon.data.nodal_displacement.amax(dim=1) > 1e-4).all()
 
 
@@ -98,11 +98,11 @@ def test_forces_are_averaged_over_the_call(narrow: TinySim) -> None:
     means, bases = [], []
     for _ in range(4):
         apart.step(1)
-        means.append(apart.endoscope.data.wall_force_w.clone())
+        means.append(apart.endoscope.data.link_force_w.clone())
         bases.append(apart.endoscope.data.base_force.clone())
     means = torch.stack(means)
-    torch.testing.assert_close(together.endoscope.data.wall_force_w, means.mean(dim=0))
-    torch.testing.assert_close(together.endoscope.data.wall_force_peak, means.norm(dim=-1).amax(dim=0))
+    torch.testing.assert_close(together.endoscope.data.link_force_w, means.mean(dim=0))
+    torch.testing.assert_close(together.endoscope.data.link_force_peak, means.norm(dim=-1).amax(dim=0))
     torch.testing.assert_close(together.endoscope.data.base_force, torch.stack(bases).mean(dim=0))
 
 
@@ -142,10 +142,10 @@ def test_reset_clears_commands_and_forces(narrow: TinySim) -> None:
     drive(sim, [144])
     sim.write_snapshot(-1, [1])
     data, base = sim.endoscope.data, sim.endoscope.actuator("base")
-    for force in (data.wall_force_w, data.wall_force_norm, data.wall_force_peak, data.base_force):
+    for force in (data.link_force_w, data.link_force_norm, data.link_force_peak, data.base_force):
         assert force[0].any() and not force[1].any()
     sim.forward()
-    torch.testing.assert_close(data.wall_force_norm, data.wall_force_w.norm(dim=-1))
+    torch.testing.assert_close(data.link_force_norm, data.link_force_w.norm(dim=-1))
     assert base.velocity.numpy()[1] == 0.0
     assert base.velocity.numpy()[0] == pytest.approx(0.1)
 

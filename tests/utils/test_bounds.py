@@ -75,10 +75,10 @@ CASES = [
     ("env.lumen=metrik", "'env.lumen': There is no lumen preset 'metrik'. Did you mean 'metric'"),
     ("env.lumen.tau_wall=0.1", "env.lumen.tau_lumen is 0.02 m, but tau_wall (0.1 m) < tau_lumen"),
     ("env.force_tiers.comfort=9", "comfort (9.0 N) < unsafe (5.0 N)"),
-    ("env.rewards.wall_force.params.limit=comfy", "wall_force.params.limit is 'comfy'. Did you mean 'comfort'"),
+    ("env.rewards.shaft_force.params.limit=comfy", "shaft_force.params.limit is 'comfy'. Did you mean 'comfort'"),
     (
-        "env.rewards.wall_force.params.kind=wal_force",
-        "wall_force.params.kind is 'wal_force'. Did you mean 'wall_force'",
+        "env.rewards.shaft_force.params.kind=shaf_force",
+        "shaft_force.params.kind is 'shaf_force'. Did you mean 'shaft_force'",
     ),
     ("env.terminations.stuck.params.window_s=0", "env.terminations.stuck.params.window_s is 0.0"),
     ("env.events.friction.params.friction=[0,1]", "env.events.friction.params.friction is 0"),

@@ -13,6 +13,7 @@ from arcgym.sensors import SkinnedSurface
 from arcgym.viewers import OutsideView, OutsideViewCfg
 
 LENGTH = np.full(8, 0.02)
+ARC = np.array([0.025, 0.050, 0.075, 0.100, 0.125])
 CFG = {"width": 96, "height": 80}
 
 
@@ -24,17 +25,17 @@ def stage():
 def make_view(stage, **overrides) -> OutsideView:
     surface = SkinnedSurface(stage.visual_proxy, stage.wall, 1, "cpu")
     cfg = OutsideViewCfg(**CFG, **overrides)
-    return OutsideView(cfg, surface, stage.visual_proxy.points, LENGTH, np.full(8, 0.006), bending_links=3)
+    return OutsideView(cfg, surface, stage.visual_proxy.points, LENGTH, np.full(8, 0.006), ARC, bending_links=3)
 
 
 def draw(view: OutsideView, tip: float = 0.1, force: float = 0.0) -> np.ndarray:
     position = np.zeros((8, 3))
     position[:, 2] = tip - 0.15 + np.arange(8) * 0.02
-    return view.render(position, np.tile([0.0, 0.0, 0.0, 1.0], (8, 1)), np.full(8, force)).astype(int)
+    return view.render(position, np.tile([0.0, 0.0, 0.0, 1.0], (8, 1)), np.full(5, force)).astype(int)
 
 
 def test_picture_has_size_and_content(stage):
-    picture = make_view(stage).render(np.zeros((8, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (8, 1)), np.zeros(8))
+    picture = make_view(stage).render(np.zeros((8, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (8, 1)), np.zeros(5))
     assert picture.shape == (80, 96, 3) and picture.dtype == np.uint8
     assert picture.std() > 5.0
 

@@ -89,8 +89,8 @@ def test_cells_that_do_not_fit_are_left_out():
 def test_cells_hold_the_numbers_with_units_and_tier_colors():
     by_label = {cell.label: cell for cell in cells(FrameInfo(segment="sigmoid", tip_arc=0.325, max_force=6.0))}
     assert by_label["tip in sigmoid"].value == "32.5 cm"
-    assert by_label["max link force"].value == "6.0 N"
-    assert by_label["max link force"].dot != by_label["tip force"].dot
+    assert by_label["shaft force"].value == "6.0 N"
+    assert by_label["shaft force"].dot != by_label["tip force"].dot
     assert "reward" not in by_label
 
 

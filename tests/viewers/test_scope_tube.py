@@ -75,17 +75,17 @@ def test_perforation_starts_at_the_published_force():
 
 def test_color_table_marks_tip_bending_section_and_force():
     length = np.full(20, 0.02)
-    rest = scope_color_table(length, 5, np.zeros(20))
+    arc = 0.025 * np.arange(1, 16)
+    rest = scope_color_table(length, 5, np.zeros(15), arc)
     assert len(rest) == 400
     assert rest[-1].min() > 0.7
     assert rest[350].sum() > rest[250].sum()
-    force = np.zeros(20)
-    force[5] = 8.0
-    loaded = scope_color_table(length, 5, force)
+    # The window 0.3 m from the tip, 0.1 m from the base: its colour fades out 25 mm to either side.
+    loaded = scope_color_table(length, 5, np.where(np.isclose(arc, 0.3), 8.0, 0.0), arc)
     assert loaded[110][0] > 3 * rest[110][0]
-    np.testing.assert_array_equal(loaded[300:], rest[300:])
+    np.testing.assert_array_equal(loaded[126:], rest[126:])
 
 
 def test_color_table_takes_a_short_capsule():
-    table = scope_color_table(np.array([0.02]), 0, np.zeros(1))
+    table = scope_color_table(np.array([0.02]), 0, np.zeros(1), np.array([0.01]))
     assert math.isfinite(table.sum()) and len(table) == 20

@@ -35,7 +35,10 @@ def make_env(with_camera: bool = True) -> SimpleNamespace:
     data = SimpleNamespace(
         body_pos_w=position,
         body_quat_w=torch.tensor([0.0, 0.0, 0.0, 1.0]).expand(2, LINKS, 4).clone(),
-        wall_force_w=torch.zeros(2, LINKS, 3),
+        tip_force=torch.zeros(2),
+        window_arc=torch.tensor([0.025, 0.050, 0.075]),
+        window_force_norm=torch.zeros(2, 3),
+        link_force_norm=torch.zeros(2, LINKS),
         tip_arc_length=torch.tensor([0.06, 0.14]),
         tip_segment=torch.tensor([1, 3]),
         inserted_length=torch.tensor([0.07, 0.15]),
@@ -85,7 +88,7 @@ def test_scene_without_camera_is_drawn_too():
 
 def test_info_reads_the_chosen_world():
     env = make_env()
-    env.scene["endoscope"].data.wall_force_w[1, 2] = torch.tensor([3.0, 0.0, 4.0])
+    env.scene["endoscope"].data.window_force_norm[1, 2] = 5.0
     info = read_info(env, 1)
     assert (info.segment, info.max_force, info.tip_force) == ("splenic", 5.0, 0.0)
     assert info.time == pytest.approx(0.3)

@@ -17,6 +17,7 @@ from arcgym.assets.endoscope_cfg import EndoscopeCfg
 from arcgym.assets.endoscope_data import EndoscopeData
 from arcgym.assets.endoscope_spec import capsule_half_height, shared_stiffness
 from arcgym.assets.endoscope_stage import read_endoscope
+from arcgym.assets.force_windows import ForceWindows, force_windows
 from arcgym.assets.usd_loading import add_endoscope_usd
 from arcgym.utils.class_type import construct
 from arcgym.utils.configclass import validate
@@ -78,6 +79,11 @@ class Endoscope:
     def tip_offset(self) -> float:
         """Distance from the centre of the last link to the front of the tip [m]."""
         return float(self.half_length[-1] + self.stage.link_radius[-1])
+
+    @property
+    def force_windows(self) -> ForceWindows:
+        """Lengths of scope over which the wall's force is summed up."""
+        return force_windows(self.stage.link_length, self.tip_offset)
 
     @property
     def rest_insertion(self) -> float:

@@ -19,17 +19,17 @@ if TYPE_CHECKING:
 class EndoscopeData:
     """Views on the simulation's arrays: they change with every step, so clone what you keep.
 
-    N worlds, L links, J joint coordinates, D joint velocities. Quaternions are (x, y, z, w).
+    N worlds, L links, K windows of scope, J joint coordinates, D joint velocities. Quaternions are (x, y, z, w).
     """
 
     def __init__(self, endoscope: Endoscope, sim: Simulation):
         """Make views on the simulation's arrays."""
         n, links = sim.num_envs, endoscope.num_bodies
-        state, readings = sim.state, _readings(endoscope)
+        state, readout, readings = sim.state, sim.scope_readout, _readings(endoscope)
         pose = wp.to_torch(state.body_q).view(n, links, 7)
         twist = wp.to_torch(state.body_qd).view(n, links, 6)
-        tip = wp.to_torch(sim.scope_readout.tip_pose)
-        tip_twist = wp.to_torch(sim.scope_readout.tip_velocity)
+        tip = wp.to_torch(readout.tip_pose)
+        tip_twist = wp.to_torch(readout.tip_velocity)
         self.joint_pos: torch.Tensor = wp.to_torch(state.joint_q).view(n, -1)
         """Joint coordinates [m or rad], shape (N, J), in the order of ``Endoscope.joint_names``."""
         self.joint_vel: torch.Tensor = wp.to_torch(state.joint_qd).view(n, -1)
@@ -56,17 +56,36 @@ class EndoscopeData:
         """Velocity of the front of the tip [m/s], shape (N, 3)."""
         self.tip_ang_vel_w = tip_twist[:, 3:]
         """Angular velocity of the tip [rad/s], shape (N, 3)."""
-        self.tip_arc_length: torch.Tensor = wp.to_torch(sim.scope_readout.tip_arc)
+        self.tip_arc_length: torch.Tensor = wp.to_torch(readout.tip_arc)
         """Arc length of the tip along the deformed centreline, in rest arc length from the anal verge [m], (N,)."""
-        self.tip_centerline_distance: torch.Tensor = wp.to_torch(sim.scope_readout.tip_distance)
+        self.tip_centerline_distance: torch.Tensor = wp.to_torch(readout.tip_distance)
         """Distance of the tip from the deformed centreline [m], shape (N,)."""
-        self.tip_lumen_direction_w: torch.Tensor = wp.to_torch(sim.scope_readout.tip_direction)
+        self.tip_lumen_direction_w: torch.Tensor = wp.to_torch(readout.tip_direction)
         """Direction of the deformed centreline beside the tip, away from the anus, shape (N, 3)."""
-        self.wall_force_w: torch.Tensor = wp.to_torch(sim.scope_readout.wall_force).view(n, links, 3)
-        """Force of the wall on each link, mean over the control step [N], shape (N, L, 3)."""
-        self.wall_force_norm: torch.Tensor = wp.to_torch(sim.scope_readout.wall_force_norm).view(n, links)
+        window = wp.to_torch(readout.window_force)
+        norm, peak = wp.to_torch(readout.window_force_norm), wp.to_torch(readout.window_force_peak)
+        self.window_arc: torch.Tensor = torch.tensor(endoscope.force_windows.arc, dtype=torch.float, device=sim.device)
+        """Distance of the middle of each window from the front of the tip, along the scope [m], shape (K,)."""
+        self.window_force_w = window[:, 1:]
+        """Force of the wall on each window, the vector sum over 50 mm of scope, mean over the control step [N], shape
+        (N, K, 3). Windows follow each other every 25 mm, the first at the front of the tip; see
+        :mod:`arcgym.assets.force_windows`."""
+        self.window_force_norm = norm[:, 1:]
+        """Magnitude of that force [N], shape (N, K)."""
+        self.window_force_peak = peak[:, 1:]
+        """Largest force of the wall on each window within the control step (mean over one physics step) [N], (N, K)."""
+        self.tip_force_w = window[:, 0]
+        """Force of the wall on the tip, the most distal 20 mm, mean over the control step [N], shape (N, 3)."""
+        self.tip_force = norm[:, 0]
+        """Magnitude of that force [N], shape (N,)."""
+        self.tip_force_peak = peak[:, 0]
+        """Largest force of the wall on the tip within the control step (mean over one physics step) [N], shape (N,)."""
+        self.link_force_w: torch.Tensor = wp.to_torch(readout.link_force).view(n, links, 3)
+        """Force of the wall on each link, mean over the control step [N], shape (N, L, 3). For diagnosis: it changes
+        with the length of the links, so publish forces on windows."""
+        self.link_force_norm: torch.Tensor = wp.to_torch(readout.link_force_norm).view(n, links)
         """Magnitude of that force [N], shape (N, L)."""
-        self.wall_force_peak: torch.Tensor = wp.to_torch(sim.scope_readout.wall_force_peak).view(n, links)
+        self.link_force_peak: torch.Tensor = wp.to_torch(readout.link_force_peak).view(n, links)
         """Largest force of the wall on each link within the control step (mean over one physics step) [N], (N, L)."""
         self.base_force: torch.Tensor = readings.get("base_force", torch.zeros(n, device=sim.device))
         """Push on the base, mean over the control step [N], shape (N,); zero without a driven base."""
@@ -79,16 +98,6 @@ class EndoscopeData:
         bounds = endoscope_segments(sim)
         self._segment_ends = torch.tensor([end for _, end in bounds], device=sim.device)
         self._segment_codes = torch.tensor([code for code, _ in bounds], device=sim.device)
-
-    @property
-    def tip_force(self) -> torch.Tensor:
-        """Force of the wall on the tip, the last link, mean over the control step [N], shape (N,); a view."""
-        return self.wall_force_norm[:, -1]
-
-    @property
-    def tip_force_peak(self) -> torch.Tensor:
-        """Largest force of the wall on the tip within the control step (mean over one physics step) [N], shape (N,)."""
-        return self.wall_force_peak[:, -1]
 
     @property
     def inserted_length(self) -> torch.Tensor:

@@ -48,7 +48,7 @@ def outside_views(stage: ColonStage, width: int, height: int) -> list[np.ndarray
     for azimuth in (0.0, 0.5 * math.pi):
         cfg = OutsideViewCfg(width=width, height=height, azimuth=azimuth, outside_length=0.0)
         speck = np.full(2, 1e-4)
-        view = OutsideView(cfg, surface, stage.visual_proxy.points, speck, speck)
+        view = OutsideView(cfg, surface, stage.visual_proxy.points, speck, speck, speck)
         hidden = np.tile(stage.centerline.points[0], (2, 1))
         pictures.append(view.render(hidden, np.tile([0.0, 0.0, 0.0, 1.0], (2, 1)), np.zeros(2)))
     return pictures

@@ -27,9 +27,9 @@ class FrameInfo:
     inserted: float = 0.0
     """Length of scope inside the anus [m]."""
     tip_force: float = 0.0
-    """Wall force on the last link [N]."""
+    """Wall force on the tip [N]."""
     max_force: float = 0.0
-    """Largest wall force on a link [N]."""
+    """Largest wall force on a window of the scope [N]."""
     reward: float | None = None
     """Reward of the last step; None if the environment has none."""
     task_range: tuple[float, float] | None = None
@@ -50,7 +50,6 @@ def read_info(
         metrics: Metrics terms to show.
     """
     data = env.scene["endoscope"].data
-    forces = data.wall_force_w[env_id].norm(dim=-1)
     terms = {**_metrics(env, env_id, metrics), **{name: float(value) for name, value in (extra or {}).items()}}
     reward = terms.pop("reward", None)
     if reward is None and hasattr(env, "reward_buf"):
@@ -61,8 +60,8 @@ def read_info(
         segment=SEGMENTS[int(data.tip_segment[env_id])],
         tip_arc=float(data.tip_arc_length[env_id]),
         inserted=float(data.inserted_length[env_id]),
-        tip_force=float(forces[-1]),
-        max_force=float(forces.max()),
+        tip_force=float(data.tip_force[env_id]),
+        max_force=float(data.window_force_norm[env_id].max()),
         reward=reward,
         task_range=_task_range(env),
         terms=terms,

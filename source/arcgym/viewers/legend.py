@@ -41,7 +41,7 @@ def draw_legends(
 
 
 def _draw_tiers(draw: ImageDraw.ImageDraw, x: float, y: float, tiers: Tiers) -> None:
-    draw.text((x, y), "wall force on scope", fill=_TEXT, font=font(_SIZE))
+    draw.text((x, y), "wall force per 5 cm", fill=_TEXT, font=font(_SIZE))
     ends = [tier.start for tier in tiers[1:]] + [None]
     for row, (tier, end) in enumerate(zip(tiers, ends, strict=True), start=1):
         span = f"> {tier.start:g}" if end is None else f"{tier.start:g}-{end:g}"

@@ -49,6 +49,7 @@ class OutsideView:
         rest_points: np.ndarray,
         link_length: np.ndarray,
         link_radius: np.ndarray,
+        force_arc: np.ndarray,
         bending_links: int = 0,
         tiers: Tiers = FORCE_TIERS,
     ) -> None:
@@ -60,6 +61,7 @@ class OutsideView:
             rest_points: Undeformed vertices of the surface [m], shape (M, 3).
             link_length: Length of each link of the scope [m], shape (L,).
             link_radius: Radius of each link [m], shape (L,).
+            force_arc: Distance of the middle of each window of force from the front of the tip [m], shape (K,).
             bending_links: Number of distal links that form the bending section.
             tiers: Tiers of the force and their colours.
         """
@@ -79,6 +81,7 @@ class OutsideView:
         self.scale = wall_scale(cfg.wall_color, cfg.wall_full_scale, tiers)
         self._wall_colors = wp.zeros(len(rest_points), dtype=wp.vec3, device=self.device)
         self._link_length = np.asarray(link_length, float)
+        self._force_arc = np.asarray(force_arc, float)
         self._bending_links = bending_links
         self._tube = ScopeTube(link_length, link_radius)
         self._add_scope()
@@ -92,7 +95,7 @@ class OutsideView:
         self,
         link_pos: np.ndarray,
         link_quat: np.ndarray,
-        link_force: np.ndarray,
+        force: np.ndarray,
         wall_values: np.ndarray | None = None,
     ) -> np.ndarray:
         """Draw the surface as it is now, and the scope.
@@ -100,13 +103,13 @@ class OutsideView:
         Args:
             link_pos: Middle of each link [m], shape (L, 3).
             link_quat: Orientation of each link (x, y, z, w), +Z towards the tip, shape (L, 4).
-            link_force: Wall force on each link [N], shape (L,).
+            force: Wall force on each window of the scope [N], shape (K,).
             wall_values: What the colour of each vertex shows, shape (M,); None for its displacement.
 
         Returns:
             Picture, uint8, shape (height, width, 3).
         """
-        self._update_scope(link_pos, link_quat, link_force)
+        self._update_scope(link_pos, link_quat, force)
         if wall_values is None:
             wall_values = np.linalg.norm(self.surface.points.numpy() - self._rest, axis=1)
         self._wall_colors.assign(self.scale.paint(wall_values).astype(np.float32))
@@ -139,18 +142,18 @@ class OutsideView:
         self._scope_normals = self._array(normals, wp.vec3)
         self._scope_arcs = self._array(self._tube.arc, float)
         self._scope_mesh = wp.Mesh(self._scope_points, self._array(self._tube.faces.ravel(), int))
-        self._scope_table = self._array(self._table(np.zeros(len(straight))), wp.vec3)
+        self._scope_table = self._array(self._table(np.zeros(len(self._force_arc))), wp.vec3)
 
-    def _update_scope(self, link_pos: np.ndarray, link_quat: np.ndarray, link_force: np.ndarray) -> None:
+    def _update_scope(self, link_pos: np.ndarray, link_quat: np.ndarray, force: np.ndarray) -> None:
         vertices, normals = self._tube.sweep(link_pos, link_quat)
         self._scope_points.assign(vertices)
         self._scope_normals.assign(normals)
         self._scope_mesh.refit()
-        self._scope_table.assign(self._table(link_force).astype(np.float32))
+        self._scope_table.assign(self._table(force).astype(np.float32))
 
-    def _table(self, link_force: np.ndarray) -> np.ndarray:
-        shown = link_force if self.cfg.scope_color == "force" else np.zeros_like(link_force)
-        return scope_color_table(self._link_length, self._bending_links, shown, self._tiers)
+    def _table(self, force: np.ndarray) -> np.ndarray:
+        shown = force if self.cfg.scope_color == "force" else np.zeros_like(force)
+        return scope_color_table(self._link_length, self._bending_links, shown, self._force_arc, self._tiers)
 
     def _geometry(self) -> kernels.ViewGeometry:
         geometry = kernels.ViewGeometry()

@@ -82,7 +82,7 @@ def draw_panel(
         info: What this frame shows.
         bounds: Start and end of each segment [m of arc length].
         rewards: Reward of each frame so far.
-        forces: Largest link force of each frame so far [N].
+        forces: Largest force on a window of the scope of each frame so far [N].
         tiers: Tiers of the force and their colours.
     """
     left, top, right, bottom = box
@@ -94,7 +94,7 @@ def draw_panel(
     draw_sparkline(draw, first, rewards, "reward", _REWARD_COLOR, (0.0, 0.1))
     limits = [(tier.start, tier.color) for tier in tiers[1:]]
     second = (right - chart_width, chart_top, right, bottom)
-    draw_sparkline(draw, second, forces, "largest link force [N]", INK, (0.0, tiers[1].start + 0.5), limits)
+    draw_sparkline(draw, second, forces, "largest shaft force [N]", INK, (0.0, tiers[1].start + 0.5), limits)
 
 
 def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
@@ -105,7 +105,7 @@ def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
         Cell(f"tip in {info.segment}", f"{100 * info.tip_arc:.1f} cm", "000.0 cm"),
         Cell("inserted", f"{100 * info.inserted:.1f} cm", "000.0 cm"),
         Cell("tip force", f"{info.tip_force:.1f} N", "000.0 N", tip.color, tip.label, info.tip_force),
-        Cell("max link force", f"{info.max_force:.1f} N", "000.0 N", top.color, force=info.max_force),
+        Cell("shaft force", f"{info.max_force:.1f} N", "000.0 N", top.color, force=info.max_force),
     ]
     if info.reward is not None:
         shown.append(Cell("reward", f"{info.reward:+.2f}", "+0.00"))

@@ -21,17 +21,23 @@ _MARK_LENGTH = 0.002
 
 
 def scope_color_table(
-    link_length: np.ndarray, bending_links: int, link_force: np.ndarray, tiers: Tiers = FORCE_TIERS
+    link_length: np.ndarray,
+    bending_links: int,
+    force: np.ndarray,
+    force_arc: np.ndarray,
+    tiers: Tiers = FORCE_TIERS,
 ) -> np.ndarray:
     """Return the colour of the scope at even steps from its proximal end to its tip.
 
     Dark shaft with a light ring every 10 cm from the tip (as real colonoscopes carry), a lighter bending section and
-    a light tip. The tier colour of the wall force covers all but the rings where there is any.
+    a light tip. The tier colour of the wall force covers all but the rings where there is any; each place has the force
+    of the window around it.
 
     Args:
         link_length: Length of each link [m], shape (L,).
         bending_links: Number of distal links that form the bending section.
-        link_force: Wall force on each link [N], shape (L,).
+        force: Wall force on each window of the scope [N], shape (K,).
+        force_arc: Distance of the middle of each window from the front of the tip [m], ascending, shape (K,).
         tiers: Tiers of the force and their colours.
 
     Returns:
@@ -43,7 +49,7 @@ def scope_color_table(
     from_tip = ends[-1] - arc
     color = np.where((arc > ends[-1] - np.sum(link_length[len(ends) - bending_links :]))[:, None], _BENDING, _SHAFT)
     color[from_tip < min(_TIP_LENGTH, 0.4 * ends[-1])] = _TIP
-    color = _tinted(color, np.interp(arc, ends - 0.5 * np.asarray(link_length), np.asarray(link_force, float)), tiers)
+    color = _tinted(color, np.interp(from_tip, force_arc, np.asarray(force, float)), tiers)
     is_mark = (from_tip % _MARK_SPACING < _MARK_LENGTH) & (from_tip > 0.5 * _MARK_SPACING)
     color[is_mark] = _MARK
     return color

@@ -37,7 +37,7 @@ class TwoPaneView:
 
     Attributes:
         rewards: Reward of each frame of the episode so far, newest last.
-        forces: Largest wall force on a link in each frame [N], newest last.
+        forces: Largest wall force on a window of the scope in each frame [N], newest last.
     """
 
     def __init__(self, env: ManagerBasedEnv, cfg: ViewerCfg | None = None) -> None:
@@ -61,6 +61,7 @@ class TwoPaneView:
             stage.visual_proxy.points,
             scope.link_length,
             scope.link_radius,
+            self._scope.data.window_arc.cpu().numpy(),
             scope.bending_links,
             self._tiers,
         )
@@ -108,20 +109,26 @@ class TwoPaneView:
         self._surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
         data = self._scope.data
         position, quaternion = data.body_pos_w[env_id].cpu().numpy(), data.body_quat_w[env_id].cpu().numpy()
-        force = data.wall_force_w[env_id].norm(dim=-1).cpu().numpy()
-        values = self._wall_values(env_id, position, quaternion, force)
+        force = data.window_force_norm[env_id].cpu().numpy()
+        values = self._wall_values(env_id, position, quaternion)
         return self._outside.render(position, quaternion, force, values)
 
-    def _wall_values(
-        self, env_id: int, position: np.ndarray, quaternion: np.ndarray, force: np.ndarray
-    ) -> np.ndarray | None:
+    def _wall_values(self, env_id: int, position: np.ndarray, quaternion: np.ndarray) -> np.ndarray | None:
         if self._paint is None:
             return None
         if self.cfg.outside.wall_color == "strain":
             return self._paint.strain(env_id)
         if self.cfg.outside.wall_color == "tension":
             return self._paint.tension(env_id)
-        return self._paint.force(env_id, position, quaternion, self._scope.stage.link_length, force)
+        link_length, force = self._scope.stage.link_length, self._link_values(env_id)
+        return self._paint.force(env_id, position, quaternion, link_length, force)
+
+    def _link_values(self, env_id: int) -> np.ndarray:
+        """Return the force of the window around each link that touches the wall, 0 for those that do not [N], (L,)."""
+        data, length = self._scope.data, np.asarray(self._scope.stage.link_length, float)
+        from_tip = length.sum() - np.cumsum(length) + 0.5 * length
+        window = np.interp(from_tip, data.window_arc.cpu().numpy(), data.window_force_norm[env_id].cpu().numpy())
+        return np.where(data.link_force_norm[env_id].cpu().numpy() > 0.0, window, 0.0)
 
     def _remember(self, env_id: int, info: FrameInfo) -> None:
         """Add to the charts, which start again with every episode and world."""

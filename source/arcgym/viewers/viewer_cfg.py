@@ -38,9 +38,9 @@ class OutsideViewCfg:
     """Part of the scope below the anus that is kept in the picture [m]."""
     wall_color: Literal["displacement", "strain", "tension", "force"] = "displacement"
     """Quantity that the wall's color shows: how far it moved, its strain, the pull of its anchors, or the force of the
-    links beside it."""
+    scope beside it."""
     scope_color: Literal["force", "plain"] = "force"
-    """Whether the scope is coloured by the force of the wall on each link."""
+    """Whether the scope is coloured by the force of the wall on each window of 50 mm."""
     wall_full_scale: float | None = None
     """Value of the wall that gets the last colour; None for 50 mm, a strain of 10 %, a pull of 1 N, or a force just
     above the perforation tier. Lower it for gentle robots."""

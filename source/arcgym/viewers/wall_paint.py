@@ -113,14 +113,14 @@ class WallPaint:
     def force(
         self, env_id: int, link_pos: np.ndarray, link_quat: np.ndarray, link_length: np.ndarray, link_force: np.ndarray
     ) -> np.ndarray:
-        """Force of the hardest pressing link nearby, fading out within 12 mm of it [N], shape (M,).
+        """Force shown for the hardest pressing link nearby, fading out within 12 mm of it [N], shape (M,).
 
         Args:
             env_id: World.
             link_pos: Middle of each link [m], shape (L, 3).
             link_quat: Orientation of each link (x, y, z, w), +Z along it, shape (L, 4).
             link_length: Length of each link [m], shape (L,).
-            link_force: Force between link and wall [N], shape (L,).
+            link_force: Force to show for each link that touches the wall, else 0 [N], shape (L,).
         """
         points = self._positions(env_id)
         value = np.zeros(len(points))

@@ -89,7 +89,7 @@ class RewardsCfg:
     lumen = RewTerm(func=mdp.lumen_reward, weight=1.0)
     progress = RewTerm(func=mdp.progress, weight=100.0)
     success = RewTerm(func=mdp.success, weight=50.0)
-    wall_force = RewTerm(func=mdp.load_excess, weight=-0.02, params={"kind": "wall_force", "limit": "comfort"})
+    shaft_force = RewTerm(func=mdp.load_excess, weight=-0.02, params={"kind": "shaft_force", "limit": "comfort"})
     action_rate = RewTerm(func=mdp.action_rate_l2, weight=-0.01)
 
 
@@ -143,22 +143,39 @@ class MetricsCfg:
     centered_rate = MetricsTerm(func=mdp.centered_rate, reduce="mean")
     visible_rate = MetricsTerm(func=mdp.visible_rate, reduce="mean")
     centerline_distance = MetricsTerm(func=mdp.centerline_distance, reduce="mean")
-    max_wall_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "wall_force"})
     max_tip_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "tip_force"})
     mean_tip_force = MetricsTerm(func=mdp.load, reduce="mean", params={"kind": "tip_force"})
     p95_tip_force = MetricsTerm(
         func=mdp.load_percentile, reduce="last", params={"kind": "tip_force", "percentile": 95.0}
     )
+    peak_tip_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "tip_force", "reduce": "peak"})
     tip_impulse = MetricsTerm(func=mdp.load_impulse, reduce="sum", params={"kind": "tip_force"})
-    time_above_comfort = MetricsTerm(
+    tip_time_above_comfort = MetricsTerm(
         func=mdp.load_time_above, reduce="sum", params={"kind": "tip_force", "limit": "comfort"}
     )
-    time_above_unsafe = MetricsTerm(
+    tip_time_above_unsafe = MetricsTerm(
         func=mdp.load_time_above, reduce="sum", params={"kind": "tip_force", "limit": "unsafe"}
     )
-    time_above_perforation = MetricsTerm(
+    tip_time_above_perforation = MetricsTerm(
         func=mdp.load_time_above, reduce="sum", params={"kind": "tip_force", "limit": "perforation"}
     )
+    max_shaft_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "shaft_force"})
+    mean_shaft_force = MetricsTerm(func=mdp.load, reduce="mean", params={"kind": "shaft_force"})
+    p95_shaft_force = MetricsTerm(
+        func=mdp.load_percentile, reduce="last", params={"kind": "shaft_force", "percentile": 95.0}
+    )
+    peak_shaft_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "shaft_force", "reduce": "peak"})
+    shaft_impulse = MetricsTerm(func=mdp.load_impulse, reduce="sum", params={"kind": "shaft_force"})
+    shaft_time_above_comfort = MetricsTerm(
+        func=mdp.load_time_above, reduce="sum", params={"kind": "shaft_force", "limit": "comfort"}
+    )
+    shaft_time_above_unsafe = MetricsTerm(
+        func=mdp.load_time_above, reduce="sum", params={"kind": "shaft_force", "limit": "unsafe"}
+    )
+    shaft_time_above_perforation = MetricsTerm(
+        func=mdp.load_time_above, reduce="sum", params={"kind": "shaft_force", "limit": "perforation"}
+    )
+    max_base_force = MetricsTerm(func=mdp.base_force_magnitude, reduce="max")
     max_wall_strain = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "wall_strain", "reduce": "peak"})
     max_anchor_tension = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "anchor_tension", "reduce": "peak"})
     inserted_length = MetricsTerm(func=mdp.inserted_scope, reduce="max")

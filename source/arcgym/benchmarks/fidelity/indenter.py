@@ -97,7 +97,7 @@ def indent(run: Run, tube: Tube, material: str, **cfg: Any) -> Curve:
         sim.step(round(WAIT / sim.physics_dt))
         sim.step(round(SAMPLE / sim.physics_dt))
         way.append(((data.body_pos_w[:, 0] - start) * across).sum(dim=1).cpu().numpy())
-        force.append(-(data.wall_force_w[:, 0] * across).sum(dim=1).cpu().numpy())
+        force.append(-(data.link_force_w[:, 0] * across).sum(dim=1).cpu().numpy())
     depth, forces = np.array(way).T, np.array(force).T
     touch = [_crossing(x, f, TOUCH) for x, f in zip(depth, forces, strict=True)]
     return Curve(depth - np.array(touch)[:, None], forces)

@@ -95,7 +95,7 @@ def link_tensions(sim: Any, loads: Any) -> tuple[np.ndarray, np.ndarray]:
     It is the sum of the load and of what the wall does to the link and to those beyond it.
     """
     load = loads.force[:, -1:]
-    tension = load + sim.endoscope.data.wall_force_w.flip(1).cumsum(1).flip(1)
+    tension = load + sim.endoscope.data.link_force_w.flip(1).cumsum(1).flip(1)
     size = torch.linalg.vector_norm(tension, dim=2)
     angle = torch.arccos(((tension * load).sum(dim=2) / (size * PULL)).clamp(-1.0, 1.0))
     return angle.cpu().numpy(), size.cpu().numpy()

@@ -115,7 +115,7 @@ def read(scene: InteractiveScene, time: float) -> Row:
     row = {"time": time, "tip_arc": tip, "inserted": inserted, "looping_ratio": inserted / max(tip, 1.0e-3)}
     row |= asdict(loop) | {"alpha": loop.alpha, "colon_crossings": crossings(from_front(left_colon(scene)))}
     row |= {"push": float(data.base_force[0])}
-    row |= {"link_force": float(data.wall_force_w[0].norm(dim=1).max())}
+    row |= {"shaft_force": float(data.window_force_norm[0].max())}
     row |= {"wall_moved": float(colon.nodal_displacement.max()), "strain": float(colon.wall_strain.max())}
     return {name: round(float(value), 4) for name, value in row.items()}
 

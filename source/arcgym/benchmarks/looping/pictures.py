@@ -25,13 +25,14 @@ def view_of(scene: InteractiveScene) -> Callable[[], np.ndarray]:
     proxy, scope = colon.stage.visual_proxy, endoscope.stage
     surface = SkinnedSurface(proxy, colon.wall, 1, scene.device)
     cfg = OutsideViewCfg(near_alpha=0.10, scope_share=0.7)
-    view = OutsideView(cfg, surface, proxy.points, scope.link_length, scope.link_radius, scope.bending_links)
+    arc = endoscope.data.window_arc.cpu().numpy()
+    view = OutsideView(cfg, surface, proxy.points, scope.link_length, scope.link_radius, arc, scope.bending_links)
 
     def draw() -> np.ndarray:
         surface.update(colon.nodal_pos_wp)
         data: Any = endoscope.data
         pose = (data.body_pos_w[0].cpu().numpy(), data.body_quat_w[0].cpu().numpy())
-        return view.render(*pose, data.wall_force_w[0].norm(dim=1).cpu().numpy())
+        return view.render(*pose, data.window_force_norm[0].cpu().numpy())
 
     return draw
 

@@ -18,7 +18,7 @@ KINDS = ("random", "bang_bang", "limits", "overdrive", "reverse", "push", "sinus
 - reverse: full speed forwards and back, turned round every 1 to 20 steps, the other axes at a limit;
 - push: full speed forwards for 5 s, the other axes at a limit, which turns the tip into the wall;
 - sinusoid: every axis on a frequency of its own, up to half the control rate, drawn anew every 5 s;
-- seek_force: pushes on as long as the largest force on a link rises, and tries other limits when it falls.
+- seek_force: pushes on as long as the largest force on a window rises, and tries other limits when it falls.
 """
 HOLD_S = 5.0
 """Time for which a world keeps its limits, frequencies and period [s]."""

@@ -68,7 +68,7 @@ def step_on(env: Any, adversaries: Adversaries, watch: Watch, budget: Budget, jo
         for _ in range(READ_EVERY):
             obs, reward, terminated, truncated, extras = env.step(adversaries.act(force, restarted))
             watch.look(obs, reward, terminated, extras)
-            force = env.scene["endoscope"].data.wall_force_peak.amax(dim=1)
+            force = env.scene["endoscope"].data.window_force_peak.amax(dim=1)
             restarted = terminated | truncated
         now = time.monotonic()
         tally, events = watch.read(now - start)
@@ -107,7 +107,7 @@ def check_worlds(env: Any, adversaries: Adversaries, journal: Journal, task: str
 
 def progress(task: str, total: Tally, part: Tally, memory: tuple[float, float]) -> None:
     """Print one line on the state of things."""
-    forces = max(total.largest["wall_force"].values())
+    forces = max(total.largest["shaft_force"].values())
     print(
         f"{task:24s}{total.env_steps:>10d} steps {part.env_steps / part.seconds:>8.1f}/s  {total.resets} resets  "
         f"{total.recovered_worlds} recovered  {total.pierced} pierced  {total.outside_links} links outside  "

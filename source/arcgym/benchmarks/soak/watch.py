@@ -15,7 +15,7 @@ from arcgym.benchmarks.soak.journal import Tally
 
 LUMEN_EVERY = 10
 """Control steps between two searches for links outside the lumen."""
-FORCES = ("wall_force_w", "wall_force_peak", "base_force", "tip_pull_force_w")
+FORCES = ("link_force_w", "link_force_peak", "window_force_w", "window_force_peak", "base_force", "tip_pull_force_w")
 """Forces in the endoscope's data."""
 LOADS = ("wall_strain_peak", "anchor_tension_peak")
 """Strains and forces in the colon's data."""
@@ -78,7 +78,8 @@ class Watch:
     def _note_largest(self) -> None:
         data, colon = self._env.scene["endoscope"].data, self._env.scene["colon"].data
         found = {
-            "wall_force": data.wall_force_peak.amax(dim=1),
+            "tip_force": data.tip_force_peak,
+            "shaft_force": data.window_force_peak.amax(dim=1),
             "base_force": data.base_force.abs(),
             "tip_pull": data.tip_pull_force_w.norm(dim=1),
             "wall_displacement": colon.nodal_displacement.amax(dim=1),

@@ -109,7 +109,7 @@ def situation(env: Any) -> Row:
         "device_name": wp.get_device(env.device).name,
         "tip_arc_m": data.tip_arc_length.mean().item(),
         "inserted_m": data.inserted_length.mean().item(),
-        "links_touching": (data.wall_force_peak > 0.0).float().sum(dim=1).mean().item(),
+        "links_touching": (data.link_force_peak > 0.0).float().sum(dim=1).mean().item(),
     }
 
 

@@ -3,7 +3,9 @@
 
 """Loads on the wall: terms ``(env, **params) -> (N,)`` that serve rewards, costs, terminations and metrics alike.
 
-A load is a mean over the control step, or its peak, the largest of its physics steps. By one rule for all of them:
+Forces are those on the tip, its most distal 20 mm, and on windows of 50 mm along the whole scope
+(:mod:`arcgym.assets.force_windows`), which do not depend on the links. A load is a mean over the control step, or its
+peak, the largest of its physics steps. By one rule for all of them:
 :func:`load` is its value, :func:`load_above` whether it exceeds a limit, :func:`load_excess` by how much.
 
 Add a load of your own with ``mdp.LOADS["pressure"] = mdp.Load("colon", "pressure", "pressure_peak", "Pa")``.
@@ -17,7 +19,6 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg, tier_limit, tiers_of
-from arcgym.managers import SceneEntityCfg
 from arcgym.utils.validation import expects
 
 if TYPE_CHECKING:
@@ -56,12 +57,12 @@ class Load:
 
 LOADS = {
     "tip_force": Load("endoscope", "tip_force", "tip_force_peak", "N"),
-    "wall_force": Load("endoscope", "wall_force_norm", "wall_force_peak", "N"),
+    "shaft_force": Load("endoscope", "window_force_norm", "window_force_peak", "N"),
     "wall_strain": Load("colon", "wall_strain", "wall_strain_peak", ""),
     "anchor_tension": Load("colon", "anchor_tension", "anchor_tension_peak", "N"),
 }
-"""Loads by kind: force between tip and wall, between each link and wall, largest principal strain of each ring of the
-wall, pull of each ring on its anchors (the mesentery)."""
+"""Loads by kind: force between tip and wall, between each window of the scope and wall (the tip's windows included),
+largest principal strain of each ring of the wall, pull of each ring on its anchors (the mesentery)."""
 
 REDUCTIONS = ("mean", "peak")
 """How a load is reduced over the physics steps of a control step."""
@@ -71,44 +72,33 @@ TIERS = tuple(vars(FORCE_TIERS))
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS)
-def load_parts(
-    env: ManagerBasedEnv, kind: str, reduce: str = "mean", asset_cfg: SceneEntityCfg | None = None
-) -> torch.Tensor:
-    """Load on each part, a link or a ring of the wall [N, or strain], shape (N, P).
+def load_parts(env: ManagerBasedEnv, kind: str, reduce: str = "mean") -> torch.Tensor:
+    """Load on each part, a window of the scope or a ring of the wall [N, or strain], shape (N, P).
+
+    The windows of a scope are as many as its length has, 60 for the shipped colonoscopes and 1 for the capsule.
 
     Args:
         kind: One of :data:`LOADS`. ``tip_force`` has one part.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
-        asset_cfg: Links to look at, by ``body_names``; None for all parts.
     """
     source = LOADS[kind]
     value = getattr(env.scene[source.entity].data, source.peak if reduce == "peak" else source.mean)
-    parts = value.unsqueeze(1) if value.dim() == 1 else value
-    return parts if asset_cfg is None else parts[:, asset_cfg.body_ids]
+    return value.unsqueeze(1) if value.dim() == 1 else value
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS)
-def load(
-    env: ManagerBasedEnv, kind: str, reduce: str = "mean", asset_cfg: SceneEntityCfg | None = None
-) -> torch.Tensor:
-    """Largest load on a part, a link or a ring of the wall [N, or strain], shape (N,).
+def load(env: ManagerBasedEnv, kind: str, reduce: str = "mean") -> torch.Tensor:
+    """Largest load on a part, a window of the scope or a ring of the wall [N, or strain], shape (N,).
 
     Args:
         kind: One of :data:`LOADS`.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
-        asset_cfg: Links to look at, by ``body_names``; None for all parts.
     """
-    return load_parts(env, kind, reduce, asset_cfg).amax(dim=1)
+    return load_parts(env, kind, reduce).amax(dim=1)
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS, limit=TIERS)
-def load_above(
-    env: ManagerBasedEnv,
-    kind: str,
-    limit: float | str,
-    reduce: str = "mean",
-    asset_cfg: SceneEntityCfg | None = None,
-) -> torch.Tensor:
+def load_above(env: ManagerBasedEnv, kind: str, limit: float | str, reduce: str = "mean") -> torch.Tensor:
     """Whether some part bears more than a limit, bool, shape (N,).
 
     Colon perforated at 14.1 N under a straight tip (tier ``perforation``) and tore at strains near 1.8 (Egorov et al.
@@ -119,28 +109,20 @@ def load_above(
         kind: One of :data:`LOADS`.
         limit: Limit [N, or strain], or the name of a tier of force.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
-        asset_cfg: Links to look at, by ``body_names``; None for all parts.
     """
-    return load(env, kind, reduce, asset_cfg) > force_limit(env, limit)
+    return load(env, kind, reduce) > force_limit(env, limit)
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS, limit=TIERS)
-def load_excess(
-    env: ManagerBasedEnv,
-    kind: str,
-    limit: float | str,
-    reduce: str = "mean",
-    asset_cfg: SceneEntityCfg | None = None,
-) -> torch.Tensor:
+def load_excess(env: ManagerBasedEnv, kind: str, limit: float | str, reduce: str = "mean") -> torch.Tensor:
     """Amount by which the largest load exceeds a limit, else 0 [N, or strain], shape (N,).
 
     Args:
         kind: One of :data:`LOADS`.
         limit: Limit [N, or strain], or the name of a tier of force.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
-        asset_cfg: Links to look at, by ``body_names``; None for all parts.
     """
-    return (load(env, kind, reduce, asset_cfg) - force_limit(env, limit)).clamp(min=0.0)
+    return (load(env, kind, reduce) - force_limit(env, limit)).clamp(min=0.0)
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS)

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.envs.mdp.loads import load_parts
+from arcgym.assets.force_windows import ABUTTING
+from arcgym.envs.mdp.loads import load, load_parts
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
@@ -146,9 +147,13 @@ def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
 
 
 def wall_forces(env: ManagerBasedEnv) -> torch.Tensor:
-    """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing link, by all, shape (N, 3)."""
-    force = load_parts(env, "wall_force")
-    return torch.log1p(torch.stack((force[:, -1], force.amax(dim=1), force.sum(dim=1)), dim=1))
+    """``log(1 + F / 1 N)`` of the force on the wall by the tip, by the hardest pressing window, by all, shape (N, 3).
+
+    The last is the sum over windows that abut. The size is the same for every scope.
+    """
+    force = load_parts(env, "shaft_force")
+    tip, total = load(env, "tip_force"), force[:, ::ABUTTING].sum(dim=1)
+    return torch.log1p(torch.stack((tip, force.amax(dim=1), total), dim=1))
 
 
 def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
@@ -160,7 +165,7 @@ def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
 def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
     """Force of the wall on the tip in its frame [N], as a sensor in the tip feels it, shape (N, 3)."""
     data = env.scene["endoscope"].data
-    return quat_apply_inverse(data.tip_quat_w, data.wall_force_w[:, -1])
+    return quat_apply_inverse(data.tip_quat_w, data.tip_force_w)
 
 
 def base_force(env: ManagerBasedEnv) -> torch.Tensor:

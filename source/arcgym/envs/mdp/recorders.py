@@ -17,6 +17,7 @@ __all__ = [
     "InitialStateRecorder",
     "PostStepCostsRecorder",
     "PostStepForcesRecorder",
+    "PostStepForcesRecorderCfg",
     "PostStepPosesRecorder",
     "PostStepRewardsRecorder",
     "PostStepWallRecorder",
@@ -67,19 +68,26 @@ class PostStepCostsRecorder(RecorderTerm):
 class PostStepForcesRecorder(RecorderTerm):
     """``forces/...`` [N] over the control step.
 
-    ``link`` (T, L, 3) and ``link_peak`` (T, L) of the wall on the links, ``base`` (T,) and ``tip_pull`` (T, 3) of the
-    drives on the scope.
+    Of the wall on the scope: ``window`` (T, K, 3) and ``window_peak`` (T, K), windows of 50 mm every 25 mm from the
+    front of the tip; ``tip`` (T, 3) and ``tip_peak`` (T,). Of the drives: ``base`` (T,) and ``tip_pull`` (T, 3). With
+    ``links`` also ``link`` (T, L, 3) and ``link_peak`` (T, L), which change with the links' length.
     """
+
+    cfg: PostStepForcesRecorderCfg
 
     def record_post_step(self) -> Record:
         """Return the forces on the endoscope."""
         data = self._env.scene["endoscope"].data
-        return "forces", {
-            "link": data.wall_force_w,
-            "link_peak": data.wall_force_peak,
+        values = {
+            "window": data.window_force_w,
+            "window_peak": data.window_force_peak,
+            "tip": data.tip_force_w,
+            "tip_peak": data.tip_force_peak,
             "base": data.base_force,
             "tip_pull": data.tip_pull_force_w,
         }
+        links = {"link": data.link_force_w, "link_peak": data.link_force_peak} if self.cfg.links else {}
+        return "forces", values | links
 
 
 class PostStepWallRecorder(RecorderTerm):
@@ -131,6 +139,15 @@ class PreStepObservationsRecorderCfg(RecorderTermCfg):
 
 
 @configclass
+class PostStepForcesRecorderCfg(RecorderTermCfg):
+    """Records forces."""
+
+    class_type: Any = PostStepForcesRecorder
+    links: bool = False
+    """Whether the force on each link is recorded too, to diagnose contact. Publish the windows."""
+
+
+@configclass
 class PostStepWallRecorderCfg(RecorderTermCfg):
     """Records strain and anchor tension."""
 
@@ -149,7 +166,8 @@ class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
     """Off: ``PreStepObservationsRecorderCfg()`` records the group ``policy``."""
     rewards = RecorderTermCfg(class_type=PostStepRewardsRecorder)
     costs = RecorderTermCfg(class_type=PostStepCostsRecorder)
-    forces = RecorderTermCfg(class_type=PostStepForcesRecorder)
+    forces: PostStepForcesRecorderCfg | None = PostStepForcesRecorderCfg()
+    """Forces on tip and windows, of base and pull."""
     wall: PostStepWallRecorderCfg | None = PostStepWallRecorderCfg()
     """Strain and anchor tension."""
     poses = RecorderTermCfg(class_type=PostStepPosesRecorder)

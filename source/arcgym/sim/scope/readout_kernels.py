@@ -1,9 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Quantities derived from the state once a control step: tip, camera, place along the colon, broken worlds.
+"""Quantities derived from the state once a control step: forces over lengths of scope, tip, camera, place along the
+colon, broken worlds.
 
-W worlds, L links, R rings.
+W worlds, L links, K windows, R rings.
 """
 
 import warp as wp
@@ -33,6 +34,64 @@ def measure_forces(force: wp.array[wp.vec3], magnitude: wp.array[float]):
     """Write the ``magnitude`` of each link's ``force`` [N], shape (W*L,) each. Launch (W*L,)."""
     i = wp.tid()
     magnitude[i] = wp.length(force[i])
+
+
+@wp.struct
+class WindowShares:
+    """Shares of the links' forces in each part of the scope, the tip and K windows, of one world."""
+
+    first: wp.array[int]
+    """Place of each part's first link in the lists below, shape (K + 2,)."""
+    link: wp.array[int]
+    """Links of the parts, one part after the other."""
+    share: wp.array[float]
+    """Share of each of these links' forces."""
+
+
+@wp.func
+def part_force(shares: WindowShares, force: wp.array[wp.vec3], row: int, part: int) -> wp.vec3:
+    """Return the force on a part of a scope whose base link is number ``row`` of ``force`` [N], shape (W*L,)."""
+    total = wp.vec3(0.0)
+    for i in range(shares.first[part], shares.first[part + 1]):
+        total += shares.share[i] * force[row + shares.link[i]]
+    return total
+
+
+@wp.kernel
+def raise_window_peaks(step_force: wp.array[wp.vec3], links: int, shares: WindowShares, peak: wp.array2d[float]):
+    """Raise the peaks of tip and windows by one physics step's mean force. Launch (W, K + 1).
+
+    Args:
+        step_force: Mean force on each link in the physics step [N], shape (W*L,).
+        links: Links a world, L.
+        shares: Parts of the scope.
+        peak: Largest magnitude so far [N], shape (W, K + 1); raised.
+    """
+    w, part = wp.tid()
+    peak[w, part] = wp.max(peak[w, part], wp.length(part_force(shares, step_force, w * links, part)))
+
+
+@wp.kernel
+def measure_windows(
+    force: wp.array[wp.vec3],
+    links: int,
+    shares: WindowShares,
+    window_force: wp.array2d[wp.vec3],
+    magnitude: wp.array2d[float],
+):
+    """Sum up the forces of tip and windows. Launch (W, K + 1).
+
+    Args:
+        force: Force on each link [N], shape (W*L,).
+        links: Links a world, L.
+        shares: Parts of the scope.
+        window_force: Force on each part [N], shape (W, K + 1); written.
+        magnitude: Its magnitude [N], shape (W, K + 1); written.
+    """
+    w, part = wp.tid()
+    total = part_force(shares, force, w * links, part)
+    window_force[w, part] = total
+    magnitude[w, part] = wp.length(total)
 
 
 @wp.kernel

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Wall force on the links, averaged over a control step, and where tip and camera are at its end."""
+"""Wall force on tip, windows and links over a control step, and where tip and camera are at its end."""
 
 from __future__ import annotations
 
@@ -19,13 +19,18 @@ TIP_SPAN = 3
 
 
 class ScopeReadout:
-    """Sums up the wall forces of each physics step, and measures tip, camera and failures. W worlds, L links, R rings.
+    """Sums up the wall forces of each physics step, and measures tip, camera and failures.
+
+    W worlds, L links, K windows of scope (part 0 is the tip, the windows follow), R rings.
 
     Attributes:
         step_force: Wall force on each link, mean over one physics step; the coupling fills it [N], shape (W*L,), vec3.
-        wall_force: Wall force on each link, mean over the control step [N], shape (W*L,), vec3.
-        wall_force_norm: Its magnitude [N], shape (W*L,).
-        wall_force_peak: Largest magnitude of ``step_force`` in the control step [N], shape (W*L,).
+        link_force: Wall force on each link, mean over the control step [N], shape (W*L,), vec3.
+        link_force_norm: Its magnitude [N], shape (W*L,).
+        link_force_peak: Largest magnitude of ``step_force`` in the control step [N], shape (W*L,).
+        window_force: Wall force on tip and windows, mean over the control step [N], shape (W, K + 1), vec3.
+        window_force_norm: Its magnitude [N], shape (W, K + 1).
+        window_force_peak: Largest magnitude within a physics step of the control step [N], shape (W, K + 1).
         tip_pose: Front of the last link, shape (W,), transform.
         tip_velocity: Its velocity [m/s] and spin [rad/s], shape (W,), spatial_vector.
         camera_pose: Pose of the camera, shape (W,), transform.
@@ -47,8 +52,12 @@ class ScopeReadout:
         """
         self.num_envs, self.device, self.link_count = num_envs, device, endoscope.num_bodies
         rows = num_envs * self.link_count
-        self.step_force, self.wall_force = (wp.zeros(rows, dtype=wp.vec3, device=device) for _ in range(2))
-        self.wall_force_norm, self.wall_force_peak = (wp.zeros(rows, dtype=float, device=device) for _ in range(2))
+        self.step_force, self.link_force = (wp.zeros(rows, dtype=wp.vec3, device=device) for _ in range(2))
+        self.link_force_norm, self.link_force_peak = (wp.zeros(rows, dtype=float, device=device) for _ in range(2))
+        self._shares = window_shares(endoscope.force_windows.share, device)
+        parts = (num_envs, endoscope.force_windows.count + 1)
+        self.window_force = wp.zeros(parts, dtype=wp.vec3, device=device)
+        self.window_force_norm, self.window_force_peak = (wp.zeros(parts, dtype=float, device=device) for _ in range(2))
         self.tip_pose, self.camera_pose = (wp.zeros(num_envs, dtype=wp.transform, device=device) for _ in range(2))
         self.tip_velocity = wp.zeros(num_envs, dtype=wp.spatial_vector, device=device)
         self.tip_arc, self.tip_distance = (wp.zeros(num_envs, dtype=float, device=device) for _ in range(2))
@@ -61,21 +70,28 @@ class ScopeReadout:
 
     def clear(self) -> None:
         """Start a control step."""
-        for array in (self.wall_force, self.wall_force_peak, self.penetrated):
+        for array in (self.link_force, self.link_force_peak, self.window_force_peak, self.penetrated):
             array.zero_()
 
     def collect(self) -> None:
         """Add the physics step's forces to the control step's, and clear them."""
         wp.launch(
+            kernels.raise_window_peaks,
+            self.window_force.shape,
+            inputs=[self.step_force, self.link_count, self._shares],
+            outputs=[self.window_force_peak],
+            device=self.device,
+        )
+        wp.launch(
             kernels.collect_forces,
             self.step_force.shape,
-            outputs=[self.step_force, self.wall_force, self.wall_force_peak],
+            outputs=[self.step_force, self.link_force, self.link_force_peak],
             device=self.device,
         )
 
     def finish(self, steps: int) -> None:
         """End a control step of ``steps`` physics steps: the sum becomes a mean."""
-        wp.to_torch(self.wall_force).mul_(1.0 / steps)
+        wp.to_torch(self.link_force).mul_(1.0 / steps)
 
     def update(self, state: newton.State, contact: ContactSearch, x: wp.array) -> None:
         """Measure tip, camera, magnitudes and failures.
@@ -87,9 +103,16 @@ class ScopeReadout:
         """
         wp.launch(
             kernels.measure_forces,
-            self.wall_force.shape,
-            inputs=[self.wall_force],
-            outputs=[self.wall_force_norm],
+            self.link_force.shape,
+            inputs=[self.link_force],
+            outputs=[self.link_force_norm],
+            device=self.device,
+        )
+        wp.launch(
+            kernels.measure_windows,
+            self.window_force.shape,
+            inputs=[self.link_force, self.link_count, self._shares],
+            outputs=[self.window_force, self.window_force_norm],
             device=self.device,
         )
         wp.launch(
@@ -121,6 +144,22 @@ class ScopeReadout:
 
     def reset(self, ids: torch.Tensor) -> None:
         """Forget the control step of the worlds ``ids``, shape (n,), int64."""
-        forces = (self.step_force, self.wall_force, self.wall_force_norm, self.wall_force_peak)
-        for array in (self.penetrated, *forces):
+        links = (self.step_force, self.link_force, self.link_force_norm, self.link_force_peak)
+        windows = (self.window_force, self.window_force_norm, self.window_force_peak)
+        for array in (self.penetrated, *links, *windows):
             fill_worlds(wp.to_torch(array).view(self.num_envs, -1), ids, 0.0)
+
+
+def window_shares(share: np.ndarray, device: str) -> kernels.WindowShares:
+    """Return the shares that are not zero, part by part.
+
+    Args:
+        share: Share of each link's force in each part of the scope, shape (K + 1, L).
+        device: Warp device.
+    """
+    part, link = np.nonzero(share)
+    shares = kernels.WindowShares()
+    shares.first = wp.array(np.searchsorted(part, np.arange(len(share) + 1)), dtype=int, device=device)
+    shares.link = wp.array(link, dtype=int, device=device)
+    shares.share = wp.array(share[part, link], dtype=float, device=device)
+    return shares

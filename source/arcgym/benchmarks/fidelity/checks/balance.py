@@ -22,7 +22,7 @@ def balance(run: Run) -> list[Row]:
     samples = []
     for _ in range(steps):
         sim.step(1)
-        on_scope = data.wall_force_w[0].sum(dim=0).cpu().numpy().astype(float)
+        on_scope = data.link_force_w[0].sum(dim=0).cpu().numpy().astype(float)
         samples.append((on_scope, contact_force_on_wall(sim), data.base_force.item()))
     on_scope, on_wall, base = (np.mean(values, axis=0) for values in zip(*samples, strict=True))
     run.plots.append(balance_plot(samples, sim.physics_dt))

@@ -97,12 +97,12 @@ class Watch:
         self.outside += int(outside.sum())
         self.broken = int(lost.sum())
         self.worlds |= (outside.any(dim=1) | lost).cpu().numpy()
-        self.force.append(self._sim.endoscope.data.wall_force_norm.amax(dim=1).cpu().numpy())
+        self.force.append(self._sim.endoscope.data.window_force_norm.amax(dim=1).cpu().numpy())
 
     def plot(self, name: str) -> Plot:
-        """Draw the largest force on a link over time, in the worst of the worlds and in the median one."""
+        """Draw the largest force on a window over time, in the worst of the worlds and in the median one."""
         time, force = CONTROL_STEP * np.arange(1, len(self.force) + 1), np.array(self.force)
-        plot = Plot(name, "time [s]", "largest force on a link [N]")
+        plot = Plot(name, "time [s]", "largest force on a window [N]")
         plot.points += [("worst world", time, force.max(axis=1)), ("median world", time, np.median(force, axis=1))]
         return plot
 
