@@ -9,8 +9,10 @@ import math
 import numpy as np
 import pytest
 
+from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
 from arcgym.benchmarks.fidelity.indenter import Curve
+from arcgym.benchmarks.fidelity.insertions import figures_of, halved, link_windows
 from arcgym.benchmarks.fidelity.tube_model import TubeModel
 from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
 
@@ -67,3 +69,31 @@ def test_depth_under_a_load_is_interpolated() -> None:
     curve = Curve(np.array([[0.0, 1.0, 2.0]]), np.array([[0.0, 10.0, 30.0]]))
     assert curve.depth_at(20.0)[0] == pytest.approx(1.5)
     assert math.isnan(curve.depth_at(40.0)[0])
+
+
+@pytest.mark.parametrize("spec", [magnetic_spec(), proximal_spec()], ids=lambda spec: spec.name)
+def test_a_halved_scope_is_the_same_shaft(spec: EndoscopeSpec) -> None:
+    fine = halved(spec)
+    assert len(fine.link_length) == 2 * len(spec.link_length) - 1
+    assert fine.total_length == pytest.approx(spec.total_length)
+    assert fine.link_mass.sum() == pytest.approx(spec.link_mass.sum())
+    # Every hinge of the shaft has half the lever and is twice as stiff: the same curvature under the same torque.
+    assert fine.hinge_stiffness[6] == pytest.approx(2.0 * spec.hinge_stiffness[3])
+    bent = spec.bending_links
+    assert fine.hinge_limit[-2 * bent :].sum() == pytest.approx(spec.hinge_limit[-bent:].sum()) or bent == 0
+    tip = 0.5 * spec.link_length[-1] - spec.camera.position[2]
+    assert 0.5 * fine.link_length[-1] - fine.camera.position[2] == pytest.approx(tip)
+
+
+def test_forces_over_windows_do_not_depend_on_the_links() -> None:
+    coarse = link_windows(np.array([[0.0, 2.0, 0.0], [4.0, 0.0, 0.0]]), np.array([0.05, 0.05]))
+    fine = link_windows(np.repeat([[0.0, 1.0, 0.0], [2.0, 0.0, 0.0]], 2, axis=0), np.full(4, 0.025))
+    np.testing.assert_allclose(coarse, [4.0, 2.0])
+    np.testing.assert_allclose(fine, coarse)
+
+
+def test_figures_of_an_insertion() -> None:
+    samples = np.array([[1.0, 2.0, 3.0], [1.0, 6.0, 5.0]])
+    figures = figures_of(samples)
+    assert figures["mean_window_force"] == 4.0 and figures["peak_window_force"] == 6.0
+    assert figures["time_above_5N"] == pytest.approx(0.1) and figures["mean_base_force"] == 4.0

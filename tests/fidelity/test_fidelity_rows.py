@@ -15,14 +15,20 @@ QUICK = [
     "torsion",
     "buckling",
     "wall_beam",
-    "wall_ring",
     "straight_advance",
+    "action_reaction_moving_paper",
+    "action_reaction_moving_in_situ",
+    "friction_stop_low,friction_hold_low,friction_stop_high,friction_hold_high",
     "capstan",
     "bend_loss",
     "energy",
+    "energy_loss",
 ]
 """Rows that the fast tests measure, those of one check together."""
 SLOW = [
+    "wall_ring",
+    "wall_oval_paper",
+    "wall_oval_in_situ",
     "indentation_paper",
     "indentation_in_situ",
     "volume_stiff,volume_soft",
@@ -38,7 +44,19 @@ SLOW = [
     "parked_drift",
 ]
 """Rows that ``make test-all`` measures as well."""
-LONG = ["sigmoid_deep_force,sigmoid_deep_tip", "newton_force,newton_tip", "random_magnetic", "random_proximal"]
+LONG = [
+    "sigmoid_deep_force,sigmoid_deep_tip",
+    "newton_force,newton_tip",
+    "random_magnetic",
+    "random_proximal",
+    "sensitivity_contact_double",
+    "sensitivity_contact_half",
+    "sensitivity_dt_half",
+    "sensitivity_damping_fifth",
+    "sensitivity_links_half",
+    "sensitivity_wall_half",
+    "sensitivity_noise",
+]
 """Rows that take minutes each and are left to the script."""
 
 

@@ -87,6 +87,10 @@ class Run:
     """Pictures of the checks done."""
     shared: dict[object, Any] = field(default_factory=dict)
     """Results that several checks use."""
+    tables: dict[str, Any] = field(default_factory=dict)
+    """Results with more figures than a row has, by name: plain values."""
+    colons: tuple[str, ...] = ()
+    """Stages of further colons that the search for contacts is checked in."""
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,9 @@ TABLE: tuple[Check, ...] = (
     line("torsion", "shaft:torsion", quick=True),
     line("buckling", "shaft:buckling", quick=True),
     line("wall_beam", "wall:beam_mode", quick=True),
-    line("wall_ring", "wall:ring_mode", quick=True),
+    line("wall_ring", "wall:ring_mode"),
+    line("wall_oval_paper", "wall:oval_mode", material="paper"),
+    line("wall_oval_in_situ", "wall:oval_mode", material="in_situ"),
     line("indentation_paper", "indentation:indentation", material="paper"),
     line("indentation_in_situ", "indentation:indentation", material="in_situ"),
     line("straight_advance", "insertion:straight_advance", quick=True),
@@ -41,6 +43,11 @@ TABLE: tuple[Check, ...] = (
     line("newton_force newton_tip", "insertion:plain_newton"),
     line("wall_motion_stiff wall_motion_soft", "insertion:wall_motion"),
     line("action_reaction base_force", "balance:balance"),
+    line("action_reaction_moving_paper", "moving:action_reaction", quick=True, material="paper"),
+    line("action_reaction_moving_in_situ", "moving:action_reaction", quick=True, material="in_situ"),
+    line(
+        "friction_stop_low friction_hold_low friction_stop_high friction_hold_high", "holding:friction_hold", quick=True
+    ),
     line("capstan", "friction:capstan", quick=True),
     line("tunnelling", "tunnelling:tunnelling"),
     line("bend_loss", "friction:bend_loss", quick=True),
@@ -51,7 +58,15 @@ TABLE: tuple[Check, ...] = (
     line("speed_proximal", "commands:speeds", robot="proximal"),
     line("random_proximal", "commands:random_actions", robot="proximal"),
     line("energy", "stability:energy", quick=True),
+    line("energy_loss", "stability:energy_loss", quick=True),
     line("parked_drift", "stability:parked"),
+    line("sensitivity_contact_double", "sensitivity:sensitivity", setting="contact_double"),
+    line("sensitivity_contact_half", "sensitivity:sensitivity", setting="contact_half"),
+    line("sensitivity_dt_half", "sensitivity:sensitivity", setting="dt_half"),
+    line("sensitivity_damping_fifth", "sensitivity:sensitivity", setting="damping_fifth"),
+    line("sensitivity_links_half", "sensitivity:sensitivity", setting="links_half"),
+    line("sensitivity_wall_half", "sensitivity:sensitivity", setting="wall_half"),
+    line("sensitivity_noise", "sensitivity:sensitivity", setting="noise"),
 )
 """All checks."""
 

@@ -4,24 +4,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from arcgym.assets.endoscope_spec import proximal_spec
+from arcgym.benchmarks.fidelity.loads import settle
 from arcgym.benchmarks.fidelity.pushes import BEND, CONTROL_STEP, DEPTH, push
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, absolute
-from arcgym.benchmarks.fidelity.shaft import LINKS, shaft_in_air
+from arcgym.benchmarks.fidelity.shaft import LINKS, beam, rigidity, shaft_in_air
 
 FAINT = 1.0e-4
 """Hinge damping left, as a share of the shipped; the armature stays as it is."""
+PLUCK = 0.02
+"""Load from which the shaft is let go [N]."""
+SETTLED = 0.25
+"""Time after which a shaft let go swings in its first mode alone [s]."""
+FIRST_MODE = 1.8751
+"""First root k L of the equation of a cantilever's modes, cos(k L) cosh(k L) = -1."""
 
 
-def energy(run: Run) -> list[Row]:
-    """Measure the largest energy of a bent shaft let go, without damping, over what it started with."""
-    from dataclasses import replace
-
-    from arcgym.assets.endoscope_spec import proximal_spec
-
+def undamped_shaft(run: Run) -> tuple[Any, Any]:
+    """Return a straight shaft in free air with next to no damping, and the loads on it."""
     spec = proximal_spec()
     assert spec.slide_drive is not None and spec.roll_drive is not None
     changes: dict[str, Any] = {
@@ -30,17 +35,28 @@ def energy(run: Run) -> list[Row]:
         "slide_drive": replace(spec.slide_drive, damping=0.0),
         "roll_drive": replace(spec.roll_drive, damping=0.0),
     }
-    sim, _ = shaft_in_air(run, 1, **changes)
+    return shaft_in_air(run, 1, **changes)
+
+
+def energies(sim: Any, duration: float) -> tuple[list[float], list[float]]:
+    """Return times [s] and energies [J] while the shaft swings."""
+    times, values = [0.0], [total_energy(sim)]
+    for _ in range(round(duration / (8 * sim.physics_dt))):
+        sim.step(8)
+        times.append(times[-1] + 8 * sim.physics_dt)
+        values.append(total_energy(sim))
+    return times, values
+
+
+def energy(run: Run) -> list[Row]:
+    """Measure the largest energy of a bent shaft let go, without damping, over what it started with."""
+    sim, _ = undamped_shaft(run)
     hinges = np.arange(1, LINKS)
     bent = 0.1 * np.cos(np.pi * hinges / LINKS) * np.where(hinges % 2, 1.0, 0.6)
     joint_pos = sim.endoscope.data.joint_pos
     joint_pos[0, sim.endoscope.stage.bend_coords] = joint_pos.new_tensor(bent)
     sim.forward()
-    times, values = [0.0], [total_energy(sim)]
-    for _ in range(120):
-        sim.step(8)
-        times.append(times[-1] + 8 * sim.physics_dt)
-        values.append(total_energy(sim))
+    times, values = energies(sim, 2.0)
     relative = np.array(values) / values[0]
     run.plots.append(
         Plot("energy", "time [s]", "energy / energy at the start", points=[("free shaft", times, relative)])
@@ -48,6 +64,32 @@ def energy(run: Run) -> list[Row]:
     note = f"after {times[-1]:.0f} s {relative[-1]:.2f} are left"
     growth = max(0.0, float(relative.max()) - 1.0)
     return [Row("energy", float(relative.max()), 1.0, growth, 0.01, "", note)]
+
+
+def energy_loss(run: Run) -> list[Row]:
+    """Measure the energy that a shaft swinging in its first mode loses in a second without damping.
+
+    Let go from the shape under a load across its end, it keeps to its first mode after a quarter of a second. The
+    bound is a twentieth of what the shipped damping takes, with a mode of angular frequency w at the rate t w^2, where
+    t is the damping over the stiffness of a hinge (Kelvin and Voigt).
+    """
+    sim, loads = undamped_shaft(run)
+    loads.force[0, -1, 0] = PLUCK
+    settle(sim)
+    loads.force.zero_()
+    times, values = energies(sim, SETTLED + 1.0)
+    start = int(np.searchsorted(times, SETTLED))
+    loss = -float(np.polyfit(times[start:], np.log(values[start:]), 1)[0])
+    spec = proximal_spec()
+    length, _ = beam(sim, 0, LINKS)
+    mass = float(spec.link_mass[1] / spec.link_length[1])
+    damped = spec.damping_time * FIRST_MODE**4 * rigidity(sim) / (mass * length**4)
+    plot = Plot("energy_loss", "time [s]", "energy / energy at the start")
+    plot.points.append(("free shaft without damping", times, np.array(values) / values[0]))
+    plot.lines.append(("with the shipped damping", times, np.exp(-damped * np.array(times))))
+    run.plots.append(plot)
+    note = f"rate of loss; the shipped damping's is {damped:.2f} 1/s"
+    return [absolute("energy_loss", loss, 0.0, 0.05 * damped, "1/s", note)]
 
 
 def total_energy(sim: Any) -> float:

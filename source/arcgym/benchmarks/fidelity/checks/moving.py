@@ -1,0 +1,47 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Forces between scope and wall while the scope moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from arcgym.assets import PROXIMAL_CFG
+from arcgym.benchmarks.fidelity.checks.balance import contact_force_on_wall
+from arcgym.benchmarks.fidelity.models import build
+from arcgym.benchmarks.fidelity.pushes import BEND, CONTROL_STEP, DEPTH, SPEED
+from arcgym.benchmarks.fidelity.rows import Plot, Row, Run
+
+LEAST = 0.2
+"""Force below which errors are compared with it [N]."""
+
+
+def action_reaction(run: Run, material: str) -> list[Row]:
+    """Push through the bend; compare the means of both forces over each control step.
+
+    The row is the control step with the largest error in the second half of the push, when the tip is in the bend.
+    """
+    sim = build(run, PROXIMAL_CFG, BEND, colon={"material": material})
+    scope, steps = sim.endoscope, round(CONTROL_STEP / sim.physics_dt)
+    still = torch.zeros(1, device=sim.device)
+    scope.set_insertion_command(still + SPEED, still)
+    on_scope, on_wall = [], []
+    for _ in range(round((DEPTH - scope.rest_insertion) / (SPEED * CONTROL_STEP))):
+        sums = np.zeros((2, 3))
+        for _ in range(steps):
+            sim.step(1)
+            sums[0] += scope.data.wall_force_w[0].sum(dim=0).cpu().numpy()
+            sums[1] += contact_force_on_wall(sim)
+        on_scope.append(sums[0] / steps)
+        on_wall.append(sums[1] / steps)
+    action, reaction = np.linalg.norm(on_scope, axis=1), np.linalg.norm(on_wall, axis=1)
+    error = np.linalg.norm(np.array(on_scope) + on_wall, axis=1) / np.maximum(action, LEAST)
+    name, time = f"action_reaction_moving_{material}", CONTROL_STEP * np.arange(1, len(action) + 1)
+    plot = Plot(name, "time [s]", "force [N]", lines=[("of the wall on the scope", time, action)])
+    plot.points.append(("of the scope on the wall", time, reaction))
+    run.plots.append(plot)
+    late = len(error) // 2
+    worst = late + int(np.argmax(error[late:]))
+    note = f"largest error of a vector sum over {CONTROL_STEP:g} s; mean {error[late:].mean():.1%}"
+    return [Row(name, float(reaction[worst]), float(action[worst]), float(error[worst]), 0.02, "N", note)]

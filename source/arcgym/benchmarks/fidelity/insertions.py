@@ -1,0 +1,227 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scripted insertions through the sigmoid of colon 1, shipped and with one numerical setting changed.
+
+Each insertion runs in a process of its own, as many at a time as there are cores.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from arcgym.assets.endoscope_spec import EndoscopeSpec, _bending_limits, magnetic_spec, proximal_spec
+from arcgym.benchmarks.fidelity.rows import Run
+
+SPEED = 0.04
+"""Speed of the experts [m/s]."""
+CONTROL_STEP = 0.1
+"""Time between two decisions of the expert, over which forces are averaged [s]."""
+MARGIN = 0.1
+"""Length of colon beyond the sigmoid that moves [m]; the rest would only cost time."""
+LONGEST = 60.0
+"""Simulated time after which an insertion ends that has not come through [s]."""
+HIGH = 5.0
+"""Force of which the time above it is counted [N]."""
+SPECS = {"magnetic": magnetic_spec, "proximal": proximal_spec}
+"""Robots."""
+SETTINGS = {
+    "contact_double": "contact stiffness times 2",
+    "contact_half": "contact stiffness over 2",
+    "dt_half": "time step over 2",
+    "damping_fifth": "hinge damping times 0.2",
+    "links_half": "links half as long",
+    "wall_half": "rings and sectors of the wall half as far apart",
+    "noise": "speed times 1.0025",
+}
+"""Settings changed, one at a time."""
+METRICS = ("p95_tip_force", "mean_window_force", "peak_window_force", "time_above_5N", "mean_base_force")
+"""Figures of an insertion [N and s]."""
+
+
+@dataclass(frozen=True)
+class Insertion:
+    """One insertion."""
+
+    robot: str
+    """``magnetic``, pulled at its tip, or ``proximal``, pushed at its base."""
+    material: str
+    """Tissue preset."""
+    setting: str = ""
+    """One of :data:`SETTINGS`; empty for the shipped ones."""
+
+
+def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
+    """Return the figures of insertions; those that the run has are not made again.
+
+    Args:
+        run: Device, folder and results.
+        cases: The insertions.
+    """
+    missing = [case for case in cases if ("insertion", case) not in run.shared]
+    if missing:
+        if any(case.setting == "wall_half" for case in missing):
+            finer_colon(run.folder)
+        workers = min(len(missing), len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1)
+        with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+            tasks = [pool.submit(insert, case, run.device, run.folder) for case in missing]
+            for case, task in zip(missing, tasks, strict=True):
+                run.shared["insertion", case] = task.result()
+    return [run.shared["insertion", case] for case in cases]
+
+
+def insert(case: Insertion, device: str, folder: Path) -> dict[str, float]:
+    """Drive a robot by its expert from the anus through the sigmoid, and return its figures.
+
+    Args:
+        case: The insertion.
+        device: Device of the simulation.
+        folder: Folder for the stages.
+    """
+    import torch
+
+    from arcgym.experts import make_expert
+
+    torch.set_num_threads(1)
+    scene = build_scene(case, device, folder)
+    expert = make_expert(scene, speed=SPEED * (1.0025 if case.setting == "noise" else 1.0))
+    _, end = scene.colon.stage.segment_bounds()["sigmoid"]
+    steps, samples = round(CONTROL_STEP / scene.sim.physics_dt), []
+    arc = 0.0
+    with torch.inference_mode():
+        while arc < end and len(samples) * CONTROL_STEP < LONGEST:
+            expert.act()
+            scene.sim.step(steps)
+            samples.append(read_forces(scene.sim, case.robot))
+            arc = float(scene.endoscope.data.tip_arc_length[0])
+    return figures_of(np.array(samples)) | {"arc": arc}
+
+
+def figures_of(samples: np.ndarray) -> dict[str, float]:
+    """Return the figures of an insertion.
+
+    Args:
+        samples: Force on the tip, largest force on a window and force of the drive by control step [N], shape (T, 3).
+    """
+    tip, window, drive = samples.T
+    values = (np.percentile(tip, 95), window.mean(), window.max(), CONTROL_STEP * np.sum(window > HIGH), drive.mean())
+    return dict(zip(METRICS, map(float, values), strict=True)) | {"time": CONTROL_STEP * len(tip)}
+
+
+def read_forces(sim: Any, robot: str) -> tuple[float, float, float]:
+    """Return the force on the tip, the largest on a window of shaft, and that of the drive, means over a step [N].
+
+    The drive's is the push on the base, or the pull on the tip of a robot whose base is not driven.
+    """
+    data = sim.endoscope.data
+    drive = data.base_force[0].abs() if robot == "proximal" else data.tip_pull_force_w[0].norm()
+    window = link_windows(data.wall_force_w[0].cpu().numpy(), sim.endoscope.stage.link_length)
+    return float(window[0]), float(window.max()), float(drive)
+
+
+WINDOW = 0.05
+"""Length of shaft over which forces are summed [m]."""
+
+
+def link_windows(force: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Return the size of the forces on consecutive windows from the tip backwards [N]; a link's is spread along it.
+
+    Args:
+        force: Force on each link, base first [N], shape (L, 3).
+        length: Length of each link [m], shape (L,).
+    """
+    back = np.r_[0.0, np.cumsum(length[::-1])]
+    edges = np.arange(0.0, back[-1], WINDOW)
+    low = np.maximum(back[None, :-1], edges[:, None])
+    high = np.minimum(back[None, 1:], edges[:, None] + WINDOW)
+    share = np.maximum(0.0, high - low) / length[::-1]
+    return np.linalg.norm(share @ force[::-1], axis=1)
+
+
+def build_scene(case: Insertion, device: str, folder: Path) -> Any:
+    """Return one world with the robot at the anus."""
+    from arcgym import assets
+    from arcgym.assets.endoscope_stage import write_endoscope
+    from arcgym.benchmarks.fidelity.tubes import shipped_stage
+    from arcgym.scene import InteractiveSceneCfg
+    from arcgym.scene.interactive_scene import InteractiveScene
+    from arcgym.sim import SimulationCfg
+
+    spec, setting = SPECS[case.robot](), case.setting
+    endoscope = getattr(assets, f"{case.robot.upper()}_CFG")
+    if setting == "links_half":
+        spec, guide = halved(spec), endoscope.introducer
+        guide = replace(guide, stiffness=0.5 * guide.stiffness, damping=0.5 * guide.damping)
+        endoscope = replace(endoscope, introducer=guide)
+    if setting == "damping_fifth":
+        spec = replace(spec, damping_time=0.2 * spec.damping_time, armature_time=spec.armature_time / 0.2)
+    path = write_endoscope(spec, folder / f"{case.robot}_{case.material}_{setting or 'shipped'}.usda")
+    _, end = shipped_stage().segment_bounds()["sigmoid"]
+    colon = assets.ColonCfg(material=case.material, mobile_until=end + MARGIN)
+    if setting == "wall_half":
+        colon.usd_path = str(finer_colon(folder))
+    sim = SimulationCfg(device=device)
+    sim.dt *= 0.5 if setting == "dt_half" else 1.0
+    factor = {"contact_double": 2.0, "contact_half": 0.5}.get(setting, 1.0)
+    sim.contact = replace(sim.contact, stiffness=factor * sim.contact.stiffness)
+    if setting in ("links_half", "wall_half"):
+        sim.contact = replace(sim.contact, capacity=2 * sim.contact.capacity, link_capacity=128)
+    scene = InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=replace(endoscope, usd_path=str(path)))
+    return InteractiveScene(scene, sim)
+
+
+def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
+    """Return a scope with every link but the base's cut in two, of the same shaft."""
+    parts = np.r_[1, np.full(len(spec.link_length) - 1, 2)]
+    bent = 2 * spec.bending_links
+    limit = _split_hinges(spec.hinge_limit)
+    if bent:
+        limit[-bent:] = _bending_limits(len(limit) + 1, bent)
+    along = 0.25 * spec.link_length[-1]
+    x, y, z = spec.camera.position
+    return replace(
+        spec,
+        link_length=np.repeat(spec.link_length / parts, parts),
+        link_radius=np.repeat(spec.link_radius, parts),
+        link_mass=np.repeat(spec.link_mass / parts, parts),
+        bending_rigidity=_split_hinges(spec.bending_rigidity),
+        torsional_rigidity=_split_hinges(spec.torsional_rigidity),
+        hinge_limit=limit,
+        bending_links=bent,
+        camera=replace(spec.camera, position=(x, y, z - along)),
+        lights=spec.lights - np.array([0.0, 0.0, along]),
+    )
+
+
+def _split_hinges(value: np.ndarray) -> np.ndarray:
+    """Return values at the hinges of the halved chain: at a link's middle the larger of its ends'."""
+    after = np.r_[value[1:], value[-1]]
+    return np.stack([value, np.maximum(value, after)], axis=1).ravel()
+
+
+def finer_colon(folder: Path) -> Path:
+    """Write colon 1 with twice its rings and sectors, the same surface sampled more finely, and return its path."""
+    from arcgym.anatomy import write_colon
+    from arcgym.anatomy.generator.generate import draw_surface
+    from arcgym.anatomy.generator.patients import colon_1
+    from arcgym.anatomy.generator.quantize import quantize
+    from arcgym.anatomy.generator.visual import sample_visual
+    from arcgym.anatomy.generator.wall import sample_wall
+    from arcgym.benchmarks.fidelity.tubes import shipped_stage
+
+    path = folder / "finer" / "colon.usda"
+    if not path.exists():
+        shipped = shipped_stage()
+        seed, spec = int(shipped.metadata["seed"]), colon_1()
+        surface, lesions = draw_surface(spec, seed)
+        surface.spec = replace(spec, ring_spacing=0.5 * spec.ring_spacing, sectors=2 * spec.sectors)
+        wall = sample_wall(surface, lesions)
+        visual = quantize(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1))
+        write_colon(replace(shipped, wall=wall, visual=visual, visual_proxy=visual), path)
+    return path
