@@ -92,8 +92,8 @@ def insert(case: Insertion, device: str, folder: Path) -> dict[str, float]:
     scene = build_scene(case, device, folder)
     expert = make_expert(scene, speed=SPEED * (1.0025 if case.setting == "noise" else 1.0))
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
-    steps, samples = round(CONTROL_STEP / scene.sim.physics_dt), []
-    arc = 0.0
+    steps = round(CONTROL_STEP / scene.sim.physics_dt)
+    arc, samples = 0.0, list[tuple[float, float, float]]()
     with torch.inference_mode():
         while arc < end and len(samples) * CONTROL_STEP < LONGEST:
             expert.act()

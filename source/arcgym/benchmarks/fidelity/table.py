@@ -43,8 +43,17 @@ TABLE: tuple[Check, ...] = (
     line("newton_force newton_tip", "insertion:plain_newton"),
     line("wall_motion_stiff wall_motion_soft", "insertion:wall_motion"),
     line("action_reaction base_force", "balance:balance"),
-    line("action_reaction_moving_paper", "moving:action_reaction", quick=True, material="paper"),
-    line("action_reaction_moving_in_situ", "moving:action_reaction", quick=True, material="in_situ"),
+    line(
+        "action_reaction_moving_paper action_reaction_worst_paper",
+        "moving:action_reaction",
+        quick=True,
+        material="paper",
+    ),
+    line(
+        "action_reaction_moving_in_situ action_reaction_worst_in_situ",
+        "moving:action_reaction",
+        material="in_situ",
+    ),
     line(
         "friction_stop_low friction_hold_low friction_stop_high friction_hold_high", "holding:friction_hold", quick=True
     ),

@@ -20,7 +20,8 @@ LEAST = 0.2
 def action_reaction(run: Run, material: str) -> list[Row]:
     """Push through the bend; compare the means of both forces over each control step.
 
-    The row is the control step with the largest error in the second half of the push, when the tip is in the bend.
+    Of the second half of the push, when the tip is in the bend: the mean over control steps of the error in a step over
+    its force, and the largest error over the mean force.
     """
     sim = build(run, PROXIMAL_CFG, BEND, colon={"material": material})
     scope, steps = sim.endoscope, round(CONTROL_STEP / sim.physics_dt)
@@ -36,12 +37,17 @@ def action_reaction(run: Run, material: str) -> list[Row]:
         on_scope.append(sums[0] / steps)
         on_wall.append(sums[1] / steps)
     action, reaction = np.linalg.norm(on_scope, axis=1), np.linalg.norm(on_wall, axis=1)
-    error = np.linalg.norm(np.array(on_scope) + on_wall, axis=1) / np.maximum(action, LEAST)
+    late = len(action) // 2
+    error = np.linalg.norm(np.array(on_scope) + on_wall, axis=1)[late:]
+    share = error / np.maximum(action[late:], LEAST)
     name, time = f"action_reaction_moving_{material}", CONTROL_STEP * np.arange(1, len(action) + 1)
     plot = Plot(name, "time [s]", "force [N]", lines=[("of the wall on the scope", time, action)])
     plot.points.append(("of the scope on the wall", time, reaction))
     run.plots.append(plot)
-    late = len(error) // 2
-    worst = late + int(np.argmax(error[late:]))
-    note = f"largest error of a vector sum over {CONTROL_STEP:g} s; mean {error[late:].mean():.1%}"
-    return [Row(name, float(reaction[worst]), float(action[worst]), float(error[worst]), 0.02, "N", note)]
+    mean, sizes = float(action[late:].mean()), (float(reaction[late:].mean()), float(action[late:].mean()))
+    note = f"vector sum over {CONTROL_STEP:g} s, mean; at most {share.max():.1%} of a step's force"
+    worst = f"largest vector sum over {CONTROL_STEP:g} s, of the mean force"
+    return [
+        Row(name, *sizes, float(share.mean()), 0.02, "N", note),
+        Row(f"action_reaction_worst_{material}", *sizes, float(error.max()) / mean, 0.02, "N", worst),
+    ]
