@@ -11,8 +11,9 @@ import pytest
 
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
+from arcgym.benchmarks.fidelity.brute_force import segment_triangle
 from arcgym.benchmarks.fidelity.indenter import Curve
-from arcgym.benchmarks.fidelity.insertions import figures_of, halved, link_windows
+from arcgym.benchmarks.fidelity.insertions import figures_of, halved
 from arcgym.benchmarks.fidelity.tube_model import TubeModel
 from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
 
@@ -85,15 +86,29 @@ def test_a_halved_scope_is_the_same_shaft(spec: EndoscopeSpec) -> None:
     assert 0.5 * fine.link_length[-1] - fine.camera.position[2] == pytest.approx(tip)
 
 
-def test_forces_over_windows_do_not_depend_on_the_links() -> None:
-    coarse = link_windows(np.array([[0.0, 2.0, 0.0], [4.0, 0.0, 0.0]]), np.array([0.05, 0.05]))
-    fine = link_windows(np.repeat([[0.0, 1.0, 0.0], [2.0, 0.0, 0.0]], 2, axis=0), np.full(4, 0.025))
-    np.testing.assert_allclose(coarse, [4.0, 2.0])
-    np.testing.assert_allclose(fine, coarse)
-
-
 def test_figures_of_an_insertion() -> None:
     samples = np.array([[1.0, 2.0, 3.0], [1.0, 6.0, 5.0]])
     figures = figures_of(samples)
     assert figures["mean_window_force"] == 4.0 and figures["peak_window_force"] == 6.0
     assert figures["time_above_5N"] == pytest.approx(0.1) and figures["mean_base_force"] == 4.0
+
+
+def test_distance_of_segment_and_triangle_is_that_of_a_dense_search() -> None:
+    rng = np.random.default_rng(0)
+    p, q, corners = rng.normal(size=(40, 3)), rng.normal(size=(40, 3)), rng.normal(size=(40, 3, 3))
+    t = np.linspace(0.0, 1.0, 61)
+    bary = np.array([(i, j, 60 - i - j) for i in range(61) for j in range(61 - i)]) / 60.0
+    for k, distance in enumerate(segment_triangle(p, q, corners)[0]):
+        along, across = p[k] + t[:, None] * (q[k] - p[k]), bary @ corners[k]
+        dense = np.linalg.norm(along[:, None] - across, axis=2).min()
+        assert distance <= dense + 1e-12
+        assert dense - distance < 0.06
+
+
+def test_side_of_a_triangle_that_a_segment_is_on() -> None:
+    corners = np.tile(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), (3, 1, 1))  # normal +Z
+    p = np.array([[0.2, 0.2, -1.0], [0.2, 0.2, 1.0], [0.2, 0.2, -1.0]])
+    q = np.array([[0.2, 0.2, -2.0], [0.2, 0.2, 3.0], [0.2, 0.2, 0.5]])
+    distance, lumen_side = segment_triangle(p, q, corners)
+    np.testing.assert_allclose(distance, [1.0, 1.0, 0.0])
+    np.testing.assert_array_equal(lumen_side, [True, False, True])

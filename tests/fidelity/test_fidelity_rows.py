@@ -45,6 +45,7 @@ SLOW = [
 ]
 """Rows that ``make test-all`` measures as well."""
 LONG = [
+    "contact_search_missed,contact_search_dropped",
     "sigmoid_deep_force,sigmoid_deep_tip",
     "newton_force,newton_tip",
     "random_magnetic",

@@ -34,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quick", action="store_true", help="only checks that take seconds")
     parser.add_argument("--list", action="store_true", help="print the names of the rows and end")
     parser.add_argument("--plots", type=Path, help="folder for a picture of each check; needs matplotlib")
+    parser.add_argument("--colons", nargs="+", default=(), help="stages of further colons for contact_search_*")
     parser.add_argument("--tables", type=Path, help="file for the figures behind the rows sensitivity_*, as JSON")
     parser.add_argument("--json", action="store_true", help="print the table as one JSON object on the last line")
 
@@ -52,14 +53,19 @@ def run(args: argparse.Namespace) -> int:
     from arcgym.rl.device import choose_device
 
     logging.basicConfig(level=logging.WARNING)
-    rows = measure(chosen, choose_device(args.device), args.rows, args.plots, args.tables)
+    rows = measure(chosen, choose_device(args.device), args.rows, args.plots, args.tables, args.colons)
     if args.json:
         print(json.dumps({"rows": [as_json(row) for row in rows]}))
     return 0 if all(row.ok for row in rows) else 1
 
 
 def measure(
-    checks: Sequence[Check], device: str, wanted: str | None, plots: Path | None = None, tables: Path | None = None
+    checks: Sequence[Check],
+    device: str,
+    wanted: str | None,
+    plots: Path | None = None,
+    tables: Path | None = None,
+    colons: Sequence[str] = (),
 ) -> list[Row]:
     """Run checks, print the table and return the rows that are wanted.
 
@@ -69,10 +75,11 @@ def measure(
         wanted: Names of rows, separated by commas; None for all.
         plots: Folder for the pictures, if they are wanted.
         tables: File for the checks' further figures, if they are wanted.
+        colons: Stages of further colons for the checks that take any.
     """
     print(FORMAT.format("row", "value", "reference", "unit", "error", "bound", "", "note"), flush=True)
     with tempfile.TemporaryDirectory() as folder:
-        run = Run(device, Path(folder))
+        run = Run(device, Path(folder), colons=tuple(colons))
         rows = [row for check in checks for row in measure_one(check, run, wanted)]
     if plots:
         from arcgym.benchmarks.fidelity.pictures import draw

@@ -121,37 +121,18 @@ def read_forces(sim: Any, robot: str) -> tuple[float, float, float]:
     """
     data = sim.endoscope.data
     drive = data.base_force[0].abs() if robot == "proximal" else data.tip_pull_force_w[0].norm()
-    window = link_windows(data.wall_force_w[0].cpu().numpy(), sim.endoscope.stage.link_length)
-    return float(window[0]), float(window.max()), float(drive)
+    return float(data.tip_force[0]), float(data.window_force_norm[0].max()), float(drive)
 
 
-WINDOW = 0.05
-"""Length of shaft over which forces are summed [m]."""
-
-
-def link_windows(force: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Return the size of the forces on consecutive windows from the tip backwards [N]; a link's is spread along it.
-
-    Args:
-        force: Force on each link, base first [N], shape (L, 3).
-        length: Length of each link [m], shape (L,).
-    """
-    back = np.r_[0.0, np.cumsum(length[::-1])]
-    edges = np.arange(0.0, back[-1], WINDOW)
-    low = np.maximum(back[None, :-1], edges[:, None])
-    high = np.minimum(back[None, 1:], edges[:, None] + WINDOW)
-    share = np.maximum(0.0, high - low) / length[::-1]
-    return np.linalg.norm(share @ force[::-1], axis=1)
-
-
-def build_scene(case: Insertion, device: str, folder: Path) -> Any:
-    """Return one world with the robot at the anus."""
+def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | None = None) -> Any:
+    """Return one world with the robot at the anus, in colon 1 or in the colon of another stage."""
     from arcgym import assets
+    from arcgym.anatomy import read_colon
     from arcgym.assets.endoscope_stage import write_endoscope
-    from arcgym.benchmarks.fidelity.tubes import shipped_stage
     from arcgym.scene import InteractiveSceneCfg
     from arcgym.scene.interactive_scene import InteractiveScene
     from arcgym.sim import SimulationCfg
+    from arcgym.utils.paths import resolve_asset
 
     spec, setting = SPECS[case.robot](), case.setting
     endoscope = getattr(assets, f"{case.robot.upper()}_CFG")
@@ -162,8 +143,10 @@ def build_scene(case: Insertion, device: str, folder: Path) -> Any:
     if setting == "damping_fifth":
         spec = replace(spec, damping_time=0.2 * spec.damping_time, armature_time=spec.armature_time / 0.2)
     path = write_endoscope(spec, folder / f"{case.robot}_{case.material}_{setting or 'shipped'}.usda")
-    _, end = shipped_stage().segment_bounds()["sigmoid"]
-    colon = assets.ColonCfg(material=case.material, mobile_until=end + MARGIN)
+    colon = assets.ColonCfg(material=case.material)
+    colon.usd_path = colon_path or colon.usd_path
+    _, end = read_colon(resolve_asset(colon.usd_path)).segment_bounds()["sigmoid"]
+    colon.mobile_until = end + MARGIN
     if setting == "wall_half":
         colon.usd_path = str(finer_colon(folder))
     sim = SimulationCfg(device=device)

@@ -58,6 +58,7 @@ TABLE: tuple[Check, ...] = (
         "friction_stop_low friction_hold_low friction_stop_high friction_hold_high", "holding:friction_hold", quick=True
     ),
     line("capstan", "friction:capstan", quick=True),
+    line("contact_search_missed contact_search_dropped", "contact_search:contact_search"),
     line("tunnelling", "tunnelling:tunnelling"),
     line("bend_loss", "friction:bend_loss", quick=True),
     line("speed_capsule", "commands:speeds", robot="capsule"),

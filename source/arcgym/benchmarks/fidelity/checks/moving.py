@@ -32,7 +32,7 @@ def action_reaction(run: Run, material: str) -> list[Row]:
         sums = np.zeros((2, 3))
         for _ in range(steps):
             sim.step(1)
-            sums[0] += scope.data.wall_force_w[0].sum(dim=0).cpu().numpy()
+            sums[0] += scope.data.link_force_w[0].sum(dim=0).cpu().numpy()
             sums[1] += contact_force_on_wall(sim)
         on_scope.append(sums[0] / steps)
         on_wall.append(sums[1] / steps)
