@@ -48,6 +48,8 @@ class FakeEndoscope:
             window_force_w=zeros(num_envs, 3, 3),
             window_force_peak=zeros(num_envs, 3),
             tip_force_w=zeros(num_envs, 3),
+            link_force_w=zeros(num_envs, num_links, 3),
+            link_force_peak=zeros(num_envs, num_links),
             tip_force_peak=zeros(num_envs),
             joint_pos=zeros(num_envs, 2 + num_links - 1),
         )

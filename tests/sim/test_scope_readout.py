@@ -7,17 +7,30 @@ From the front: links of 16.6 (with the round end), 10, 10 and three times 25 mm
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 import torch
 import warp as wp
+from tiny_scope import tiny_scope_spec
 from tiny_sim import TinySim
 
+from arcgym.assets.endoscope_stage import write_endoscope
 from arcgym.sim import Simulation
+
+LENGTH = np.array([0.025, 0.025, 0.025, 0.010, 0.010, 0.010])
+"""Length of the links, base first [m]."""
+RADIUS = np.full(6, 0.0066)
+"""Their radius [m], by which the round end stands out."""
 
 
 @pytest.fixture(scope="module")
 def sim(tmp_path_factory: pytest.TempPathFactory) -> Simulation:
-    return TinySim(tmp_path_factory.mktemp("readout"))(num_envs=2)
+    tiny = TinySim(tmp_path_factory.mktemp("readout"))
+    spec = replace(tiny_scope_spec(), link_length=LENGTH, link_radius=RADIUS)
+    write_endoscope(spec, tiny.folder / "proximal_6.usda")
+    return tiny(num_envs=2)
 
 
 def control_step(sim: Simulation, *steps: tuple[int, int, tuple[float, float, float]]) -> None:

@@ -14,7 +14,7 @@ from tiny import tiny_colon_stage
 
 from arcgym.envs.mdp import ForceTiersCfg
 from arcgym.viewers.palette import deformation_colors, force_colors, shown_tiers
-from arcgym.viewers.wall_paint import WallPaint, wall_scale
+from arcgym.viewers.wall_paint import WallPaint, wall_scale, window_at_links
 
 STAGE = tiny_colon_stage()
 SKIN = STAGE.visual_proxy
@@ -51,6 +51,13 @@ def test_force_is_shown_beside_the_link_that_presses() -> None:
     assert 5.0 < values.max() <= 6.0
     assert top[0] > 0.01 and abs(top[2] - 0.05) < 0.015
     assert values[np.abs(SKIN.points[:, 2] - 0.15) < 0.01].max() == 0.0
+
+
+def test_a_link_that_touches_is_painted_with_the_force_of_its_window() -> None:
+    # Middles of three links of 20 mm, base first: 50, 30 and 10 mm from the front; windows have theirs at 25 and 50 mm.
+    touches = np.array([True, True, False])
+    values = window_at_links(np.full(3, 0.02), touches, np.array([1.0, 6.0]), np.array([0.025, 0.050]))
+    np.testing.assert_allclose(values, [6.0, 2.0, 0.0])
 
 
 def test_force_scale_has_the_colors_of_the_tasks_tiers() -> None:

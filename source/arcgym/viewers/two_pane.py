@@ -20,7 +20,7 @@ from arcgym.viewers.outside_view import OutsideView
 from arcgym.viewers.overlay import draw_panel, octagon
 from arcgym.viewers.palette import shown_tiers
 from arcgym.viewers.viewer_cfg import ViewerCfg
-from arcgym.viewers.wall_paint import WallPaint
+from arcgym.viewers.wall_paint import WallPaint, window_at_links
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -120,15 +120,10 @@ class TwoPaneView:
             return self._paint.strain(env_id)
         if self.cfg.outside.wall_color == "tension":
             return self._paint.tension(env_id)
-        link_length, force = self._scope.stage.link_length, self._link_values(env_id)
+        data, link_length = self._scope.data, self._scope.stage.link_length
+        read = (data.link_force_norm[env_id] > 0.0, data.window_force_norm[env_id], data.window_arc)
+        force = window_at_links(link_length, *(values.cpu().numpy() for values in read))
         return self._paint.force(env_id, position, quaternion, link_length, force)
-
-    def _link_values(self, env_id: int) -> np.ndarray:
-        """Return the force of the window around each link that touches the wall, 0 for those that do not [N], (L,)."""
-        data, length = self._scope.data, np.asarray(self._scope.stage.link_length, float)
-        from_tip = length.sum() - np.cumsum(length) + 0.5 * length
-        window = np.interp(from_tip, data.window_arc.cpu().numpy(), data.window_force_norm[env_id].cpu().numpy())
-        return np.where(data.link_force_norm[env_id].cpu().numpy() > 0.0, window, 0.0)
 
     def _remember(self, env_id: int, info: FrameInfo) -> None:
         """Add to the charts, which start again with every episode and world."""

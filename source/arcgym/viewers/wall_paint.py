@@ -140,6 +140,22 @@ class WallPaint:
         return (values[self._skin] * self._weights).sum(axis=1)
 
 
+def window_at_links(
+    link_length: np.ndarray, touches: np.ndarray, force: np.ndarray, force_arc: np.ndarray
+) -> np.ndarray:
+    """Return the force of the window around the middle of each link that touches the wall, else 0 [N], shape (L,).
+
+    Args:
+        link_length: Length of each link, base first [m], shape (L,).
+        touches: Whether the link touches the wall, shape (L,).
+        force: Wall force on each window of the scope [N], shape (K,).
+        force_arc: Distance of the middle of each window from the front of the tip [m], ascending, shape (K,).
+    """
+    length = np.asarray(link_length, float)
+    from_tip = length.sum() - np.cumsum(length) + 0.5 * length
+    return np.where(touches, np.interp(from_tip, force_arc, force), 0.0)
+
+
 def face_strains(corners: np.ndarray, inverse: np.ndarray) -> np.ndarray:
     """Largest principal stretch of triangles minus one, as :func:`arcgym.sim.wall.strain_kernels.face_strain` has it.
 
