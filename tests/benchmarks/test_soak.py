@@ -118,19 +118,25 @@ def test_guard_finds_worlds_that_another_reset_changed(leaks):
     assert calls == [before]
 
 
-def test_link_outside_a_box_is_found():
+@pytest.mark.parametrize(("half_length", "radius", "first"), [(0.1, 0.1, False), (0.6, 0.1, True), (0.1, 2.2, True)])
+def test_link_with_any_part_outside_a_box_is_found(half_length, radius, first):
     wp.init()
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32)
     sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = np.array([t for a, b, c, d in sides for t in ((a, b, c), (a, c, d))])
     data = SimpleNamespace(nodal_pos_w=torch.from_numpy(corners)[None])
     colon = SimpleNamespace(wall=SimpleNamespace(triangles=triangles), data=data, num_rings=20)
-    links = torch.tensor([[[0.5, 0.0, 0.0], [1.5, 0.0, 0.0], [9.0, 0.0, 0.0]]])
-    scope = SimpleNamespace(num_bodies=3, data=SimpleNamespace(body_pos_w=links))
+    links = torch.tensor([[[0.0, 0.0, 0.5], [1.5, 0.0, 0.0], [9.0, 0.0, 0.0]]])
+    upright = torch.tensor([0.0, 0.0, 0.0, 1.0]).expand(1, 3, 4)
+    scope = SimpleNamespace(
+        half_length=np.full(3, half_length),
+        stage=SimpleNamespace(link_radius=np.full(3, radius)),
+        data=SimpleNamespace(body_pos_w=links, body_quat_w=upright),
+    )
     rings = {"link_ring": torch.tensor([[10, 10, 0]])}
     sim = SimpleNamespace(device="cpu", num_envs=1, colon=colon, endoscope=scope, world_arrays=lambda: rings)
     outside, examined = LumenCheck(sim).outside()
-    assert outside.tolist() == [[False, True, False]]
+    assert outside.tolist() == [[first, True, False]]
     assert examined.tolist() == [[True, True, False]]
 
 

@@ -12,9 +12,16 @@ import warp as wp
 
 from arcgym.anatomy.measures import inner_faces
 from arcgym.benchmarks.lumen_kernels import winding_number
+from arcgym.utils.math import quat_apply
 
 MARGIN = 4
 """Rings at either end of the colon whose links are left out: there the surface is open, or the scope outside it."""
+CORE = 0.5
+"""Share of its radius by which a link must be inside: its surface dents into the wall where the two touch."""
+ALONG = (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""Places along a link's axis, as shares of half its length."""
+AROUND = 4
+"""Points around each of them."""
 
 
 class LumenCheck:
@@ -25,21 +32,43 @@ class LumenCheck:
         self._sim = sim
         triangles = np.ascontiguousarray(lumen_triangles(sim.colon.wall), dtype=np.int32)
         self._triangles = wp.array(triangles, dtype=wp.vec3i, device=sim.device)
-        self._winding = wp.zeros((sim.num_envs, sim.endoscope.num_bodies), dtype=float, device=sim.device)
+        points = core_points(sim.endoscope.half_length, sim.endoscope.stage.link_radius)
+        self._points = torch.tensor(points, dtype=torch.float, device=sim.device)
+        self._winding = wp.zeros((sim.num_envs, points.shape[0] * points.shape[1]), dtype=float, device=sim.device)
 
     def outside(self) -> tuple[torch.Tensor, torch.Tensor]:
         """Return links outside the lumen and links examined, bool, shape (N, L).
 
-        A link is outside if the inner surface winds around its centre by less than half.
+        A link is outside if the inner surface winds by less than half around any point of its core, see
+        :func:`core_points`.
         """
-        colon, endoscope = self._sim.colon, self._sim.endoscope
-        points = wp.from_torch(colon.data.nodal_pos_w.contiguous(), dtype=wp.vec3)
-        centers = wp.from_torch(endoscope.data.body_pos_w.contiguous(), dtype=wp.vec3)
-        inputs = [points, self._triangles, centers]
+        colon, data = self._sim.colon, self._sim.endoscope.data
+        wall = wp.from_torch(colon.data.nodal_pos_w.contiguous(), dtype=wp.vec3)
+        points = data.body_pos_w[:, :, None] + quat_apply(data.body_quat_w[:, :, None], self._points)
+        points = wp.from_torch(points.flatten(1, 2).contiguous(), dtype=wp.vec3)
+        inputs = [wall, self._triangles, points]
         wp.launch(winding_number, self._winding.shape, inputs, [self._winding], device=self._sim.device)
         ring = self._sim.world_arrays()["link_ring"]
         examined = (ring >= MARGIN) & (ring < colon.num_rings - MARGIN)
-        return examined & (wp.to_torch(self._winding).abs() < 0.5), examined
+        inside = wp.to_torch(self._winding).view(*ring.shape, -1).abs() >= 0.5
+        return examined & ~inside.all(dim=2), examined
+
+
+def core_points(half_length: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Return points of links' cores in their frames [m], shape (L, P, 3).
+
+    On the axis from end to end, and half the radius away from it to four sides.
+
+    Args:
+        half_length: Half the length of each link's axis [m], shape (L,).
+        radius: Radius of each link [m], shape (L,).
+    """
+    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    across = np.r_[np.zeros((1, 2)), CORE * np.stack([np.cos(angle), np.sin(angle)], axis=1)]
+    points = np.zeros((len(radius), len(ALONG), len(across), 3))
+    points[..., :2] = np.asarray(radius)[:, None, None, None] * across
+    points[..., 2] = (np.asarray(half_length)[:, None] * np.array(ALONG))[:, :, None]
+    return points.reshape(len(radius), -1, 3)
 
 
 def lumen_triangles(wall: Any) -> np.ndarray:
