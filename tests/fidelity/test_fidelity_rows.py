@@ -33,6 +33,8 @@ SLOW = [
     "volume_stiff,volume_soft",
     "bend_force,bend_tip",
     "sigmoid_force,sigmoid_tip",
+    "bend_rod_force,bend_rod_tip",
+    "sigmoid_rod_force,sigmoid_rod_tip",
     "wall_motion_stiff,wall_motion_soft",
     "action_reaction,base_force",
     "action_reaction_moving_in_situ,action_reaction_worst_in_situ",

@@ -75,12 +75,14 @@ def push(
     material: str = "paper",
     rest: float = 0.0,
     wall_model: str = "shell",
+    rigid: bool = False,
     **cfg: Any,
 ) -> Trace:
     """Push to a depth [m] and wait [s]. The same push is made only once a run; ``tube`` None is the shipped colon."""
-    key = ("push", tube, depth, material, rest, wall_model, str(cfg))
+    key = ("push", tube, depth, material, rest, wall_model, rigid, str(cfg))
     if key not in run.shared:
-        run.shared[key] = _push(run, tube, depth, {"material": material, "wall_model": wall_model}, rest, **cfg)
+        colon = {"material": material, "wall_model": wall_model, "rigid": rigid}
+        run.shared[key] = _push(run, tube, depth, colon, rest, **cfg)
     return run.shared[key]
 
 

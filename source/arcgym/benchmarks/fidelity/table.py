@@ -40,6 +40,8 @@ TABLE: tuple[Check, ...] = (
     line("bend_force bend_tip", "insertion:bend"),
     line("sigmoid_force sigmoid_tip", "insertion:sigmoid"),
     line("sigmoid_deep_force sigmoid_deep_tip", "insertion:sigmoid_deep"),
+    line("bend_rod_force bend_rod_tip", "rods:bend"),
+    line("sigmoid_rod_force sigmoid_rod_tip", "rods:sigmoid"),
     line("newton_force newton_tip", "insertion:plain_newton"),
     line("wall_motion_stiff wall_motion_soft", "insertion:wall_motion"),
     line("action_reaction base_force", "balance:balance"),
