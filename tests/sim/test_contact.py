@@ -214,9 +214,9 @@ def test_the_search_finds_every_face_near_a_link_however_the_wall_is_gathered(
 
 
 def test_contacts_beyond_the_capacity_are_counted(tiny_sim: TinySim) -> None:
-    sim = tiny_sim("capsule", colon={"wall_model": "solid"}, contact=ContactCfg(capacity=1, link_capacity=2))
+    sim = tiny_sim("capsule", colon={"wall_model": "solid"}, contact=ContactCfg(patch_capacity=1))
     place(sim, depth=5.0e-4)
-    assert count(sim) == 2 and int(sim.contact.records.dropped.numpy()[0]) > 0
+    assert count(sim) <= 6 and int(sim.contact.records.dropped.numpy()[0]) > 0  # one patch of six faces
 
 
 def resting(tiny_sim: TinySim, along: float) -> Simulation:

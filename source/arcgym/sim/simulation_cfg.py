@@ -53,11 +53,13 @@ class ContactCfg:
     search_reach: int = 3
     """Rings on either side of a link's own whose faces may touch it from outside, too: a link that was pushed into the
     wall there is pushed back. Elsewhere faces touch a link from the lumen alone."""
-    capacity: int = 10
+    capacity: int = 8
     """Contacts kept a link, on average over the links of a world. A link in a bend of colon 1 has five to twenty, most
-    links of a scope have none. Contacts that find no room are counted (``ContactSearch.records.dropped``)."""
-    link_capacity: int = 64
-    """Contacts kept for any one link."""
+    links of a scope have none. Contacts that find no room are counted (``ContactSearch.records.dropped``): raise it
+    then."""
+    patch_capacity: int = 24
+    """Patches of six faces looked at near one link. A link in a bend of colon 1 has up to ten; raise it with
+    ``capacity``, and where a wall has far smaller faces."""
 
     def validate_config(self) -> None:
         """Check bounds.
@@ -71,7 +73,7 @@ class ContactCfg:
         require_non_negative(self, "damping", unit="N s/m")
         require_non_negative(self, "friction")
         require_non_negative(self, "wall_radius", unit="m")
-        require_at_least(self, 1, "search_reach", "capacity")
+        require_at_least(self, 1, "search_reach", "capacity", "patch_capacity")
 
 
 @configclass

@@ -121,5 +121,5 @@ def converged() -> dict[str, Any]:
     return {
         "dt": 1.0 / 3840.0,
         "wall": WallSolverCfg(iterations=8),
-        "contact": ContactCfg(stiffness=10.0 * ContactCfg().stiffness, capacity=192),
+        "contact": ContactCfg(stiffness=10.0 * ContactCfg().stiffness, capacity=192, patch_capacity=96),
     }

@@ -154,7 +154,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     factor = {"contact_double": 2.0, "contact_half": 0.5}.get(setting, 1.0)
     sim.contact = replace(sim.contact, stiffness=factor * sim.contact.stiffness)
     if setting in ("links_half", "wall_half"):
-        sim.contact = replace(sim.contact, capacity=2 * sim.contact.capacity, link_capacity=128)
+        sim.contact = replace(sim.contact, capacity=2 * sim.contact.capacity, patch_capacity=48)
     scene = InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=replace(endoscope, usd_path=str(path)))
     return InteractiveScene(scene, sim)
 

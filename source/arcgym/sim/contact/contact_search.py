@@ -11,8 +11,10 @@ import warp as wp
 from arcgym.sim.contact import contact_search_kernels as kernels
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
-from arcgym.sim.wall.wall_topology import LumenTopology
+from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
 
+FURTHER_LINKS = 5
+"""Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
 MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
@@ -64,10 +66,10 @@ class ContactSearch:
         self.bounds = kernels.Bounds()
         self.bounds.ring = wp.zeros((num_envs, self.ring_count), dtype=wp.vec4, device=device)
         self.bounds.patch = wp.zeros((num_envs, len(topology.patch_start) - 1), dtype=wp.vec4, device=device)
-        self.candidates = self._candidates(cfg.link_capacity)
+        self.candidates = self._candidates(cfg.patch_capacity)
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
-        self.records = self._records(max(cfg.link_capacity, cfg.capacity * self.link_count))
+        self.records = self._records(cfg.capacity * (self.link_count + FURTHER_LINKS))
         self.past = kernels.PastContacts()
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
@@ -86,12 +88,13 @@ class ContactSearch:
             setattr(law, name, getattr(cfg, name))
         return law
 
-    def _candidates(self, capacity: int) -> kernels.Candidates:
+    def _candidates(self, patches: int) -> kernels.Candidates:
         shape = (self.num_envs, self.link_count)
         candidates = kernels.Candidates()
-        candidates.capacity = capacity
-        candidates.face = wp.zeros((*shape, capacity), dtype=int, device=self.device)
-        candidates.distance = wp.zeros((*shape, capacity), dtype=float, device=self.device)
+        candidates.patch_faces = PATCH_FACES
+        candidates.patch = wp.zeros((*shape, patches), dtype=int, device=self.device)
+        candidates.patches = wp.zeros(shape, dtype=int, device=self.device)
+        candidates.distance = wp.zeros((*shape, patches * PATCH_FACES), dtype=float, device=self.device)
         candidates.count = wp.zeros(shape, dtype=int, device=self.device)
         return candidates
 
@@ -174,18 +177,28 @@ class ContactSearch:
             outputs=[self.bounds],
             device=self.device,
         )
+        links_of = (self.links, self.surface)
         wp.launch(
-            kernels.find_candidates,
+            kernels.find_patches,
             (worlds, links),
-            inputs=[x, body_q, self.links, self.surface, self.bounds, self.law, self.ring, self.ring_distance],
+            inputs=[body_q, *links_of, self.bounds, self.law, self.ring, self.ring_distance],
             outputs=[self.candidates],
             device=self.device,
         )
+        wp.launch(
+            kernels.face_distances,
+            self.candidates.distance.shape,
+            inputs=[x, body_q, *links_of, self.law],
+            outputs=[self.candidates],
+            device=self.device,
+        )
+        outputs = [self.candidates, self.records.dropped]
+        wp.launch(kernels.count_candidates, (worlds, links), inputs=[], outputs=outputs, device=self.device)
         wp.launch(kernels.allot_slots, worlds, inputs=[self.candidates], outputs=[self.records], device=self.device)
         wp.launch(
             kernels.fill_slots,
             (worlds, links + 1),
-            inputs=[self.candidates, self.past],
+            inputs=[self.surface, self.candidates, self.past],
             outputs=[self.records],
             device=self.device,
         )

@@ -44,12 +44,13 @@ class Bounds:
 
 @wp.struct
 class Candidates:
-    """Faces near each link."""
+    """Patches near each link, up to Q of them, and the distances of their faces, up to F each."""
 
-    capacity: int  # of one link, C
-    face: wp.array3d[int]  # shape (W, L, C)
-    distance: wp.array3d[float]  # from the link's axis [m], shape (W, L, C)
-    count: wp.array2d[int]  # of all, also beyond the capacity, shape (W, L)
+    patch: wp.array3d[int]  # twice the patch, and 1 more where its faces count from either side, shape (W, L, Q)
+    patches: wp.array2d[int]  # number of them, also beyond Q, shape (W, L)
+    distance: wp.array3d[float]  # of each patch's faces from the link's axis, FAR for none [m], shape (W, L, Q*F)
+    count: wp.array2d[int]  # faces that are near, shape (W, L)
+    patch_faces: int  # F
 
 
 @wp.kernel
@@ -181,9 +182,14 @@ def face_distance(
     return FAR
 
 
+@wp.func
+def link_axis(body_q: wp.array[wp.transform], row: int, half_length: float) -> wp.vec3:
+    """Half the axis of the link in ``row`` [m]."""
+    return wp.transform_vector(body_q[row], wp.vec3(0.0, 0.0, half_length))
+
+
 @wp.kernel
-def find_candidates(
-    x: wp.array2d[wp.vec3],
+def find_patches(
     body_q: wp.array[wp.transform],
     links: LinkShapes,
     surface: LumenSurface,
@@ -193,7 +199,46 @@ def find_candidates(
     ring_distance: wp.array2d[float],
     candidates: Candidates,
 ):
-    """Find the faces near each link, wherever along the colon they are. Launch (W, L).
+    """Find the patches near each link, wherever along the colon they are. Launch (W, L).
+
+    Args:
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        bounds: Spheres around rings and patches.
+        law: Contact law.
+        ring: Ring of each link, shape (W, L).
+        ring_distance: Distance from its center, FAR for links outside the anus [m], shape (W, L).
+        candidates: ``patch`` and ``patches`` are written.
+    """
+    w, link = wp.tid()
+    n = int(0)
+    if ring_distance[w, link] < FAR:
+        row = w * ring.shape[1] + link
+        center = wp.transform_get_translation(body_q[row])
+        axis = link_axis(body_q, row, links.half_length[link])
+        limit = links.radius[link] + law.wall_radius + law.search_gap
+        for r in range(bounds.ring.shape[1]):
+            if sphere_reached(bounds.ring[w, r], center, axis, limit):
+                both_sides = int(wp.abs(r - ring[w, link]) <= surface.reach)
+                for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
+                    if sphere_reached(bounds.patch[w, p], center, axis, limit):
+                        if n < candidates.patch.shape[2]:
+                            candidates.patch[w, link, n] = 2 * p + both_sides
+                        n += 1
+    candidates.patches[w, link] = n
+
+
+@wp.kernel
+def face_distances(
+    x: wp.array2d[wp.vec3],
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    surface: LumenSurface,
+    law: ContactLaw,
+    candidates: Candidates,
+):
+    """Measure the distance of the faces of the patches near each link. Launch (W, L, Q*F).
 
     Far along the colon from the link's own ring, faces count that have the link on their lumen's side: the wall
     gathered around the link, but not the outside of a neighboring loop.
@@ -203,31 +248,44 @@ def find_candidates(
         body_q: Link poses, shape (W*L,).
         links: Capsules of one world.
         surface: Inner faces of one world.
-        bounds: Spheres around rings and patches.
         law: Contact law.
-        ring: Ring of each link, shape (W, L).
-        ring_distance: Distance from its center, FAR for links outside the anus [m], shape (W, L).
-        candidates: Faces and distances; written.
+        candidates: Patches near each link; ``distance`` is written.
+    """
+    w, link, m = wp.tid()
+    k = m // candidates.patch_faces
+    if k >= candidates.patches[w, link]:
+        return
+    code = candidates.patch[w, link, k]
+    face = surface.patch_start[code // 2] + m - k * candidates.patch_faces
+    d = float(FAR)
+    if face < surface.patch_start[code // 2 + 1]:
+        row = w * candidates.patches.shape[1] + link
+        center = wp.transform_get_translation(body_q[row])
+        axis = link_axis(body_q, row, links.half_length[link])
+        limit = links.radius[link] + law.wall_radius + law.search_gap
+        d = face_distance(surface, face, x, w, center, axis, limit, code % 2 == 1)
+    candidates.distance[w, link, m] = d
+
+
+@wp.kernel
+def count_candidates(candidates: Candidates, dropped: wp.array[int]):
+    """Count the faces near each link. Launch (W, L).
+
+    Args:
+        candidates: Distances of the faces of the patches near each link; ``count`` is written.
+        dropped: Contacts that found no room, shape (W,); the faces of patches beyond Q are added to it.
     """
     w, link = wp.tid()
+    patches = candidates.patches[w, link]
+    room = candidates.patch.shape[2]
+    if patches > room:
+        wp.atomic_add(dropped, w, (patches - room) * candidates.patch_faces)
+        candidates.patches[w, link] = room
+        patches = room
     n = int(0)
-    if ring_distance[w, link] < FAR:
-        pose = body_q[w * ring.shape[1] + link]
-        center = wp.transform_get_translation(pose)
-        axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
-        limit = links.radius[link] + law.wall_radius + law.search_gap
-        for r in range(bounds.ring.shape[1]):
-            if sphere_reached(bounds.ring[w, r], center, axis, limit):
-                near = wp.abs(r - ring[w, link]) <= surface.reach
-                for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if sphere_reached(bounds.patch[w, p], center, axis, limit):
-                        for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
-                            d = face_distance(surface, f, x, w, center, axis, limit, near)
-                            if d < FAR:
-                                if n < candidates.capacity:
-                                    candidates.face[w, link, n] = f
-                                    candidates.distance[w, link, n] = d
-                                n += 1
+    for m in range(patches * candidates.patch_faces):
+        if candidates.distance[w, link, m] < FAR:
+            n += 1
     candidates.count[w, link] = n
 
 
@@ -241,7 +299,7 @@ def allot_slots(candidates: Candidates, records: ContactRecords):
     for link in range(links):
         records.start[w, link] = slot
         wanted = candidates.count[w, link]
-        given = wp.min(wp.min(wanted, candidates.capacity), records.capacity - slot)
+        given = wp.min(wanted, records.capacity - slot)
         dropped += wanted - given
         slot += given
     records.start[w, links] = slot
@@ -334,10 +392,11 @@ def past_slide(past: PastContacts, face: int, link: int, w: int, capacity: int) 
 
 
 @wp.kernel
-def fill_slots(candidates: Candidates, past: PastContacts, records: ContactRecords):
+def fill_slots(surface: LumenSurface, candidates: Candidates, past: PastContacts, records: ContactRecords):
     """Copy the candidates into the slots of their links. Launch (W, L + 1); the last frees what is left over.
 
     Args:
+        surface: Inner faces of one world.
         candidates: Faces near each link.
         past: Contacts of the last step, from which friction goes on.
         records: Contacts; ``link``, ``face``, ``distance`` and ``slide`` are written.
@@ -348,13 +407,18 @@ def fill_slots(candidates: Candidates, past: PastContacts, records: ContactRecor
         for k in range(records.start[w, link], records.capacity):
             records.link[first + k] = -1
         return
-    start = records.start[w, link]
-    for k in range(start, records.start[w, link + 1]):
-        face = candidates.face[w, link, k - start]
-        records.link[first + k] = link
-        records.face[first + k] = face
-        records.distance[first + k] = candidates.distance[w, link, k - start]
-        records.slide[first + k] = past_slide(past, face, link, w, records.capacity)
+    slot = first + records.start[w, link]
+    end = first + records.start[w, link + 1]
+    for m in range(candidates.patches[w, link] * candidates.patch_faces):
+        d = candidates.distance[w, link, m]
+        if d < FAR and slot < end:
+            patch = m // candidates.patch_faces
+            face = surface.patch_start[candidates.patch[w, link, patch] // 2] + m - patch * candidates.patch_faces
+            records.link[slot] = link
+            records.face[slot] = face
+            records.distance[slot] = d
+            records.slide[slot] = past_slide(past, face, link, w, records.capacity)
+            slot += 1
 
 
 @wp.kernel
