@@ -67,7 +67,8 @@ class ContactCfg:
         Raises:
             ValueError: If a value is out of its bounds.
         """
-        require_positive(self, "stiffness", unit="N/m")
+        require_positive(self, "stiffness", "friction_stiffness", unit="N/m")
+        require_at_least(self, 1, "static_friction")
         require_positive(self, "hardening", "search_gap", unit="m")
         require_positive(self, "slip_velocity", unit="m/s")
         require_non_negative(self, "damping", unit="N s/m")
