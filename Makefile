@@ -6,7 +6,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUN := $(BIN)/python
-CODE := source scripts tests docs/conf.py
+CODE := source scripts tests docs/conf.py docs/_ext
 
 .PHONY: help setup demo test test-all lint format docs assets clean
 .DEFAULT_GOAL := help

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "source"))
+sys.path[:0] = [str(ROOT / "source"), str(ROOT / "docs" / "_ext")]
 
 from sphinx.ext.napoleon.docstring import GoogleDocstring  # noqa: E402
 
@@ -26,11 +26,13 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinx.ext.mathjax",
     "sphinx.ext.apidoc",
     "sphinx.ext.viewcode",
+    "mathml",
+    "reference_pages",
 ]
 exclude_patterns = ["_build"]
+html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 napoleon_google_docstring = True
