@@ -58,4 +58,5 @@ autodoc_preserve_defaults = True
 
 html_theme = "furo"
 html_title = f"ARCGym {version}"
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["arcgym.css"]

@@ -19,7 +19,7 @@ def inline(translator: Any, node: nodes.math) -> None:
 
 def block(translator: Any, node: nodes.math_block) -> None:
     """Write an equation of its own."""
-    translator.body.append(f'<div class="math-block">{_mathml(node, "block")}</div>\n')
+    translator.body.append(f'<div class="equation">{_mathml(node, "block")}</div>\n')
     raise nodes.SkipNode
 
 
