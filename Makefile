@@ -50,4 +50,4 @@ assets: setup
 	$(RUN) scripts/tools/author_assets.py
 
 clean:
-	rm -rf docs/_build .mypy_cache .pytest_cache .ruff_cache build dist
+	rm -rf docs/_build docs/api docs/reference .mypy_cache .pytest_cache .ruff_cache build dist
