@@ -55,6 +55,8 @@ autodoc_default_options = {"ignore-module-all": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
+# Annotations name classes that only type checkers import by their last name, which several modules may share.
+suppress_warnings = ["ref.python"]
 
 html_theme = "furo"
 html_title = f"ARCGym {version}"
