@@ -6,7 +6,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUN := $(BIN)/python
-CODE := source scripts tests docs/conf.py
+CODE := source scripts tests docs/conf.py docs/_ext
 
 .PHONY: help setup demo test test-all lint format docs assets clean
 .DEFAULT_GOAL := help
@@ -50,4 +50,4 @@ assets: setup
 	$(RUN) scripts/tools/author_assets.py
 
 clean:
-	rm -rf docs/_build .mypy_cache .pytest_cache .ruff_cache build dist
+	rm -rf docs/_build docs/api docs/reference .mypy_cache .pytest_cache .ruff_cache build dist

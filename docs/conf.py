@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "source"))
+sys.path[:0] = [str(ROOT / "source"), str(ROOT / "docs" / "_ext")]
 
 from sphinx.ext.napoleon.docstring import GoogleDocstring  # noqa: E402
 
@@ -26,11 +26,13 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "sphinx.ext.mathjax",
     "sphinx.ext.apidoc",
     "sphinx.ext.viewcode",
+    "mathml",
+    "reference_pages",
 ]
 exclude_patterns = ["_build"]
+html_math_renderer = "mathml"
 myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 napoleon_google_docstring = True
@@ -53,7 +55,10 @@ autodoc_default_options = {"ignore-module-all": True}
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
+# Annotations name classes that only type checkers import by their last name, which several modules may share.
+suppress_warnings = ["ref.python"]
 
 html_theme = "furo"
 html_title = f"ARCGym {version}"
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["arcgym.css"]

@@ -68,6 +68,19 @@ def test_empty_range_is_refused():
 
 
 @one_thread()
+def test_learning_lowers_the_critics_loss():
+    runner = make_runner(learning_starts=64)
+    runner.learn(2)
+    torch.manual_seed(0)
+    batch = runner.alg.replay.sample(64)
+    before = float(runner.alg.critic_loss(batch).detach())
+    for _ in range(30):
+        runner.alg.step_on(batch)
+    assert float(runner.alg.critic_loss(batch).detach()) < before
+
+
+@pytest.mark.slow
+@one_thread()
 def test_solves_the_dot():
     runner = make_runner(num_envs=32)
     runner.learn(32)

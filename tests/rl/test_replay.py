@@ -89,6 +89,23 @@ def test_each_frame_is_stored_once():
     assert make_replay(Episodes()).num_bytes == 20 * 3 * (8 * 2 + 4)
 
 
+def test_another_order_of_frames_is_noticed():
+    """Newest first instead of oldest first shows once three frames of an episode are known."""
+    episodes = Episodes()
+    replay = make_replay(episodes)
+
+    def add_reversed() -> None:
+        obs = episodes.obs.clone()
+        obs["policy"] = obs["policy"].unflatten(1, (STACK, 2)).flip(1).flatten(1, 2)
+        replay.add(obs, torch.zeros(3, 1), torch.zeros(3), *[torch.zeros(3)] * 2, None)
+        episodes.obs = episodes.observe()
+
+    add_reversed()
+    add_reversed()
+    with pytest.raises(ValueError, match="'policy' is not its last 3 frames, oldest first"):
+        add_reversed()
+
+
 def test_memory_is_taken_with_the_first_transition():
     episodes = Episodes()
     replay = make_replay(episodes)

@@ -113,12 +113,15 @@ class ReplayBuffer:
             final_obs: Observations after the step and before the reset; needed where ``time_outs``.
 
         Raises:
-            UsageError: If a time-out comes without final observations.
+            UsageError: If a time-out comes without final observations, or, looked at in the first steps, an image group
+                is not the stack that was configured.
         """
         self._allocate()
         done, time_outs = dones.to(self.device) > 0, time_outs.to(self.device) > 0
         row = self._count % self.num_rows
         self._write(row, self._worlds, obs)
+        if self.num_transitions < _CHECKED_STEPS * self.num_envs:
+            self._check_rebuilt(obs)
         self._actions[row, self._worlds] = actions.to(self.device)
         self._rewards[row, self._worlds] = rewards.to(self.device)
         self._terminated[row, self._worlds] = done & ~time_outs
@@ -183,6 +186,17 @@ class ReplayBuffer:
             store[row, world] = self._newest(name, obs[name]).to(self.device)
         self._age[row, world] = self._steps[world]
 
+    def _check_rebuilt(self, obs: TensorDict) -> None:
+        """Compare the observations with what :meth:`sample` would make of the frames stored so far."""
+        is_known = self._steps >= self._history
+        rebuilt = self._observations(self._count, self._worlds)
+        for name, stack in self.frame_stacks.items():
+            if not torch.equal(rebuilt[name][is_known], obs[name].to(self.device)[is_known]):
+                raise UsageError(
+                    f"Group '{name}' is not its last {stack} frames, oldest first: set agent.algorithm.frame_stacks as "
+                    "the task's history_length, or leave the group out to store it whole."
+                )
+
     def _add_final(self, world: torch.Tensor, final_obs: dict[str, torch.Tensor] | None) -> None:
         if len(world) == 0:
             return
@@ -238,6 +252,7 @@ class ReplayBuffer:
         return TensorDict(values, batch_size=[len(index)], device=self.device)
 
 
+_CHECKED_STEPS = 100
 _MAX_REDRAWS = 10_000
 _STATE = {"_obs", "_actions", "_rewards", "_terminated", "_is_start", "_age", "_count", "num_transitions"}
 

@@ -339,6 +339,7 @@ class RslRlOnPolicyRunnerCfg:
         require_at_least(self, 1, "num_steps_per_env", "max_iterations", "save_interval")
         require(self, "logger", ("tensorboard", *LOG_WRITERS))
         require_positive(self, "clip_actions")
+        require_non_negative(self, "final_learning_rate")
         for name in ("experiment_name", "run_name"):
             value = getattr(self, name)
             if "/" in value or value.startswith("."):

@@ -19,7 +19,7 @@ class Loop:
     """Shape of a shaft."""
 
     turning: float
-    """Sum of the angles between neighboring parts, the integral of |curvature| [deg]."""
+    """Sum of the angles between neighboring parts, the integral of the absolute curvature [deg]."""
     writhe: float
     """Gauss's double integral over the shaft: 0 for a plane curve, about -1 or 1 for a tight loop that crosses itself.
     """

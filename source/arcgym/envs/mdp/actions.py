@@ -30,6 +30,9 @@ class VelocityAction(ActionTerm):
     axes: tuple[str, ...] = ()
     """Names of all axes, length D."""
 
+    units: tuple[str, ...] = ()
+    """Units of the commanded values, length D."""
+
     def __init__(self, cfg: ActionTermCfg, env: ManagerBasedEnv, scale: Sequence[float], fixed: dict[int, float]):
         """Allocate the action buffers.
 
@@ -60,6 +63,11 @@ class VelocityAction(ActionTerm):
         return [self.axes[axis] for axis in self._free]
 
     @property
+    def axis_units(self) -> list[str]:
+        """Unit of what each raw action commands, length A."""
+        return [self.units[axis] for axis in self._free]
+
+    @property
     def raw_actions(self) -> torch.Tensor:
         """Actions as the policy gave them, shape (N, A)."""
         return self._raw
@@ -86,6 +94,7 @@ class TipVelocityAction(VelocityAction):
 
     cfg: TipVelocityActionCfg
     axes = ("right", "up", "forward", "pitch", "yaw", "roll")
+    units = ("m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s")
 
     def __init__(self, cfg: TipVelocityActionCfg, env: ManagerBasedEnv) -> None:
         """Find the actuator, and fix the forward velocity if the configuration does."""
@@ -107,6 +116,7 @@ class InsertionAction(VelocityAction):
 
     cfg: InsertionActionCfg
     axes = ("insertion", "roll", "pitch", "yaw")
+    units = ("m/s", "rad/s", "rad/s", "rad/s")
 
     def __init__(self, cfg: InsertionActionCfg, env: ManagerBasedEnv) -> None:
         """Find the actuators, and fix the insertion velocity if the configuration does."""

@@ -154,5 +154,6 @@ class RslRlDistributionalSacAlgorithmCfg(RslRlSacAlgorithmCfg):
     num_atoms: int = 101
     """Atoms of the distribution of the return."""
 
-    value_range: list[float] = [-10.0, 40.0]
-    """First and last atom, in units of discounted return. Widen it when ``Loss/value`` comes near an end."""
+    value_range: list[float] = [-25.0, 25.0]
+    """First and last atom, in units of discounted return; untrained critics answer its middle. Widen it when
+    ``Loss/value`` comes near an end."""

@@ -46,7 +46,7 @@ class DistributionalSAC(SAC):
     """
 
     def __init__(
-        self, *args: Any, num_atoms: int = 101, value_range: tuple[float, float] = (-10.0, 40.0), **kwargs: Any
+        self, *args: Any, num_atoms: int = 101, value_range: tuple[float, float] = (-25.0, 25.0), **kwargs: Any
     ):
         """Build SAC; other arguments as there.
 
