@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""A short endoscope for tests: the shipped one of its kind, cut to a few links."""
+"""A short endoscope for tests: the shipped one of its kind, cut to a few links, its shaft's twice as long."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ def tiny_scope_spec(kind: str = "proximal", links: int = 6) -> EndoscopeSpec:
     end, tip = len(spec.link_length), links // 2
     kept = np.r_[end - TIP_LINKS - (links - tip) : end - TIP_LINKS, end - tip : end]
     hinges = kept[1:] - 1
+    stretch = np.where(kept < end - TIP_LINKS, 2.0, 1.0)
     return replace(
         spec,
-        link_length=spec.link_length[kept],
+        link_length=spec.link_length[kept] * stretch,
         link_radius=spec.link_radius[kept],
-        link_mass=spec.link_mass[kept],
+        link_mass=spec.link_mass[kept] * stretch,
         bending_rigidity=spec.bending_rigidity[hinges],
         torsional_rigidity=spec.torsional_rigidity[hinges],
         hinge_limit=spec.hinge_limit[hinges],

@@ -29,11 +29,11 @@ def sim(tiny: TinySim) -> Simulation:
 
 def test_shapes_of_a_scope_with_a_shaft(sim: Simulation) -> None:
     scope, data = sim.endoscope, sim.endoscope.data
-    assert (scope.num_bodies, scope.num_joints, list(scope.actuators)) == (6, 9, ["base", "bending"])
-    hinges = ["hinge_1", "hinge_2", "twist_2", "hinge_3", "hinge_4", "twist_4", "hinge_5"]
-    assert scope.joint_names == ["slide", "roll", *hinges]
+    assert (scope.num_bodies, scope.num_joints, list(scope.actuators)) == (6, 13, ["base", "bending"])
+    bends = [f"bend_{axis}_{hinge}" for hinge in range(1, 6) for axis in "xy"]
+    assert scope.joint_names == ["slide", "roll", *bends[:8], "twist_4", *bends[8:]]
     assert scope.body_names == [f"link_{i}" for i in range(6)]
-    assert data.joint_pos.shape == data.joint_vel.shape == data.joint_pos_target.shape == (2, 9)
+    assert data.joint_pos.shape == data.joint_vel.shape == data.joint_pos_target.shape == (2, 13)
     assert data.body_pos_w.shape == data.body_lin_vel_w.shape == data.link_force_w.shape == (2, 6, 3)
     assert data.body_quat_w.shape == (2, 6, 4) and data.link_force_peak.shape == (2, 6)
     assert data.tip_pos_w.shape == data.tip_lumen_direction_w.shape == data.tip_pull_force_w.shape == (2, 3)
@@ -93,7 +93,7 @@ def test_tip_velocity_includes_the_turn_of_its_link(tiny: TinySim) -> None:
 def test_joint_positions_share_memory_with_the_simulation(sim: Simulation) -> None:
     sim.endoscope.data.joint_pos[1, 0] = 0.01
     sim.forward()
-    assert sim.state.joint_q.numpy()[9] == np.float32(0.01)
+    assert sim.state.joint_q.numpy()[13] == np.float32(0.01)
     heights = sim.endoscope.data.tip_pos_w[:, 2]
     assert (heights[1] - heights[0]).item() == pytest.approx(0.01, abs=1e-6)
 
@@ -141,14 +141,14 @@ def test_friction_slows_its_own_world_only(tiny: TinySim) -> None:
 
 def test_rigidity_overrides_scale_the_hinges(tiny: TinySim) -> None:
     plain, soft = (tiny(scope=change).model.joint_target_ke.numpy() for change in ({}, {"shaft_rigidity": 0.0125}))
-    # Root, two shaft hinges of 0.025 N m^2, a twist, and the bending section.
-    np.testing.assert_allclose(soft[2:4], 0.5 * plain[2:4], rtol=1e-5)
-    np.testing.assert_array_equal(soft[4:], plain[4:])
+    # Root, two axes of two shaft hinges of 0.025 N m^2, and the bending section.
+    np.testing.assert_allclose(soft[2:6], 0.5 * plain[2:6], rtol=1e-5)
+    np.testing.assert_array_equal(soft[6:], plain[6:])
 
 
 def test_torsional_rigidity_scales_the_twists(tiny: TinySim) -> None:
     plain, soft = (tiny(scope=c).model.joint_target_ke.numpy() for c in ({}, {"torsional_rigidity": 0.21}))
-    twists = [4, 7]
+    twists = [10]
     np.testing.assert_allclose(soft[twists], 0.5 * plain[twists], rtol=1e-5)
     np.testing.assert_array_equal(np.delete(soft, twists), np.delete(plain, twists))
 

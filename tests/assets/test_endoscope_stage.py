@@ -15,12 +15,13 @@ from tiny_scope import write_tiny_scope
 
 from arcgym.anatomy import StageError
 from arcgym.assets.endoscope_spec import (
+    SHAFT_LIMIT,
     SHAFT_LINK,
     TIP_LINK,
     TORSIONAL_RIGIDITY,
     EndoscopeSpec,
     endoscope_specs,
-    hinge_axis,
+    hinge_levers,
     magnetic_spec,
     proximal_spec,
     shared_stiffness,
@@ -39,14 +40,10 @@ def test_round_trip(spec: EndoscopeSpec) -> None:
     assert stage.bending_links == spec.bending_links
     for name in ("link_length", "link_radius", "link_mass", "lights"):
         np.testing.assert_allclose(getattr(stage, name), getattr(spec, name), rtol=1e-6, err_msg=name)
-    for name in (
-        "hinge_stiffness",
-        "hinge_damping",
-        "hinge_limit",
-        "hinge_armature",
-        "stop_stiffness",
-        "twist_stiffness",
-    ):
+    for name in ("hinge_stiffness", "hinge_damping", "hinge_armature", "stop_stiffness"):
+        both = np.repeat(getattr(spec, name)[:, None], 2, axis=1)
+        np.testing.assert_allclose(getattr(stage, name), both, rtol=1e-6, err_msg=name)
+    for name in ("hinge_limit", "twist_stiffness", "lever"):
         np.testing.assert_allclose(getattr(stage, name), getattr(spec, name), rtol=1e-6, err_msg=name)
     assert stage.camera.position == pytest.approx(spec.camera.position)
     assert stage.camera.quaternion == pytest.approx(spec.camera.quaternion)
@@ -67,25 +64,37 @@ def test_committed_files_are_what_the_code_writes(tmp_path: Path) -> None:
 
 
 def test_proximal_dimensions() -> None:
-    """0.2 kg/m and more than 1.4 m; five hinges of the bending section share 180 degrees, five share 160."""
+    """0.2 kg/m and more than 1.4 m; the ten hinges of the bending section share 180 degrees, and 160 sideways."""
     spec = proximal_spec()
-    axes = np.array([hinge_axis(hinge) for hinge in range(1, len(spec.link_length))])[-10:]
     assert spec.total_length > 1.4
     assert spec.link_mass.sum() == pytest.approx(0.2 * spec.total_length)
-    assert spec.hinge_stiffness[20] == pytest.approx(0.025 / (2 * SHAFT_LINK))
-    assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / (2 * TIP_LINK))
-    assert spec.hinge_limit[-10:][axes == "X"].sum() == pytest.approx(math.radians(180))
-    assert spec.hinge_limit[-10:][axes == "Y"].sum() == pytest.approx(math.radians(160))
+    assert spec.hinge_stiffness[20] == pytest.approx(0.025 / SHAFT_LINK)
+    assert spec.hinge_stiffness[-1] == pytest.approx(0.012 / TIP_LINK)
+    np.testing.assert_allclose(spec.hinge_limit[-10:].sum(axis=0), np.radians([180, 160]))
+
+
+def test_shaft_follows_a_bend_of_15_millimeters() -> None:
+    """Chords of 12.5 mm on a circle of radius 15 mm turn by 2 asin(12.5 / 30) = 0.86 rad each."""
+    turn = 2.0 * math.asin(0.5 * SHAFT_LINK / 0.015)
+    assert turn == pytest.approx(0.86, abs=0.001)
+    assert turn < SHAFT_LIMIT
+
+
+def test_hinges_stand_for_half_of_their_links_but_for_a_driven_base() -> None:
+    lengths = np.array([0.2, 0.02, 0.04])
+    np.testing.assert_allclose(hinge_levers(lengths, "slide_roll"), [0.01, 0.03])
+    np.testing.assert_allclose(hinge_levers(lengths, "free"), [0.11, 0.03])
 
 
 def test_twist_of_the_whole_shaft_is_that_of_its_rigidity() -> None:
-    """Every second hinge twists; their compliances in series are those of the shaft between first and last centre."""
+    """Every fourth hinge twists; in series they are as compliant as all from the base to the last link's centre."""
     spec = proximal_spec()
     stiffness = spec.twist_stiffness
-    assert (stiffness[0::2] == 0.0).all() and (stiffness[1::2] > 0.0).all()
-    length = spec.total_length - 0.5 * (spec.link_length[0] + spec.link_length[-1])
-    assert (1.0 / stiffness[1::2]).sum() == pytest.approx(length / TORSIONAL_RIGIDITY)
-    assert stiffness[21] == pytest.approx(TORSIONAL_RIGIDITY / (2 * SHAFT_LINK))
+    twists = np.arange(1, len(stiffness) + 1) % 4 == 0
+    assert (stiffness[~twists] == 0.0).all() and (stiffness[twists] > 0.0).all()
+    length = spec.total_length - spec.link_length[0] - 0.5 * spec.link_length[-1]
+    assert (1.0 / stiffness[twists]).sum() == pytest.approx(length / TORSIONAL_RIGIDITY)
+    assert stiffness[23] == pytest.approx(TORSIONAL_RIGIDITY / (4 * SHAFT_LINK))
 
 
 def test_hinges_behind_the_last_that_twists_go_to_it() -> None:
@@ -139,29 +148,29 @@ DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
     ),
     "no_rigid_body": (
         lambda usd: link(usd, "link_03").RemoveAPI(UsdPhysics.RigidBodyAPI),
-        ["hinge_03", "physics:body1", "link_03"],
+        ["bend_x_03", "physics:body1", "link_03"],
     ),
     "no_collider": (
         lambda usd: usd.GetPrimAtPath("/Endoscope/Links/link_02/Shape").RemoveAPI(UsdPhysics.CollisionAPI),
         ["link_02/Shape", "CollisionAPI"],
     ),
     "massless": (lambda usd: link(usd, "link_01").GetAttribute("physics:mass").Set(0.0), ["link_01", "physics:mass"]),
-    "missing_hinge": (lambda usd: usd.RemovePrim("/Endoscope/Joints/hinge_02"), ["hinge_02", "no such prim"]),
+    "missing_hinge": (lambda usd: usd.RemovePrim("/Endoscope/Joints/bend_y_02"), ["bend_y_02", "no such prim"]),
     "no_drive": (
-        lambda usd: joint(usd, "hinge_02").RemoveAPI(UsdPhysics.DriveAPI, "angular"),
-        ["hinge_02", "PhysicsDriveAPI:angular"],
+        lambda usd: joint(usd, "bend_x_02").RemoveAPI(UsdPhysics.DriveAPI, "angular"),
+        ["bend_x_02", "PhysicsDriveAPI:angular"],
     ),
     "wrong_axis": (
-        lambda usd: joint(usd, "hinge_02").GetAttribute("physics:axis").Set("X"),
-        ["hinge_02", "physics:axis", "'Y'"],
+        lambda usd: joint(usd, "bend_y_02").GetAttribute("physics:axis").Set("X"),
+        ["bend_y_02", "physics:axis", "'Y'"],
     ),
     "locked_slide": (
         lambda usd: joint(usd, "root").GetAttribute("limit:transZ:physics:low").Set(9.0),
         ["/root", "limit:transZ:physics:low", "low < high"],
     ),
     "shifted_hinge": (
-        lambda usd: joint(usd, "hinge_01").GetAttribute("physics:localPos0").Set((0.0, 0.0, 0.03)),
-        ["hinge_01", "physics:localPos0", f"{SHAFT_LINK / 2:g}"],
+        lambda usd: joint(usd, "bend_x_01").GetAttribute("physics:localPos0").Set((0.0, 0.0, 0.03)),
+        ["bend_x_01", "physics:localPos0", f"{SHAFT_LINK:g}"],
     ),
     "degrees_of_view": (
         lambda usd: usd.GetPrimAtPath("/Endoscope/Links/link_05/Camera").GetAttribute("arcgym:fieldOfView").Set(150.0),

@@ -62,7 +62,7 @@ def test_wall_particles_are_the_stage_s_vertices(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "coords", "dofs"), [("capsule", 7, 6), ("magnetic", 2 + 7, 2 + 7), ("proximal", 2 + 7, 2 + 7)]
+    ("kind", "coords", "dofs"), [("capsule", 7, 6), ("magnetic", 2 + 11, 2 + 11), ("proximal", 2 + 11, 2 + 11)]
 )
 def test_root_coordinates_come_first(tmp_path: Path, kind: str, coords: int, dofs: int) -> None:
     path = write_tiny_scope(tmp_path / "scope.usda", kind)
@@ -138,22 +138,22 @@ SCOPE_DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
         ["/Endoscope", "PhysicsLimitAPI"],
     ),
     "weak_hinge": (
-        lambda usd: override(usd, "/Endoscope/Joints/hinge_02", "drive:angular:physics:stiffness", 1.0e-3),
-        ["hinge_02", "stiffness", "0.0572958", f"{0.025 / (2 * SHAFT_LINK):g}"],
+        lambda usd: override(usd, "/Endoscope/Joints/bend_x_02", "drive:angular:physics:stiffness", 1.0e-3),
+        ["bend_x_02", "stiffness", "0.0572958", f"{0.025 / (2 * SHAFT_LINK):g}"],
     ),
     "heavy_link": (lambda usd: override(usd, "/Endoscope/Links/link_03", "physics:mass", 1.0), ["link_03", "mass"]),
     "thin_link": (lambda usd: override(usd, "/Endoscope/Links/link_03/Shape", "radius", 0.001), ["Shape", "radius"]),
     "wide_limit": (
-        lambda usd: override(usd, "/Endoscope/Joints/hinge_05", "physics:upperLimit", 90.0),
-        ["hinge_05", "physics:upperLimit"],
+        lambda usd: override(usd, "/Endoscope/Joints/bend_x_05", "physics:upperLimit", 90.0),
+        ["bend_x_05", "physics:upperLimit"],
     ),
     "disabled_hinge": (
-        lambda usd: override(usd, "/Endoscope/Joints/hinge_03", "physics:jointEnabled", False),
-        ["/Endoscope", "jointEnabled"],
+        lambda usd: override(usd, "/Endoscope/Joints/bend_x_03", "physics:jointEnabled", False),
+        ["/Endoscope/Joints", "REVOLUTE"],
     ),
     "weak_push": (
         lambda usd: override(usd, "/Endoscope/Joints/root", "drive:transZ:physics:maxForce", 3.0),
-        ["/Endoscope/Joints/root", "maxForce", "25"],
+        ["/Endoscope/Joints/root", "maxForce", "43"],
     ),
 }
 
@@ -202,9 +202,9 @@ class ScopeRun:
 def test_cantilever_bends_as_euler_bernoulli(tmp_path: Path) -> None:
     """0.05 N across the tip of 8 links of 20 mm, EI 0.025 N m^2; world 0 along Y, world 1 along X.
 
-    Hinges about X (1, 3, 5, 7) lie 7, 5, 3, 1 links from the tip: sum of squares 84, times (20 mm)^2 F / k with
-    k = 0.625 N m/rad is 2.688 mm. Euler-Bernoulli: F (8 x 20 mm)^3 / (3 EI) = 2.731 mm, 1.6 % more.
-    Hinges about Y (2, 4, 6) lie 6, 4, 2 links away and stand for 7 links: 1.792 mm against 1.829 mm.
+    Hinge 1 at the rigid first link is 7 links from the tip and stands for half a link, 2 k; the others, 6 to 1 links
+    away, have k = 1.25 N m/rad: (7^2 / 2 + 91) (20 mm)^2 F / k = 1.848 mm. Euler-Bernoulli: F (7 x 20 mm)^3 / (3 EI) =
+    1.829 mm, 1 % less.
     """
     links, length, rigidity, force = 8, 0.020, 0.025, 0.05
     spec = replace(
@@ -220,15 +220,14 @@ def test_cantilever_bends_as_euler_bernoulli(tmp_path: Path) -> None:
         wrench[world, -1] = np.r_[across, np.cross(half, across)]
     for state in scope.states:
         state.body_f.assign(wrench.reshape(-1, 6))
-    angles = scope.run(1.0)[:, scope.stage.bend_coords]
+    angles = scope.run(1.0)
+    bends = [angles[world, scope.stage.bend_coords[:, world]] for world in (0, 1)]
     to_tip = length * np.arange(links - 1, 0, -1)
-    deflection = np.abs([angles[0, 0::2] @ to_tip[0::2], angles[1, 1::2] @ to_tip[1::2]])
-    stiffness = rigidity / (2 * length)
-    discrete = force / stiffness * np.array([(to_tip[0::2] ** 2).sum(), (to_tip[1::2] ** 2).sum()])
-    beam = force * (length * np.array([links, links - 1])) ** 3 / (3 * rigidity)
-    np.testing.assert_allclose(discrete, [2.688e-3, 1.792e-3], rtol=1e-4)
-    np.testing.assert_allclose(deflection, discrete, rtol=2e-3)
-    np.testing.assert_allclose(deflection[0], beam[0], rtol=0.02)
+    discrete = force * length / rigidity * ((to_tip[1:] ** 2).sum() + 0.5 * to_tip[0] ** 2)
+    beam = force * (7 * length) ** 3 / (3 * rigidity)
+    assert discrete == pytest.approx(1.848e-3, rel=1e-3)
+    np.testing.assert_allclose(np.abs(bends) @ to_tip, discrete, rtol=2e-3)
+    assert discrete == pytest.approx(beam, rel=0.02)
 
 
 def test_hinge_stops_at_its_limit(tmp_path: Path) -> None:
@@ -237,18 +236,18 @@ def test_hinge_stops_at_its_limit(tmp_path: Path) -> None:
     target = scope.control.joint_target_q.numpy()
     target[-1] = 3.0
     scope.control.joint_target_q.assign(target)
-    limit = scope.stage.hinge_limit[-1]
+    limit = scope.stage.hinge_limit[-1, 1]
     assert scope.run(0.5)[0, -1] == pytest.approx((3.0 + 20.0 * limit) / 21.0, rel=0.01)
 
 
 def test_push_is_limited(tmp_path: Path) -> None:
-    """With its target 1 m ahead the slide (2000 N/m) pushes with 25 N, not 2000 N: at rest against 25 N."""
+    """With its target 1 m ahead the slide (2000 N/m) pushes with 43 N, not 2000 N: at rest against 43 N."""
     scope = ScopeRun(write_tiny_scope(tmp_path / "scope.usda"))
     target = scope.control.joint_target_q.numpy()
     target[0] = 1.0
     scope.control.joint_target_q.assign(target)
     wrench = np.zeros((scope.stage.num_links, 6), np.float32)
-    wrench[0, 2] = -25.0
+    wrench[0, 2] = -43.0
     for state in scope.states:
         state.body_f.assign(wrench)
     assert scope.run(0.1)[0, 0] == pytest.approx(0.0, abs=1e-4)

@@ -146,6 +146,23 @@ def test_twist_angle_is_torque_over_stiffness_for_every_hinge() -> None:
     assert turned == pytest.approx(0.18, abs=1e-4)
 
 
+def test_power_of_the_joints_is_the_gain_of_energy_with_three_axes() -> None:
+    """A drive's constant torque on the middle of three axes that are all turned: its work is the kinetic energy."""
+    free = {"limit_lower": -10.0, "limit_upper": 10.0}
+    rig = Rig([[turn("X", **free), turn("Y", **free), turn("Z", **free)]])
+    rig.place([0.5, 0.4, 0.7], [0.0, 0.0, 0.0])
+    torque = 0.01
+    rig.control.joint_f.assign(np.array([0.0, torque, 0.0], np.float32))
+    start = rig.state.joint_q.numpy()[1]
+    angle = rig.run(2000, 1e-4)[1]
+    speed = rig.state.body_qd.numpy()[0]
+    x, y, z, w = rig.state.body_q.numpy()[0, 3:]
+    rot = np.array(wp.quat_to_matrix(wp.quat(x, y, z, w))).reshape(3, 3)
+    spin = rot.T @ speed[3:]
+    energy = 0.5 * MASS * speed[:3] @ speed[:3] + 0.5 * spin @ (np.array(INERTIA) * spin)
+    assert energy == pytest.approx(torque * (angle - start), rel=0.01)
+
+
 def test_cantilever_bends_by_the_lever_of_every_hinge() -> None:
     """0.01 N across the end of three links of 0.2 m on hinges of 1 N m/rad: 6, 4 and 2 mrad."""
     rig = Rig([[turn("X", 1.0, 0.3)]] * 3)
@@ -154,8 +171,9 @@ def test_cantilever_bends_by_the_lever_of_every_hinge() -> None:
 
 
 def test_poses_are_those_of_newtons_kinematics() -> None:
-    rig = Rig([[turn("X"), turn("Z")], [turn("Y")], [turn("X"), turn("Z")]], free=True)
-    rig.place([0.1, 0.2, 0.3, 0.0, 0.6, 0.0, 0.8, 0.3, 0.2, -0.4, 0.5, 0.1], [0.3] * 6 + [1.0, -2.0, 0.5, 1.0, 2.0])
+    rig = Rig([[turn("X"), turn("Z")], [turn("Y")], [turn("X"), turn("Y"), turn("Z")]], free=True)
+    angles, rates = [0.3, 0.2, -0.4, 0.5, 0.4, 0.1], [1.0, -2.0, 0.5, 1.0, -1.0, 2.0]
+    rig.place([0.1, 0.2, 0.3, 0.0, 0.6, 0.0, 0.8, *angles], [0.3] * 6 + rates)
     rig.run(20)
     pose, twist = rig.state.body_q.numpy(), rig.state.body_qd.numpy()
     rig.place()
@@ -223,5 +241,5 @@ def test_ball_joints_are_refused() -> None:
     builder = newton.ModelBuilder()
     link(builder)
     builder.add_articulation([builder.add_joint_ball(-1, 0)])
-    with pytest.raises(ValueError, match=r"Joint 0 \(BALL\) has .* takes up to two of REVOLUTE, PRISMATIC, D6"):
+    with pytest.raises(ValueError, match=r"Joint 0 \(BALL\) is of a kind .* takes REVOLUTE, PRISMATIC, D6"):
         SolverArticulatedChain(builder.finalize(device="cpu"))

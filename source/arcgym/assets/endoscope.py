@@ -16,7 +16,7 @@ from arcgym.assets.actuators.actuator_base import ActuatorBase
 from arcgym.assets.endoscope_cfg import EndoscopeCfg
 from arcgym.assets.endoscope_data import EndoscopeData
 from arcgym.assets.endoscope_spec import capsule_half_height, shared_stiffness
-from arcgym.assets.endoscope_stage import read_endoscope
+from arcgym.assets.endoscope_stage import TURNS, read_endoscope
 from arcgym.assets.force_windows import ForceWindows, force_windows
 from arcgym.assets.usd_loading import add_endoscope_usd
 from arcgym.utils.class_type import construct
@@ -60,9 +60,9 @@ class Endoscope:
 
     @property
     def joint_names(self) -> list[str]:
-        """Names of the joint coordinates: the root's, then those of each hinge, its bending before its twist."""
+        """Names of the joint coordinates: the root's, then every hinge's ``bend_x``, ``bend_y``, ``twist``."""
         root = ("slide", "roll") if self.stage.root == "slide_roll" else FREE_COORDS
-        return [*root, *(f"{'twist' if twist else 'hinge'}_{hinge}" for hinge, twist in self.stage.turns)]
+        return [*root, *(f"{TURNS[axis]}_{hinge}" for hinge, axis in self.stage.turns)]
 
     @property
     def num_joints(self) -> int:
@@ -115,13 +115,12 @@ class Endoscope:
 
     def _override_rigidity(self, builder: newton.ModelBuilder, dofs: Sequence[int]) -> None:
         stage, cfg = self.stage, self.cfg
-        lever = 0.5 * (stage.link_length[:-1] + stage.link_length[1:])
         first_bent = stage.num_links - stage.bending_links
-        twist = shared_stiffness(lever / (cfg.torsional_rigidity or 1.0), stage.twist_stiffness > 0.0)
-        for dof, (hinge, twists) in zip(dofs[len(dofs) - len(stage.turns) :], stage.turns, strict=True):
+        twist = shared_stiffness(stage.lever / (cfg.torsional_rigidity or 1.0), stage.twist_stiffness > 0.0)
+        for dof, (hinge, axis) in zip(dofs[len(dofs) - len(stage.turns) :], stage.turns, strict=True):
             rigidity = cfg.tip_rigidity if hinge >= first_bent else cfg.shaft_rigidity
-            stiffness = None if rigidity is None else rigidity / (2.0 * lever[hinge - 1])
-            if twists:
+            stiffness = None if rigidity is None else rigidity / stage.lever[hinge - 1]
+            if axis == 2:
                 stiffness = None if cfg.torsional_rigidity is None else twist[hinge - 1]
             if stiffness is not None:
                 _scale_turn(builder, dof, stiffness / builder.joint_target_ke[dof])

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,15 +20,15 @@ from arcgym.assets.endoscope_spec import (
     DriveSpec,
     RootKind,
     capsule_half_height,
-    hinge_axis,
+    hinge_levers,
 )
 from arcgym.assets.endoscope_writer import (
     ENDOSCOPE_PATH,
     JOINTS_PATH,
     LINKS_PATH,
     ROOT_JOINT_PATH,
-    hinge_name,
-    twist_name,
+    TURNS,
+    turn_name,
 )
 
 
@@ -49,15 +49,15 @@ class EndoscopeStage:
     link_mass: np.ndarray
     """Real mass of each link [kg], shape (L,)."""
     hinge_stiffness: np.ndarray
-    """Stiffness of hinge i, which joins links i - 1 and i [N m/rad], at index i - 1, shape (L - 1,)."""
+    """Stiffness of hinge i about X and Y [N m/rad], at index i - 1: it joins links i - 1 and i, shape (L - 1, 2)."""
     hinge_damping: np.ndarray
-    """Damping of each hinge [N m s/rad], shape (L - 1,)."""
+    """Damping of each hinge [N m s/rad], shape (L - 1, 2)."""
     hinge_limit: np.ndarray
-    """Largest angle of each hinge to either side [rad], shape (L - 1,)."""
+    """Largest pitch and yaw of each hinge to either side [rad], shape (L - 1, 2)."""
     hinge_armature: np.ndarray
-    """Armature inertia of each hinge [kg m^2], shape (L - 1,)."""
+    """Armature inertia of each hinge [kg m^2], shape (L - 1, 2)."""
     stop_stiffness: np.ndarray
-    """Stiffness of each hinge beyond its limit [N m/rad], shape (L - 1,)."""
+    """Stiffness of each hinge beyond its limits [N m/rad], shape (L - 1, 2)."""
     twist_stiffness: np.ndarray
     """Stiffness of the twist at each hinge [N m/rad], 0 at those that do not twist, shape (L - 1,)."""
     twist_damping: np.ndarray
@@ -91,19 +91,24 @@ class EndoscopeStage:
         return 2 if self.root == "slide_roll" else 7
 
     @property
-    def turns(self) -> list[tuple[int, bool]]:
-        """(hinge number, whether it is its twist) of every joint coordinate behind the root's."""
+    def lever(self) -> np.ndarray:
+        """Length of shaft that each hinge stands for [m], shape (L - 1,)."""
+        return hinge_levers(self.link_length, self.root)
+
+    @property
+    def turns(self) -> list[tuple[int, int]]:
+        """(hinge number, axis 0 to 2 for X to Z) of every joint coordinate behind the root's."""
         hinges = enumerate(self.twist_stiffness, start=1)
-        return [(hinge, twist) for hinge, k in hinges for twist in ((False, True) if k > 0.0 else (False,))]
+        return [(hinge, axis) for hinge, k in hinges for axis in range(3 if k > 0.0 else 2)]
 
     @property
     def bend_coords(self) -> np.ndarray:
-        """Joint coordinate of the bending of each hinge, shape (L - 1,)."""
-        return self.root_coords + np.flatnonzero([not twist for _, twist in self.turns])
+        """Joint coordinates of the pitch and yaw of each hinge, shape (L - 1, 2)."""
+        return self.root_coords + np.flatnonzero([axis < 2 for _, axis in self.turns]).reshape(-1, 2)
 
     def by_turn(self, bend: np.ndarray, twist: np.ndarray) -> np.ndarray:
-        """Values of the hinges' bending and twist, shape (L - 1,) each, in the order of :attr:`turns`."""
-        return np.array([(twist if twists else bend)[hinge - 1] for hinge, twists in self.turns])
+        """Values of the hinges' bending, shape (L - 1, 2), and twist, shape (L - 1,), in the order of :attr:`turns`."""
+        return np.array([twist[hinge - 1] if axis == 2 else bend[hinge - 1, axis] for hinge, axis in self.turns])
 
 
 def read_endoscope(path: str | Path) -> EndoscopeStage:
@@ -113,6 +118,11 @@ def read_endoscope(path: str | Path) -> EndoscopeStage:
         StageError: If the file is missing or lacks something; names file, prim, attribute and the mend.
     """
     return _Reader(Path(path)).read()
+
+
+def _pairs(hinges: Sequence[Sequence[Usd.Prim]], value: Callable[[Usd.Prim], float]) -> np.ndarray:
+    """Return a number of the pitch and of the yaw of every hinge, shape (L - 1, 2)."""
+    return np.array([[value(turn) for turn in hinge] for hinge in hinges]).reshape(-1, 2)
 
 
 class _Reader:
@@ -139,8 +149,7 @@ class _Reader:
         shapes = [self._prim(f"{prim.GetPath()}/Shape", UsdPhysics.CollisionAPI) for prim in links]
         radius = np.array([self._number(shape, "radius") for shape in shapes])
         self._check_shapes(shapes, length, radius)
-        hinges = [self._hinge(links, length, hinge) for hinge in range(1, len(links))]
-        drives = np.array([self._hinge_drive(hinge) for hinge in hinges]).reshape(-1, 2)
+        hinges = [[self._turn(links, length, hinge, axis) for axis in (0, 1)] for hinge in range(1, len(links))]
         twists = [self._twist(links, length, hinge) for hinge in range(1, len(links))]
         twist = np.array([(*self._hinge_drive(t), self._hinge_limit(t)) if t else (0.0,) * 3 for t in twists])
         twist = twist.reshape(-1, 3)
@@ -152,11 +161,11 @@ class _Reader:
             link_length=length,
             link_radius=radius,
             link_mass=np.array([self._mass(prim) for prim in links]),
-            hinge_stiffness=drives[:, 0],
-            hinge_damping=drives[:, 1],
-            hinge_limit=np.array([self._hinge_limit(hinge) for hinge in hinges]),
-            hinge_armature=np.array([self._number(hinge, "newton:armature") for hinge in hinges]),
-            stop_stiffness=np.degrees([self._number(hinge, "newton:limitStiffness") for hinge in hinges]),
+            hinge_stiffness=_pairs(hinges, lambda hinge: self._hinge_drive(hinge)[0]),
+            hinge_damping=_pairs(hinges, lambda hinge: self._hinge_drive(hinge)[1]),
+            hinge_limit=_pairs(hinges, self._hinge_limit),
+            hinge_armature=_pairs(hinges, lambda hinge: self._number(hinge, "newton:armature")),
+            stop_stiffness=np.degrees(_pairs(hinges, lambda hinge: self._number(hinge, "newton:limitStiffness"))),
             twist_stiffness=twist[:, 0],
             twist_damping=twist[:, 1],
             twist_limit=twist[:, 2],
@@ -189,29 +198,21 @@ class _Reader:
             raise self._error(link, "physics:mass", f"is {mass:g}", "Set the real mass of the link in kilograms.")
         return mass
 
-    def _hinge(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim:
-        """Return the prim of hinge number `hinge`, checked to join its two links end to end about the right axis."""
-        prim = self._turn(links, length, hinge, hinge_name(hinge))
-        if self._value(prim, "physics:axis") != hinge_axis(hinge):
-            raise self._error(prim, "physics:axis", "breaks the alternation", f"Set it to '{hinge_axis(hinge)}'.")
-        return prim
-
     def _twist(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int) -> Usd.Prim | None:
         """Return the prim of the twist at hinge number `hinge`, or None if it does not twist."""
-        if not self.usd.GetPrimAtPath(f"{JOINTS_PATH}/{twist_name(hinge)}"):
-            return None
-        prim = self._turn(links, length, hinge, twist_name(hinge))
-        if self._value(prim, "physics:axis") != "Z":
-            raise self._error(prim, "physics:axis", "is across the link", "Set it to 'Z'.")
-        return prim
+        there = self.usd.GetPrimAtPath(f"{JOINTS_PATH}/{turn_name(hinge, 2)}")
+        return self._turn(links, length, hinge, 2) if there else None
 
-    def _turn(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int, name: str) -> Usd.Prim:
-        """Return a joint of hinge number `hinge`, checked to join its two links end to end."""
-        prim = self._prim(f"{JOINTS_PATH}/{name}", UsdPhysics.RevoluteJoint)
+    def _turn(self, links: Sequence[Usd.Prim], length: np.ndarray, hinge: int, axis: int) -> Usd.Prim:
+        """Return a joint of hinge number `hinge`, checked to join its two links end to end about the right axis."""
+        prim = self._prim(f"{JOINTS_PATH}/{turn_name(hinge, axis)}", UsdPhysics.RevoluteJoint)
         self._expect_body(prim, "physics:body0", links[hinge - 1])
         self._expect_body(prim, "physics:body1", links[hinge])
         for attribute, end in (("physics:localPos0", length[hinge - 1]), ("physics:localPos1", -length[hinge])):
             self._expect(prim, attribute, self._value(prim, attribute)[2], 0.5 * end, "arcgym:length of its link")
+        if self._value(prim, "physics:axis") != "XYZ"[axis]:
+            found = f"is {self._value(prim, 'physics:axis')}"
+            raise self._error(prim, "physics:axis", found, f"Set it to '{'XYZ'[axis]}', as {TURNS[axis]} asks for.")
         return prim
 
     def _hinge_drive(self, hinge: Usd.Prim) -> tuple[float, float]:

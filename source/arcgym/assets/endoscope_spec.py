@@ -15,16 +15,21 @@ RootKind = Literal["free", "slide_roll"]
 
 BASE_LINK = 0.200
 """Length of the base link [m]: the part of the shaft that never enters the anus needs no hinges."""
-SHAFT_LINK = 0.025
-"""Length of a shaft link [m]. The chain follows bends down to a radius of about 3 cm; the scope's cost grows with
-the number of links."""
+SHAFT_LINK = 0.0125
+"""Length of a shaft link [m]. Every hinge bends both ways, so that the chain follows bends down to a radius of 13 mm;
+the scope's cost grows with the number of links."""
 TIP_LINK = 0.010
 """Length of a link of the distal section [m]."""
 TIP_LINKS = 10
 """Number of distal links: 10 cm, about the actively bending length of a colonoscope (van der Stap 2016, 8 cm)."""
 SCOPE_LENGTH = 1.5
 """Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside.
-With 59 links and 29 twists the chain has 89 degrees of freedom."""
+With 107 links and 26 twists the chain has 240 degrees of freedom."""
+SHAFT_LIMIT = 1.0
+"""Largest angle of a shaft's hinge to either side [rad]: chords of 12.5 mm then turn on a radius of
+12.5 mm / (2 sin 0.5) = 13 mm."""
+TWIST_EVERY = 4
+"""Every so many hinges one twists: every 50 mm of shaft. Torsion is smooth along the shaft, so it needs fewer."""
 TORSIONAL_RIGIDITY = 0.42
 """GJ of a colonoscope's shaft [N m^2/rad]: CF-140S, 68 to 88 N cm^2/deg at 24 C, less 7 % at 37 C (Flexural and
 torsional rigidity of colonoscopes)."""
@@ -65,10 +70,10 @@ class DriveSpec:
 class EndoscopeSpec:
     """Geometry, masses and elasticity of an endoscope with L rigid links, base first.
 
-    The links hang on hinges of alternating axes, X for odd i and Y for even i, where hinge i joins link i - 1 to
-    link i. Bending in one plane is thus carried by every second hinge, which stands for two lever lengths of shaft:
-    its stiffness is EI / (2 lever), with the lever the mean length of its two links. Even hinges also twist about the
-    link's Z axis, and stand for the shaft between them and the hinge that twisted last.
+    Hinge i joins link i - 1 to link i. It bends about the X axis (pitch), then about the Y axis it carries (yaw), and
+    stands for half of either link: its stiffness is EI / lever, with the lever the mean length of the two. Behind a
+    driven base, which is rigid as the hand that holds it, the first hinge stands for half of its second link alone.
+    Every fourth hinge also twists about the link's Z axis, and stands for the shaft since the one that twisted last.
     """
 
     name: str
@@ -86,18 +91,20 @@ class EndoscopeSpec:
     torsional_rigidity: np.ndarray
     """Torsional rigidity GJ of the shaft at each hinge [N m^2/rad], shape (L - 1,)."""
     hinge_limit: np.ndarray
-    """Largest angle of each hinge to either side [rad], shape (L - 1,)."""
+    """Largest pitch and yaw of each hinge to either side [rad], shape (L - 1, 2)."""
     camera: CameraSpec
     """Camera of the tip."""
     lights: np.ndarray
     """Positions of the two lights in the frame of the last link [m], shape (2, 3)."""
     bending_links: int = 0
     """Number of distal links whose hinges the control wheels bend."""
-    damping_time: float = 0.1
-    """Damping of a hinge divided by its stiffness [s]. Larger values calm a lightly loaded shaft."""
-    armature_time: float = 3.0e-4
-    """Armature inertia of a hinge divided by its damping [s]. Shorter than a solver substep, it is hidden by the
-    damping; without it the inertia about a hinge is so small that MuJoCo's joint limits give way."""
+    damping_time: float = 0.01
+    """Damping of a hinge divided by its stiffness [s]: a loss factor of 0.14 at 2.2 Hz, the first mode of 0.3 m of
+    shaft held at one end (tan delta of polyurethane: 0.05 to 0.2). We know of no measurement on a colonoscope; a fifth
+    of it changes the push through a bend by 2 %."""
+    armature_time: float = 3.0e-3
+    """Armature inertia of a hinge divided by its damping [s]. Without it the inertia about a hinge is so small that
+    MuJoCo's joint limits give way; ours does not need it."""
     stop_ratio: float = 20.0
     """Stiffness of a hinge beyond its limit, in multiples of its own stiffness."""
     stop_damping_time: float = 0.011
@@ -116,13 +123,13 @@ class EndoscopeSpec:
 
     @property
     def lever(self) -> np.ndarray:
-        """Mean length of the two links at each hinge [m], shape (L - 1,)."""
-        return 0.5 * (self.link_length[:-1] + self.link_length[1:])
+        """Length of shaft that each hinge stands for [m], shape (L - 1,)."""
+        return hinge_levers(self.link_length, self.root)
 
     @property
     def hinge_stiffness(self) -> np.ndarray:
-        """Stiffness EI / (2 lever) of each hinge [N m/rad], shape (L - 1,)."""
-        return self.bending_rigidity / (2.0 * self.lever)
+        """Stiffness EI / lever of each hinge, the same for pitch and yaw [N m/rad], shape (L - 1,)."""
+        return self.bending_rigidity / self.lever
 
     @property
     def hinge_damping(self) -> np.ndarray:
@@ -146,14 +153,20 @@ class EndoscopeSpec:
         return self.stop_ratio * self.hinge_stiffness
 
 
-def hinge_axis(hinge: int) -> Literal["X", "Y"]:
-    """Axis of hinge number `hinge`, counted from 1: X (up and down) if odd, Y (left and right) if even."""
-    return "X" if hinge % 2 else "Y"
+def hinge_levers(link_length: np.ndarray, root: RootKind) -> np.ndarray:
+    """Return the length of shaft that each hinge stands for: half of its two links [m], shape (L - 1,).
+
+    A driven base is rigid: of it, the first hinge stands for nothing.
+    """
+    lever = 0.5 * (link_length[:-1] + link_length[1:])
+    if root == "slide_roll":
+        lever[:1] = 0.5 * link_length[1:2]
+    return lever
 
 
 def hinge_twists(hinge: int) -> bool:
-    """Whether hinge number `hinge`, counted from 1, also twists: every second one does."""
-    return hinge % 2 == 0
+    """Whether hinge number `hinge`, counted from 1, also twists: every fourth one does."""
+    return hinge % TWIST_EVERY == 0
 
 
 def shared_stiffness(compliance: np.ndarray, twists: np.ndarray) -> np.ndarray:
@@ -191,8 +204,8 @@ def proximal_spec() -> EndoscopeSpec:
     radius[-bent:] = 0.0066
     rigidity = np.full(links - 1, 0.025)
     rigidity[-bent:] = 0.012
-    limit = np.full(links - 1, 0.9)
-    limit[-bent:] = _bending_limits(links, bent)
+    limit = np.full((links - 1, 2), SHAFT_LIMIT)
+    limit[-bent:] = np.radians([180.0, 160.0]) / bent
     camera, lights = _tip_optics(length[-1], radius[-1], links)
     return EndoscopeSpec(
         name="proximal",
@@ -206,7 +219,7 @@ def proximal_spec() -> EndoscopeSpec:
         camera=camera,
         lights=lights,
         bending_links=bent,
-        slide_drive=DriveSpec(stiffness=2000.0, damping=40.0, max_force=25.0),
+        slide_drive=DriveSpec(stiffness=2000.0, damping=40.0, max_force=43.0),
         roll_drive=DriveSpec(stiffness=2.0, damping=0.05, max_force=1.0),
         sources={
             "dimensions": "Olympus CF-HQ190L data sheet: tube 12.8 mm, tip 13.2 mm, angulation 180 up/down, 160 sides",
@@ -239,7 +252,7 @@ def magnetic_spec() -> EndoscopeSpec:
         link_mass=mass,
         bending_rigidity=rigidity,
         torsional_rigidity=TORSIONAL_RIGIDITY * rigidity / 0.025,
-        hinge_limit=np.full(links - 1, 0.9),
+        hinge_limit=np.full((links - 1, 2), SHAFT_LIMIT),
         camera=camera,
         lights=lights,
         slide_drive=DriveSpec(stiffness=0.0, damping=0.5),
@@ -266,7 +279,7 @@ def capsule_spec() -> EndoscopeSpec:
         link_mass=np.array([0.005]),
         bending_rigidity=np.empty(0),
         torsional_rigidity=np.empty(0),
-        hinge_limit=np.empty(0),
+        hinge_limit=np.empty((0, 2)),
         camera=camera,
         lights=lights,
         sources={"dimensions": "10 x 20 mm, 5 g: the capsule of the ARCGym paper (RA-L 2026)"},
@@ -282,13 +295,6 @@ def _chain_lengths() -> np.ndarray:
     """Link lengths of a scope with a shaft, base first [m], shape (L,)."""
     shaft_links = round((SCOPE_LENGTH - BASE_LINK - TIP_LINKS * TIP_LINK) / SHAFT_LINK)
     return np.array([BASE_LINK] + [SHAFT_LINK] * shaft_links + [TIP_LINK] * TIP_LINKS)
-
-
-def _bending_limits(links: int, bent: int) -> np.ndarray:
-    """Limits of the hinges of the bending section [rad], shape (bent,): 180 degrees up/down, 160 left/right in all."""
-    axes = [hinge_axis(hinge) for hinge in range(links - bent, links)]
-    reach = {"X": math.radians(180.0), "Y": math.radians(160.0)}
-    return np.array([reach[axis] / axes.count(axis) for axis in axes])
 
 
 def _tip_optics(

@@ -11,10 +11,10 @@ from arcgym.assets.endoscope_writer import (
     JOINTS_PATH,
     LINKS_PATH,
     ROOT_JOINT_PATH,
+    TURNS,
     author_endoscopes,
-    hinge_name,
     link_name,
-    twist_name,
+    turn_name,
     write_endoscope,
 )
 
@@ -23,11 +23,11 @@ __all__ = [
     "JOINTS_PATH",
     "LINKS_PATH",
     "ROOT_JOINT_PATH",
+    "TURNS",
     "EndoscopeStage",
     "author_endoscopes",
-    "hinge_name",
     "link_name",
     "read_endoscope",
-    "twist_name",
+    "turn_name",
     "write_endoscope",
 ]

@@ -18,7 +18,6 @@ from arcgym.assets.endoscope_spec import (
     EndoscopeSpec,
     capsule_half_height,
     endoscope_specs,
-    hinge_axis,
 )
 
 ENDOSCOPE_PATH = "/Endoscope"
@@ -27,6 +26,8 @@ JOINTS_PATH = "/Endoscope/Joints"
 ROOT_JOINT_PATH = "/Endoscope/Joints/root"
 ROLL_LIMIT = 3600.0
 """Range of the roll to either side [deg]: ten turns, practically free, but an axis without a range is not imported."""
+TURNS = ("bend_x", "bend_y", "twist")
+"""Names of a hinge's joints, about X, Y and Z; Newton merges them in alphabetical order."""
 SLIDE_MARGIN = 0.5
 """How far the scope may be withdrawn below its rest pose [m]."""
 
@@ -62,14 +63,9 @@ def link_name(link: int) -> str:
     return f"link_{link:02d}"
 
 
-def hinge_name(hinge: int) -> str:
-    """Name of the prim of hinge number `hinge`, counted from 1."""
-    return f"hinge_{hinge:02d}"
-
-
-def twist_name(hinge: int) -> str:
-    """Name of the prim of the twist at hinge number `hinge`, counted from 1."""
-    return f"twist_{hinge:02d}"
+def turn_name(hinge: int, axis: int) -> str:
+    """Name of the prim of hinge number `hinge`, counted from 1, about X (0), Y (1) or Z (2)."""
+    return f"{TURNS[axis]}_{hinge:02d}"
 
 
 def _write_header(stage: Usd.Stage, spec: EndoscopeSpec) -> None:
@@ -154,24 +150,23 @@ def _write_root(stage: Usd.Stage, spec: EndoscopeSpec, height: float) -> None:
 
 
 def _write_hinge(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int) -> None:
-    """Return the hinge between links `hinge` - 1 and `hinge`, whose drives carry the elasticity of the shaft.
+    """Write the hinge between links `hinge` - 1 and `hinge`, whose drives carry the elasticity of the shaft.
 
-    A twist is a second joint of the same links, which Newton's importer merges with the hinge.
+    Its axes are joints of the same two links, which Newton's importer merges into one.
     """
     k = hinge - 1
-    _write_turn(stage, spec, hinge, hinge_name(hinge), hinge_axis(hinge), spec.hinge_stiffness[k], spec.hinge_limit[k])
+    for axis in (0, 1):
+        _write_turn(stage, spec, hinge, axis, spec.hinge_stiffness[k], spec.hinge_limit[k, axis])
     if spec.twist_stiffness[k] > 0.0:
-        _write_turn(stage, spec, hinge, twist_name(hinge), "Z", spec.twist_stiffness[k], TWIST_LIMIT)
+        _write_turn(stage, spec, hinge, 2, spec.twist_stiffness[k], TWIST_LIMIT)
 
 
-def _write_turn(
-    stage: Usd.Stage, spec: EndoscopeSpec, hinge: int, name: str, axis: str, stiffness: float, limit: float
-) -> None:
-    """One elastic axis of a hinge, with its drive [N m/rad] and its stops [rad]."""
-    joint = UsdPhysics.RevoluteJoint.Define(stage, f"{JOINTS_PATH}/{name}")
+def _write_turn(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int, axis: int, stiffness: float, limit: float) -> None:
+    """Write one elastic axis of a hinge, with its drive [N m/rad] and its stops [rad]."""
+    joint = UsdPhysics.RevoluteJoint.Define(stage, f"{JOINTS_PATH}/{turn_name(hinge, axis)}")
     joint.CreateBody0Rel().SetTargets([f"{LINKS_PATH}/{link_name(hinge - 1)}"])
     joint.CreateBody1Rel().SetTargets([f"{LINKS_PATH}/{link_name(hinge)}"])
-    joint.CreateAxisAttr(axis)
+    joint.CreateAxisAttr("XYZ"[axis])
     _write_frames(joint, 0.5 * spec.link_length[hinge - 1], -0.5 * spec.link_length[hinge])
     joint.CreateLowerLimitAttr(-math.degrees(limit))
     joint.CreateUpperLimitAttr(math.degrees(limit))

@@ -24,16 +24,15 @@ from newton import JointType, ModelBuilder, ParticleFlags, ShapeFlags
 from arcgym.anatomy import ColonStage, StageError
 from arcgym.anatomy.segments import ANCHOR_FIXED
 from arcgym.anatomy.stage.layout import TISSUE_PATH, WALL_PATH
-from arcgym.assets.endoscope_spec import capsule_half_height, hinge_axis
+from arcgym.assets.endoscope_spec import capsule_half_height
 from arcgym.assets.endoscope_stage import (
     ENDOSCOPE_PATH,
     JOINTS_PATH,
     LINKS_PATH,
     ROOT_JOINT_PATH,
     EndoscopeStage,
-    hinge_name,
     link_name,
-    twist_name,
+    turn_name,
 )
 from arcgym.assets.materials import solid_moduli
 
@@ -223,8 +222,7 @@ def _check_joints(check: _Check, builder: ModelBuilder, indices: EndoscopeIndice
     """Types, order, axes and ranges of the joints."""
     types = [JointType(kind).name for kind in np.take(builder.joint_type, indices.joints)]
     root = "FREE" if stage.root == "free" else "D6"
-    hinges = ["D6" if twist > 0.0 else "REVOLUTE" for twist in stage.twist_stiffness]
-    check.equal(JOINTS_PATH, "", types, [root, *hinges], "Join the links one after the other.")
+    check.equal(JOINTS_PATH, "", types, [root, *["D6"] * (stage.num_links - 1)], "Join the links one after the other.")
     links = list(indices.bodies)
     check.equal(JOINTS_PATH, "", list(np.take(builder.joint_child, indices.joints)), links, "Number joints as links.")
     parents = [-1, *links[:-1]]
@@ -235,23 +233,23 @@ def _check_joints(check: _Check, builder: ModelBuilder, indices: EndoscopeIndice
     check.equal(ROOT_JOINT_PATH, "apiSchemas", len(indices.dofs), root_dofs + len(prims), mend)
     first = indices.dofs.start + root_dofs
     axes = ["XYZ"[int(np.argmax(np.abs(axis)))] for axis in builder.joint_axis[first:]]
-    expected = ["Z" if twist else hinge_axis(hinge) for hinge, twist in stage.turns]
-    check.equal(JOINTS_PATH, "physics:axis", axes, expected, "Alternate X and Y, each before its twist about Z.")
+    expected = ["XYZ"[axis] for _, axis in stage.turns]
+    check.equal(JOINTS_PATH, "physics:axis", axes, expected, "Give each hinge bend_x, bend_y and twist in this order.")
     lower, upper = builder.joint_limit_lower[first:], builder.joint_limit_upper[first:]
     limit = stage.by_turn(stage.hinge_limit, stage.twist_limit)
     check.close(prims, "physics:lowerLimit", lower, -limit, "Author both limits, in degrees.")
     check.close(prims, "physics:upperLimit", upper, limit, "Author both limits, in degrees.")
-    bends = stage.bend_coords - stage.root_coords
+    bends = stage.bend_coords.ravel() - stage.root_coords
     hinge_prims = [prims[bend] for bend in bends]
     stops, mend = np.asarray(builder.joint_limit_ke)[first + bends], "Apply NewtonJointAPI; its gains are per degree."
-    check.close(hinge_prims, "newton:limitStiffness", stops, stage.stop_stiffness, mend)
+    check.close(hinge_prims, "newton:limitStiffness", stops, stage.stop_stiffness.ravel(), mend)
     armature = np.asarray(builder.joint_armature)[first + bends]
-    check.close(hinge_prims, "newton:armature", armature, stage.hinge_armature, mend)
+    check.close(hinge_prims, "newton:armature", armature, stage.hinge_armature.ravel(), mend)
 
 
 def _turn_prims(stage: EndoscopeStage) -> list[str]:
     """Paths of the joints in the order of ``EndoscopeStage.turns``."""
-    return [f"{JOINTS_PATH}/{(twist_name if twist else hinge_name)(hinge)}" for hinge, twist in stage.turns]
+    return [f"{JOINTS_PATH}/{turn_name(hinge, axis)}" for hinge, axis in stage.turns]
 
 
 def _check_drives(check: _Check, builder: ModelBuilder, indices: EndoscopeIndices, stage: EndoscopeStage) -> None:

@@ -18,8 +18,8 @@ class BaseDriveCfg(ActuatorBaseCfg):
     class_type: Any = "arcgym.assets.actuators.base_drive:BaseDrive"
     """Class built from this configuration."""
     force_limit: float | None = None
-    """Largest push [N], over the stage's 25 N. Clinical peaks reach 43 N (Appleyard et al. 2000). Lower it for a robot
-    whose drive slips."""
+    """Largest push [N], over the stage's 43 N, the clinical peak (Appleyard et al. 2000). Lower it for a robot whose
+    drive slips."""
     torque_limit: float | None = None
     """Largest torque [N m], over the stage's 1 N m."""
 

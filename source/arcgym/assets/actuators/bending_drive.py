@@ -44,22 +44,14 @@ class BendingDrive(ActuatorBase):
         self._num_envs, self._device = num_envs, device
         self._coords = model.joint_coord_count // num_envs
         stage = self.endoscope.stage
-        self._first = stage.num_links - self._links
-        self._hinge_coords = wp.array(stage.bend_coords[self._first - 1 :], dtype=int, device=device)
-        self._share, self._limit = self._section()
+        coords = stage.bend_coords[-self._links :]
+        self._hinge_coords = wp.array(coords.astype(np.int32), dtype=wp.vec2i, device=device)
+        self._limit = wp.vec2(*stage.hinge_limit[-self._links :].sum(axis=0))
         self.command = wp.zeros(num_envs, dtype=wp.vec2, device=device)
         """Commanded pitch and yaw [rad], shape (W,)."""
         self.angle = wp.zeros(num_envs, dtype=wp.vec2, device=device)
         """Pitch and yaw that the section is driven to [rad], shape (W,)."""
         self.commands, self.memory, self.readings = [self.command], {"angle": self.angle}, {"bending": self.angle}
-
-    def _section(self) -> tuple[wp.vec2, wp.vec2]:
-        """Reciprocal hinge counts and total limits [rad] of (pitch, yaw)."""
-        hinge = np.arange(self._first, self._first + self._links)
-        limit = self.endoscope.stage.hinge_limit[hinge - 1]
-        odd = hinge % 2 == 1
-        share = wp.vec2(1.0 / max(odd.sum(), 1), 1.0 / max((~odd).sum(), 1))
-        return share, wp.vec2(float(limit[odd].sum()), float(limit[~odd].sum()))
 
     def set_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
         """Set the angles of the bending section, approached at ``cfg.rate`` and within the stage's limits.
@@ -74,8 +66,7 @@ class BendingDrive(ActuatorBase):
 
     def apply(self, state: newton.State, control: newton.Control, resistance: wp.array, dt: float) -> None:
         """Turn the wheels towards the command and set the targets of the hinges."""
-        inputs = [self.command, self.cfg.rate, self._limit, dt, self._first, self._hinge_coords, self._coords]
-        inputs.append(self._share)
+        inputs = [self.command, self.cfg.rate, self._limit, dt, self._hinge_coords, self._coords]
         outputs = [self.angle, control.joint_target_q]
         wp.launch(kernels.drive_bending, self._num_envs, inputs=inputs, outputs=outputs, device=self._device)
 

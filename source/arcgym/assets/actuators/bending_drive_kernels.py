@@ -14,17 +14,14 @@ def drive_bending(
     rate: float,
     limit: wp.vec2,
     dt: float,
-    first: int,
-    hinge_coords: wp.array[int],
+    hinge_coords: wp.array[wp.vec2i],
     coords: int,
-    share: wp.vec2,
     bending: wp.array[wp.vec2],
     target: wp.array[float],
 ):
     """Turn the control wheels towards the command and spread the angle over the bending section. Launch (W,).
 
-    Hinges alternate between pitch (odd) and yaw (even); ``first`` is the number of the first actuated one,
-    ``hinge_coords`` the joint coordinate of each, and ``share`` the reciprocal of the number of hinges of either kind.
+    ``hinge_coords`` are the joint coordinates of each actuated hinge's pitch and yaw; all hinges share alike.
     """
     w = wp.tid()
     now = bending[w]
@@ -32,9 +29,7 @@ def drive_bending(
         goal = wp.clamp(command[w][k], -limit[k], limit[k])
         now[k] = now[k] + wp.clamp(goal - now[k], -rate * dt, rate * dt)
     bending[w] = now
+    share = now / float(hinge_coords.shape[0])
     for h in range(hinge_coords.shape[0]):
-        hinge = first + h
-        angle = now[0] * share[0]
-        if hinge % 2 == 0:
-            angle = now[1] * share[1]
-        target[w * coords + hinge_coords[h]] = angle
+        for k in range(2):
+            target[w * coords + hinge_coords[h][k]] = share[k]

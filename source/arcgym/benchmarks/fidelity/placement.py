@@ -16,12 +16,10 @@ def follow(sim: Any, tube: Tube, inserted: float) -> None:
     stage, data = sim.endoscope.stage, sim.endoscope.data
     ends = inserted - sim.endoscope.tip_offset + 0.5 * stage.link_length[-1]
     place = ends - stage.total_length + np.cumsum(stage.link_length)[:-1]
-    pitch = np.arange(0, len(place), 2)  # hinges 1, 3, ... turn about X
-    edges = np.r_[-1.0, 0.5 * (place[pitch][1:] + place[pitch][:-1]), tube.length]
+    edges = np.r_[-1.0, 0.5 * (place[1:] + place[:-1]), tube.length]
     turn = np.diff(tube.frame(np.maximum(edges, 0.0))[1])
     for coordinate in (data.joint_pos, data.joint_pos_target):
         coordinate[:, 0] = inserted - sim.endoscope.rest_insertion
-    for hinge, angle in zip(pitch, turn, strict=True):
-        data.joint_pos[:, int(stage.bend_coords[hinge])] = -float(angle)
+    data.joint_pos[:, stage.bend_coords[:, 0]] = data.joint_pos.new_tensor(-turn)
     sim.contact.ring.fill_(-1)
     sim.forward()

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A length of the shipped colonoscope's shaft in free air, and its measures as a beam.
 
-Its base is held by the drive, far below the colon. Hinges alternate
-between two planes, fifty millimetres apart in either; each stands for the shaft half a distance to both sides. A beam
-of the chain's begins and ends there, so its length differs by one link between the planes.
+Its base is held by the drive, far below the colon. The first link is that base, rigid as the hand that holds it: the
+beam of the chain is all that follows it.
 """
 
 from __future__ import annotations
@@ -26,8 +25,8 @@ IN_AIR = {"stiffness": 0.0, "damping": 0.0}
 """Introducer that does nothing."""
 DEPTH = 0.4
 """How far the tip is below the colon [m]; the base may be withdrawn by half a metre."""
-LINKS = 20
-"""Links of the shaft; even, so that the last hinge bends in the Y-Z plane."""
+LINKS = 40
+"""Links of the shaft."""
 
 
 def shaft_in_air(run: Run, num_envs: int, links: int = LINKS, **spec: Any) -> tuple[Any, LinkLoads]:
@@ -40,25 +39,22 @@ def shaft_in_air(run: Run, num_envs: int, links: int = LINKS, **spec: Any) -> tu
     return sim, LinkLoads(sim)
 
 
-def beam(sim: Any, plane: int, links: int) -> tuple[float, float]:
-    """Return the length of the chain's beam in a plane [m] and its end's place in the frame of the last link [m]."""
-    link = float(sim.endoscope.stage.link_length[0])
-    last = links - 1
-    own = [hinge for hinge in range(1, links) if (hinge % 2 == 0) == (plane == 0)]
-    start, end = (own[0] - 1) * link, (own[-1] + 1) * link
-    return end - start, end - (last + 0.5) * link
+def beam(sim: Any) -> tuple[float, float]:
+    """Return the length of the chain's beam [m] and its end's place in the frame of the last link [m]."""
+    length = sim.endoscope.stage.link_length
+    return float(length[1:].sum()), 0.5 * float(length[-1])
 
 
 def rigidity(sim: Any) -> float:
     """Return EI of the shaft's hinges [N m^2]."""
     stage = sim.endoscope.stage
-    return float(stage.hinge_stiffness[0] * 2.0 * stage.link_length[0])
+    return float(stage.hinge_stiffness[0, 0] * stage.lever[0])
 
 
-def end_places(sim: Any, offsets: list[float]) -> np.ndarray:
-    """Return the places on the last links' axes [m], shape (N, 3)."""
+def end_places(sim: Any, offset: float) -> np.ndarray:
+    """Return the places on the last links' axes, an offset [m] from their centers [m], shape (N, 3)."""
     data = sim.endoscope.data
-    local = torch.tensor([[0.0, 0.0, offset] for offset in offsets], device=sim.device)
+    local = torch.tensor([0.0, 0.0, offset], device=sim.device).expand(sim.num_envs, 3)
     return (data.body_pos_w[:, -1] + quat_apply(data.body_quat_w[:, -1], local)).cpu().numpy()
 
 

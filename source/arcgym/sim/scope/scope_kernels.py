@@ -154,13 +154,14 @@ def prepare_axes(
     chain: Chain,
     body_q: wp.array[wp.transform],
     body_qd: wp.array[wp.spatial_vector],
+    joint_q: wp.array[float],
     joint_qd: wp.array[float],
     here: wp.vec3,
     link: int,
     w: int,
     work: ChainWork,
 ):
-    """Write axes and velocity products of a link's joint; the first axis is the parent's, the last the link's."""
+    """Write axes and velocity products of a link's joint; every axis is turned by those before it."""
     row = w * chain.links + link
     parent = chain.parent_frame[link]
     arm = wp.vec3(0.0)
@@ -169,15 +170,13 @@ def prepare_axes(
         parent = body_q[row - 1] * parent
         arm = here - anchor(chain, link - 1, body_q[row - 1])
         spin = wp.spatial_bottom(body_qd[row - 1])
-    child = body_q[row] * chain.child_frame[link]
+    rot = wp.transform_get_rotation(parent)
     drift_lin = wp.cross(spin, wp.cross(spin, arm))
     drift_ang = wp.vec3(0.0)
     first = chain.dof_start[link]
     if link > 0 or chain.free == 0:
         for d in range(first, chain.dof_start[link + 1]):
-            axis = wp.transform_vector(parent, chain.axis[d])
-            if d > first:
-                axis = wp.transform_vector(child, chain.axis[d])
+            axis = wp.quat_rotate(rot, chain.axis[d])
             work.axis[d, w] = axis
             rate = axis * joint_qd[w * chain.dofs + d]
             if chain.linear[d] == 1:
@@ -185,6 +184,8 @@ def prepare_axes(
             else:
                 drift_ang += wp.cross(spin, rate)
                 spin += rate
+                angle = joint_q[w * chain.coords + d + chain.coords - chain.dofs]
+                rot = rot * wp.quat_from_axis_angle(chain.axis[d], angle)
     work.arm[link, w] = arm
     work.drift_lin[link, w] = drift_lin
     work.drift_ang[link, w] = drift_ang
@@ -196,6 +197,7 @@ def prepare_links(
     body_q: wp.array[wp.transform],
     body_qd: wp.array[wp.spatial_vector],
     body_f: wp.array[wp.spatial_vector],
+    joint_q: wp.array[float],
     joint_qd: wp.array[float],
     resistance: wp.array2d[wp.spatial_vector],
     loads: LinkLoads,
@@ -208,6 +210,7 @@ def prepare_links(
         body_q: Link poses, shape (W*L,).
         body_qd: Link velocities [m/s, rad/s], shape (W*L,).
         body_f: Force [N] and torque [N m] on the centres of mass, shape (W*L,).
+        joint_q: Joint coordinates [m or rad], shape (W*J,), J = D, or D + 1 for a free root.
         joint_qd: Joint velocities [m/s or rad/s], shape (W*D,).
         resistance: Diagonal of the drop of ``body_f`` by acceleration [kg, kg m^2], shape (L, W).
         loads: Further loads of the links.
@@ -231,7 +234,7 @@ def prepare_links(
     work.force[link, w] = body.force
     work.torque[link, w] = body.torque
     work.lever[link, w] = lever
-    prepare_axes(chain, body_q, body_qd, joint_qd, here, link, w, work)
+    prepare_axes(chain, body_q, body_qd, joint_q, joint_qd, here, link, w, work)
 
 
 @wp.kernel
