@@ -30,6 +30,8 @@ SLOW = [
     "wall_oval_in_situ",
     "indentation_paper",
     "indentation_in_situ",
+    "links_bend,links_tight_bend",
+    "damping_bend",
     "volume_stiff,volume_soft",
     "bend_force,bend_tip",
     "sigmoid_force,sigmoid_tip",

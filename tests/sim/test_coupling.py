@@ -4,11 +4,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
+from tiny_scope import tiny_scope_spec
 from tiny_sim import TinySim
 
+from arcgym.assets.endoscope_stage import write_endoscope
 from arcgym.sim import ContactCfg, Simulation
 
 SOFT = {"youngs_modulus": 5.0e5}
@@ -18,8 +22,11 @@ SOLID = {**SOFT, "wall_model": "solid"}
 
 @pytest.fixture(scope="module")
 def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
-    """Return a tube of 16 mm radius."""
-    return TinySim(tmp_path_factory.mktemp("narrow"), radius=0.016)
+    """Return a tube of 16 mm radius, and a scope with more hinge damping: in plain Newton another shakes at rest."""
+    tiny = TinySim(tmp_path_factory.mktemp("narrow"), radius=0.016)
+    calm = replace(tiny_scope_spec("proximal", 10), damping_time=0.1, armature_time=3.0e-4)
+    write_endoscope(calm, tiny.folder / "proximal_10.usda")
+    return tiny
 
 
 def settled(narrow: TinySim, colon: dict[str, object] = SOFT, **cfg: object) -> Simulation:

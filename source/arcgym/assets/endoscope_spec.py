@@ -14,7 +14,7 @@ import numpy as np
 RootKind = Literal["free", "slide_roll"]
 
 BASE_LINK = 0.200
-"""Length of the base link [m]: the part of the shaft that never enters the anus needs no hinges."""
+"""Least length of the base link [m]: the part of the shaft that never enters the anus needs no hinges."""
 SHAFT_LINK = 0.0125
 """Length of a shaft link [m]. Every hinge bends both ways, so that the chain follows bends down to a radius of 13 mm;
 the scope's cost grows with the number of links."""
@@ -22,9 +22,10 @@ TIP_LINK = 0.010
 """Length of a link of the distal section [m]."""
 TIP_LINKS = 10
 """Number of distal links: 10 cm, about the actively bending length of a colonoscope (van der Stap 2016, 8 cm)."""
-SCOPE_LENGTH = 1.5
-"""Length of a scope with a shaft [m]: mid-transverse is about 1.24 m from the anus, and 0.2 m must stay outside.
-With 107 links and 26 twists the chain has 240 degrees of freedom."""
+SCOPE_LENGTH = 1.68
+"""Length of a scope with a shaft [m]: the working length of the CF-HQ190L. All but the base can be inserted, 1.48 m;
+splenic flexures of real colons lie as far as 1.31 m from the anus. With 121 links and 30 twists the chain has 272
+degrees of freedom."""
 SHAFT_LIMIT = 1.0
 """Largest angle of a shaft's hinge to either side [rad]: chords of 12.5 mm then turn on a radius of
 12.5 mm / (2 sin 0.5) = 13 mm."""
@@ -196,9 +197,14 @@ def capsule_half_height(length: float, radius: float, num_links: int) -> float:
     return 0.5 * length if num_links > 1 else 0.5 * length - radius
 
 
-def proximal_spec() -> EndoscopeSpec:
-    """Colonoscope pushed and rolled from outside the anus, with a bending section driven by control wheels."""
-    length = _chain_lengths()
+def proximal_spec(scope_length: float = SCOPE_LENGTH, shaft_link: float = SHAFT_LINK) -> EndoscopeSpec:
+    """Colonoscope pushed and rolled from outside the anus, with a bending section driven by control wheels.
+
+    Args:
+        scope_length: Length of the whole scope [m].
+        shaft_link: Length of a link of its shaft [m].
+    """
+    length = _chain_lengths(scope_length, shaft_link)
     links, bent = len(length), TIP_LINKS
     radius = np.full(links, 0.0064)
     radius[-bent:] = 0.0066
@@ -222,7 +228,8 @@ def proximal_spec() -> EndoscopeSpec:
         slide_drive=DriveSpec(stiffness=2000.0, damping=40.0, max_force=43.0),
         roll_drive=DriveSpec(stiffness=2.0, damping=0.05, max_force=1.0),
         sources={
-            "dimensions": "Olympus CF-HQ190L data sheet: tube 12.8 mm, tip 13.2 mm, angulation 180 up/down, 160 sides",
+            "dimensions": "Olympus CF-HQ190L data sheet: 1680 mm, tube 12.8 mm, tip 13.2 mm, angulation 180 up/down, "
+            "160 sides",
             "rigidity": "CF-140S, EI 0.026-0.040 N m^2 at 24 C, less 17 % at 37 C (Flexural and torsional rigidity of "
             "colonoscopes); bending section: softer, assumed",
             "torsion": "CF-140S, GJ 0.39-0.50 N m^2/rad at 24 C, less 7 % at 37 C (same source); the bending section's "
@@ -233,9 +240,14 @@ def proximal_spec() -> EndoscopeSpec:
     )
 
 
-def magnetic_spec() -> EndoscopeSpec:
-    """Magnetic flexible endoscope: a head that a magnet outside the body pulls, on a passive soft tether."""
-    length = _chain_lengths()
+def magnetic_spec(scope_length: float = SCOPE_LENGTH, shaft_link: float = SHAFT_LINK) -> EndoscopeSpec:
+    """Magnetic flexible endoscope: a head that a magnet outside the body pulls, on a passive soft tether.
+
+    Args:
+        scope_length: Length of head and tether [m].
+        shaft_link: Length of a link of the tether [m].
+    """
+    length = _chain_lengths(scope_length, shaft_link)
     links, head = len(length), 3
     radius = np.full(links, 0.004)
     radius[-head:] = 0.0066
@@ -291,10 +303,12 @@ def endoscope_specs() -> tuple[EndoscopeSpec, ...]:
     return capsule_spec(), magnetic_spec(), proximal_spec()
 
 
-def _chain_lengths() -> np.ndarray:
-    """Link lengths of a scope with a shaft, base first [m], shape (L,)."""
-    shaft_links = round((SCOPE_LENGTH - BASE_LINK - TIP_LINKS * TIP_LINK) / SHAFT_LINK)
-    return np.array([BASE_LINK] + [SHAFT_LINK] * shaft_links + [TIP_LINK] * TIP_LINKS)
+def _chain_lengths(scope_length: float, shaft_link: float) -> np.ndarray:
+    """Link lengths of a scope with a shaft, base first; the base takes what is left by whole links [m], shape (L,)."""
+    distal = TIP_LINKS * TIP_LINK
+    shaft_links = math.floor((scope_length - BASE_LINK - distal) / shaft_link + 1.0e-6)
+    base = scope_length - distal - shaft_links * shaft_link
+    return np.array([base] + [shaft_link] * shaft_links + [TIP_LINK] * TIP_LINKS)
 
 
 def _tip_optics(

@@ -29,6 +29,8 @@ TABLE: tuple[Check, ...] = (
     line("cantilever_small cantilever_large", "shaft:cantilever", quick=True),
     line("torsion", "shaft:torsion", quick=True),
     line("buckling", "shaft:buckling", quick=True),
+    line("links_bend links_tight_bend", "links:link_length"),
+    line("damping_bend", "links:damping"),
     line("wall_beam", "wall:beam_mode", quick=True),
     line("wall_ring", "wall:ring_mode"),
     line("wall_oval_paper", "wall:oval_mode", material="paper"),

@@ -48,6 +48,8 @@ class Tube:
     """Radius of the centerline in the bend [m]."""
     refine: int = 1
     """Rings and sectors for each one of the shipped mesh."""
+    radius: float | None = None
+    """Radius of the lumen [m]; the shipped colon's by default."""
 
     def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the points of the centerline [m], shape (n, 3), and its angle from the Z axis [rad], shape (n,)."""
@@ -107,11 +109,12 @@ def tube_stage(tube: Tube) -> ColonStage:
     sectors = measures.sectors * tube.refine
     arc = np.linspace(0.0, tube.length, round(tube.length / measures.spacing) * tube.refine + 1)
     theta = 2.0 * np.pi * np.arange(sectors) / sectors
-    radii = (measures.radius, measures.radius + measures.thickness)
-    layers = np.stack([tube.surface(arc, theta, radius) for radius in radii])
+    radius = measures.radius if tube.radius is None else tube.radius
+    radii = (radius, radius + measures.thickness)
+    layers = np.stack([tube.surface(arc, theta, r) for r in radii])
     codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
     shipped = shipped_stage()
-    visual = _visual(tube, arc, sectors, measures.radius)
+    visual = _visual(tube, arc, sectors, radius)
     held = (HELD_SPACINGS[0] * measures.spacing, tube.length - HELD_SPACINGS[1] * measures.spacing)
     return ColonStage(
         name="tube",
@@ -121,7 +124,7 @@ def tube_stage(tube: Tube) -> ColonStage:
         centerline=Centerline(
             tube.frame(arc)[0].astype(np.float32),
             arc.astype(np.float32),
-            np.full(len(arc), measures.radius, np.float32),
+            np.full(len(arc), radius, np.float32),
             codes,
         ),
         landmarks={"anal_verge": 0.0, "blind_end": tube.length},
