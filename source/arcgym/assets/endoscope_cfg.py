@@ -17,8 +17,8 @@ class IntroducerCfg:
     neither a loop of the shaft nor a capsule comes out."""
 
     stiffness: float = 1000.0
-    """Spring on every link outside [N/m], sideways and upwards. With links of 25 mm the shaft buckles at
-    2 sqrt(EI k / 25 mm) = 63 N, as a beam on an elastic foundation; without, 0.5 m of it at about 1 N."""
+    """Spring on every link outside [N/m], sideways and upwards. With links of 12.5 mm the shaft buckles at
+    2 sqrt(EI k / 12.5 mm) = 89 N, as a beam on an elastic foundation; without, 0.5 m of it at about 1 N."""
     damping: float = 0.3
     """[N s/m]."""
     height: float = 0.005

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.assets.endoscope_spec import EndoscopeSpec, _bending_limits, magnetic_spec, proximal_spec
+from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.rows import Run
 
 SPEED = 0.04
@@ -165,7 +165,7 @@ def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
     bent = 2 * spec.bending_links
     limit = _split_hinges(spec.hinge_limit)
     if bent:
-        limit[-bent:] = _bending_limits(len(limit) + 1, bent)
+        limit[-bent:] *= 0.5
     along = 0.25 * spec.link_length[-1]
     x, y, z = spec.camera.position
     return replace(
@@ -184,8 +184,8 @@ def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
 
 def _split_hinges(value: np.ndarray) -> np.ndarray:
     """Return values at the hinges of the halved chain: at a link's middle the larger of its ends'."""
-    after = np.r_[value[1:], value[-1]]
-    return np.stack([value, np.maximum(value, after)], axis=1).ravel()
+    after = np.concatenate([value[1:], value[-1:]])
+    return np.stack([value, np.maximum(value, after)], axis=1).reshape(-1, *value.shape[1:])
 
 
 def finer_colon(folder: Path) -> Path:

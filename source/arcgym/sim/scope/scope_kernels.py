@@ -249,6 +249,9 @@ def prepare_joints(
 ):
     """Compute the forces of drives and stops if the joints keep their velocities. Launch (D, W).
 
+    A spring K that acts with its value at the end of the step loses energy as if it had a damper dt K. That much is
+    taken off the drive's own damper, and the two together lose what the damper should.
+
     Args:
         chain: Links and joints of one world.
         joint_q: Joint coordinates [m or rad], shape (W*J,), J = D, or D + 1 for a free root.
@@ -264,8 +267,9 @@ def prepare_joints(
     i = w * chain.coords + d + chain.coords - chain.dofs
     v = joint_qd[w * chain.dofs + d]
     end = joint_q[i] + dt * v
-    work.drive[d, w] = chain.stiffness[d] * (target[i] - end) - chain.damping[d] * v
-    work.drive_inertia[d, w] = dt * (chain.damping[d] + dt * chain.stiffness[d])
+    damping = wp.max(chain.damping[d] - dt * chain.stiffness[d], 0.0)
+    work.drive[d, w] = chain.stiffness[d] * (target[i] - end) - damping * v
+    work.drive_inertia[d, w] = dt * (damping + dt * chain.stiffness[d])
     stop = joint_f[w * chain.dofs + d]
     stop_inertia = chain.armature[d]
     beyond = wp.min(joint_q[i] - chain.lower[d], 0.0) + wp.max(joint_q[i] - chain.upper[d], 0.0)
