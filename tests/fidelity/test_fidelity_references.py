@@ -120,9 +120,9 @@ def test_side_of_a_triangle_that_a_segment_is_on() -> None:
     np.testing.assert_array_equal(lumen_side, [True, False, True])
 
 
-@pytest.mark.parametrize(("room", "misses"), [(64, False), (1, True)])
+@pytest.mark.parametrize(("room", "misses"), [(24, False), (1, True)])
 def test_brute_force_finds_contacts_without_a_record(run: Run, room: int, misses: bool) -> None:
-    contact = ContactCfg(link_capacity=room)
+    contact = ContactCfg(patch_capacity=room)
     sim = build(run, PROXIMAL_CFG, BEND, colon={"material": "in_situ"}, contact=contact, use_graph=False)
     follow(sim, BEND, DEPTH)
     sim.colon.data.nodal_pos_w[..., 0] += 0.011  # the lumen's radius is 17 mm, that of the links 6 mm
