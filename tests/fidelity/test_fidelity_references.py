@@ -9,13 +9,19 @@ import math
 import numpy as np
 import pytest
 
+from arcgym.assets import PROXIMAL_CFG
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
-from arcgym.benchmarks.fidelity.brute_force import segment_triangle
+from arcgym.benchmarks.fidelity.brute_force import missed_contacts, segment_triangle
 from arcgym.benchmarks.fidelity.indenter import Curve
 from arcgym.benchmarks.fidelity.insertions import figures_of, halved
+from arcgym.benchmarks.fidelity.models import build
+from arcgym.benchmarks.fidelity.placement import follow
+from arcgym.benchmarks.fidelity.pushes import BEND, DEPTH
+from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.tube_model import TubeModel
 from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
+from arcgym.sim import ContactCfg
 
 
 def test_elastica_of_a_small_load_is_a_beam() -> None:
@@ -112,3 +118,13 @@ def test_side_of_a_triangle_that_a_segment_is_on() -> None:
     distance, lumen_side = segment_triangle(p, q, corners)
     np.testing.assert_allclose(distance, [1.0, 1.0, 0.0])
     np.testing.assert_array_equal(lumen_side, [True, False, True])
+
+
+@pytest.mark.parametrize(("room", "misses"), [(24, False), (1, True)])
+def test_brute_force_finds_contacts_without_a_record(run: Run, room: int, misses: bool) -> None:
+    contact = ContactCfg(patch_capacity=room)
+    sim = build(run, PROXIMAL_CFG, BEND, colon={"material": "in_situ"}, contact=contact, use_graph=False)
+    follow(sim, BEND, DEPTH)
+    sim.colon.data.nodal_pos_w[..., 0] += 0.011  # the lumen's radius is 17 mm, that of the links 6 mm
+    assert (len(missed_contacts(sim)) > 0) == misses
+    assert (int(sim.contact.records.dropped.numpy()[0]) > 0) == misses

@@ -32,6 +32,8 @@ SLOW = [
     "indentation_in_situ",
     "links_bend,links_tight_bend",
     "damping_bend",
+    "indentation_solid_paper",
+    "indentation_solid_in_situ",
     "volume_stiff,volume_soft",
     "bend_force,bend_tip",
     "sigmoid_force,sigmoid_tip",

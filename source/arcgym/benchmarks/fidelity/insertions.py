@@ -21,6 +21,10 @@ from arcgym.benchmarks.fidelity.rows import Run
 
 SPEED = 0.04
 """Speed of the experts [m/s]."""
+WORLDS = 4
+"""Insertions over which the figures of one case are means: single ones differ by which fold the tip slips past when."""
+SPREAD = 0.01
+"""Share by which the slowest and the fastest of them are off the speed."""
 CONTROL_STEP = 0.1
 """Time between two decisions of the expert, over which forces are averaged [s]."""
 MARGIN = 0.1
@@ -77,7 +81,7 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
 
 
 def insert(case: Insertion, device: str, folder: Path) -> dict[str, float]:
-    """Drive a robot by its expert from the anus through the sigmoid, and return its figures.
+    """Drive a robot by its expert from the anus through the sigmoid, and return the means of its figures.
 
     Args:
         case: The insertion.
@@ -89,18 +93,23 @@ def insert(case: Insertion, device: str, folder: Path) -> dict[str, float]:
     from arcgym.experts import make_expert
 
     torch.set_num_threads(1)
-    scene = build_scene(case, device, folder)
-    expert = make_expert(scene, speed=SPEED * (1.0025 if case.setting == "noise" else 1.0))
+    scene = build_scene(case, device, folder, num_envs=WORLDS)
+    pace = SPEED * (1.0025 if case.setting == "noise" else 1.0) * torch.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS)
+    pace = pace.to(device)
+    expert = make_expert(scene, speed=pace if case.robot == "proximal" else pace[:, None])
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
     steps = round(CONTROL_STEP / scene.sim.physics_dt)
-    arc, samples = 0.0, list[tuple[float, float, float]]()
+    samples, under_way = list[np.ndarray](), [np.ones(WORLDS, bool)]
     with torch.inference_mode():
-        while arc < end and len(samples) * CONTROL_STEP < LONGEST:
+        while under_way[-1].any() and len(samples) * CONTROL_STEP < LONGEST:
             expert.act()
             scene.sim.step(steps)
             samples.append(read_forces(scene.sim, case.robot))
-            arc = float(scene.endoscope.data.tip_arc_length[0])
-    return figures_of(np.array(samples)) | {"arc": arc}
+            under_way.append(under_way[-1] & (scene.endoscope.data.tip_arc_length < end).cpu().numpy())
+    forces, taken = np.array(samples), np.array(under_way[:-1])
+    figures = [figures_of(forces[taken[:, world], world]) for world in range(WORLDS)]
+    through = {"through": float(np.mean(~under_way[-1]))}
+    return {name: float(np.mean([of[name] for of in figures])) for name in figures[0]} | through
 
 
 def figures_of(samples: np.ndarray) -> dict[str, float]:
@@ -114,18 +123,20 @@ def figures_of(samples: np.ndarray) -> dict[str, float]:
     return dict(zip(METRICS, map(float, values), strict=True)) | {"time": CONTROL_STEP * len(tip)}
 
 
-def read_forces(sim: Any, robot: str) -> tuple[float, float, float]:
-    """Return the force on the tip, the largest on a window of shaft, and that of the drive, means over a step [N].
+def read_forces(sim: Any, robot: str) -> np.ndarray:
+    """Return the force on the tip, the largest on a window of scope, and the drive's, means over a step [N], (N, 3).
 
     The drive's is the push on the base, or the pull on the tip of a robot whose base is not driven.
     """
+    import torch
+
     data = sim.endoscope.data
-    drive = data.base_force[0].abs() if robot == "proximal" else data.tip_pull_force_w[0].norm()
-    return float(data.tip_force[0]), float(data.window_force_norm[0].max()), float(drive)
+    drive = data.base_force.abs() if robot == "proximal" else data.tip_pull_force_w.norm(dim=1)
+    return torch.stack([data.tip_force, data.window_force_norm.amax(dim=1), drive], dim=1).cpu().numpy().astype(float)
 
 
-def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | None = None) -> Any:
-    """Return one world with the robot at the anus, in colon 1 or in the colon of another stage."""
+def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | None = None, num_envs: int = 1) -> Any:
+    """Return worlds with the robot at the anus, in colon 1 or in the colon of another stage."""
     from arcgym import assets
     from arcgym.anatomy import read_colon
     from arcgym.assets.endoscope_stage import write_endoscope
@@ -155,7 +166,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     sim.contact = replace(sim.contact, stiffness=factor * sim.contact.stiffness)
     if setting in ("links_half", "wall_half"):
         sim.contact = replace(sim.contact, capacity=2 * sim.contact.capacity, patch_capacity=48)
-    scene = InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=replace(endoscope, usd_path=str(path)))
+    scene = InteractiveSceneCfg(num_envs=num_envs, colon=colon, endoscope=replace(endoscope, usd_path=str(path)))
     return InteractiveScene(scene, sim)
 
 

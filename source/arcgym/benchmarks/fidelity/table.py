@@ -37,6 +37,8 @@ TABLE: tuple[Check, ...] = (
     line("wall_oval_in_situ", "wall:oval_mode", material="in_situ"),
     line("indentation_paper", "indentation:indentation", material="paper"),
     line("indentation_in_situ", "indentation:indentation", material="in_situ"),
+    line("indentation_solid_paper", "solids:indentation", material="paper"),
+    line("indentation_solid_in_situ", "solids:indentation", material="in_situ"),
     line("straight_advance", "insertion:straight_advance", quick=True),
     line("volume_stiff volume_soft", "insertion:volume"),
     line("bend_force bend_tip", "insertion:bend"),

@@ -15,6 +15,8 @@ from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
 
 FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
+GPU_LIST_PARTS = 12
+"""Threads a world that list the contacts by vertex on a GPU, where a list waits for memory at every entry."""
 MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
@@ -64,12 +66,13 @@ class ContactSearch:
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         self.bounds = kernels.Bounds()
-        self.bounds.ring = wp.zeros((num_envs, self.ring_count), dtype=wp.vec4, device=device)
-        self.bounds.patch = wp.zeros((num_envs, len(topology.patch_start) - 1), dtype=wp.vec4, device=device)
+        self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
+        self.bounds.patch = wp.zeros((len(topology.patch_start) - 1, num_envs), dtype=wp.vec4, device=device)
         self.candidates = self._candidates(cfg.patch_capacity)
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
         self.records = self._records(cfg.capacity * (self.link_count + FURTHER_LINKS))
+        self.list_parts = 1 if device == "cpu" else GPU_LIST_PARTS
         self.past = kernels.PastContacts()
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
@@ -172,7 +175,7 @@ class ContactSearch:
         worlds, links = self.num_envs, self.link_count
         wp.launch(
             kernels.bound_faces,
-            (worlds, self.ring_count),
+            (self.ring_count, worlds),
             inputs=[x, self.surface],
             outputs=[self.bounds],
             device=self.device,
@@ -223,8 +226,8 @@ class ContactSearch:
         self.records.ring_head.fill_(-1)
         wp.launch(
             kernels.build_contact_lists,
-            self.num_envs,
-            inputs=[self.vertex_ring],
+            (self.num_envs, self.list_parts),
+            inputs=[self.vertex_ring, self.list_parts],
             outputs=[self.records],
             device=self.device,
         )

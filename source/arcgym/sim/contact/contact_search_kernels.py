@@ -38,8 +38,8 @@ class LumenSurface:
 class Bounds:
     """Spheres around the faces of each patch and of each ring: center [m] and radius [m]."""
 
-    patch: wp.array2d[wp.vec4]  # shape (W, P)
-    ring: wp.array2d[wp.vec4]  # shape (W, R)
+    patch: wp.array2d[wp.vec4]  # shape (P, W)
+    ring: wp.array2d[wp.vec4]  # shape (R, W)
 
 
 @wp.struct
@@ -121,8 +121,8 @@ def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> b
 
 @wp.kernel
 def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
-    """Enclose the faces of each ring, patch by patch. Launch (W, R)."""
-    w, r = wp.tid()
+    """Enclose the faces of each ring, patch by patch. Launch (R, W)."""
+    r, w = wp.tid()
     first = surface.ring_patch[r]
     last = surface.ring_patch[r + 1]
     middle = wp.vec3(0.0)
@@ -137,14 +137,14 @@ def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
         for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
             for k in range(3):
                 radius = wp.max(radius, wp.length_sq(x[surface.faces[f, k], w] - center))
-        bounds.patch[w, p] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
+        bounds.patch[p, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
         middle += center
     middle = middle / float(wp.max(1, last - first))
     radius = float(0.0)
     for p in range(first, last):
-        sphere = bounds.patch[w, p]
+        sphere = bounds.patch[p, w]
         radius = wp.max(radius, wp.length(wp.vec3(sphere[0], sphere[1], sphere[2]) - middle) + sphere[3])
-    bounds.ring[w, r] = wp.vec4(middle[0], middle[1], middle[2], radius)
+    bounds.ring[r, w] = wp.vec4(middle[0], middle[1], middle[2], radius)
 
 
 @wp.func
@@ -218,11 +218,11 @@ def find_patches(
         center = wp.transform_get_translation(body_q[row])
         axis = link_axis(body_q, row, links.half_length[link])
         limit = links.radius[link] + law.wall_radius + law.search_gap
-        for r in range(bounds.ring.shape[1]):
-            if sphere_reached(bounds.ring[w, r], center, axis, limit):
+        for r in range(bounds.ring.shape[0]):
+            if sphere_reached(bounds.ring[r, w], center, axis, limit):
                 both_sides = int(wp.abs(r - ring[w, link]) <= surface.reach)
                 for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if sphere_reached(bounds.patch[w, p], center, axis, limit):
+                    if sphere_reached(bounds.patch[p, w], center, axis, limit):
                         if n < candidates.patch.shape[2]:
                             candidates.patch[w, link, n] = 2 * p + both_sides
                         n += 1
@@ -474,16 +474,18 @@ def use_directions_as_normals(links: LinkShapes, records: ContactRecords):
 
 
 @wp.kernel
-def build_contact_lists(vertex_ring: wp.array[int], records: ContactRecords):
-    """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W,).
+def build_contact_lists(vertex_ring: wp.array[int], parts: int, records: ContactRecords):
+    """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W, ``parts``).
 
-    One thread a world keeps the order, and with it every sum over contacts, the same on CPU and GPU.
+    Each thread goes through all records of its world, and sees to the lists of every ``parts``-th vertex and ring. That
+    keeps the order, and with it every sum over contacts, the same on CPU and GPU.
 
     Args:
         vertex_ring: Ring of each wall vertex, shape (V,).
+        parts: Threads a world.
         records: Contacts; the lists, emptied before, are written.
     """
-    w = wp.tid()
+    w, part = wp.tid()
     first = w * records.capacity
     count = records.start[w, records.start.shape[1] - 1]
     for back in range(count):
@@ -491,10 +493,12 @@ def build_contact_lists(vertex_ring: wp.array[int], records: ContactRecords):
         face = records.corners[slot]
         lowest = records.ring_head.shape[0]
         for k in range(3):
-            entry = 3 * slot + k
             v = face[k]
-            records.vertex_next[entry] = records.vertex_head[v, w]
-            records.vertex_head[v, w] = entry
             lowest = wp.min(lowest, vertex_ring[v])
-        records.ring_next[slot] = records.ring_head[lowest, w]
-        records.ring_head[lowest, w] = slot
+            if v % parts == part:
+                entry = 3 * slot + k
+                records.vertex_next[entry] = records.vertex_head[v, w]
+                records.vertex_head[v, w] = entry
+        if lowest % parts == part:
+            records.ring_next[slot] = records.ring_head[lowest, w]
+            records.ring_head[lowest, w] = slot

@@ -17,10 +17,16 @@ from arcgym.benchmarks.lumen import lumen_triangles
 
 EVERY = 3
 """Control steps between two samples."""
+HOOK = 2.5
+"""Angle of the bending section while the scope is withdrawn [rad]."""
+WITHDRAWAL = 0.03
+"""Speed of the withdrawal [m/s]."""
+WITHDRAWN = 6.0
+"""Duration of the withdrawal, and of the push after it [s]."""
 
 
 def contact_search(run: Run) -> list[Row]:
-    """Push the colonoscope through the sigmoid in situ and compare the contacts with those of brute force.
+    """Push the colonoscope through the sigmoid in situ, withdraw it hooked, and compare contacts with brute force.
 
     Colon 1, and the colons that ``--colons`` names. Sampled are all links and all faces of the wall, three times a
     second.
@@ -43,7 +49,7 @@ def contact_search(run: Run) -> list[Row]:
 
 
 def insert_and_compare(run: Run, colon: str | None) -> tuple[np.ndarray, int, float]:
-    """Drive the scope by its expert through the sigmoid.
+    """Drive the scope by its expert through the sigmoid, withdraw it hooked, which gathers the wall, and push again.
 
     Args:
         run: Device and folder.
@@ -56,20 +62,30 @@ def insert_and_compare(run: Run, colon: str | None) -> tuple[np.ndarray, int, fl
     from arcgym.experts import make_expert
 
     scene = build_scene(Insertion("proximal", "in_situ"), run.device, run.folder, colon)
-    expert, sim = make_expert(scene, speed=SPEED), scene.sim
+    expert, sim, data = make_expert(scene, speed=SPEED), scene.sim, scene.endoscope.data
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
-    faces, samples = lumen_triangles(sim.colon.wall), []
-    rest, tight = ring_spans(sim), 1.0
+    faces, rest = lumen_triangles(sim.colon.wall), ring_spans(sim)
+    samples, spans = list[tuple[int, int]](), [1.0]
+
+    def go_on(steps: int) -> None:
+        sim.step(round(CONTROL_STEP / sim.physics_dt))
+        if steps % EVERY == EVERY - 1:
+            samples.append((len(touching(sim, faces)), len(missed_contacts(sim))))
+            spans.append(float((ring_spans(sim) / rest).min()))
+
     with torch.inference_mode():
         for step in range(round(LONGEST / CONTROL_STEP)):
             expert.act()
-            sim.step(round(CONTROL_STEP / sim.physics_dt))
-            if step % EVERY == EVERY - 1:
-                samples.append((len(touching(sim, faces)), len(missed_contacts(sim))))
-                tight = min(tight, float((ring_spans(sim) / rest).min()))
-            if float(scene.endoscope.data.tip_arc_length[0]) >= end:
+            go_on(step)
+            if float(data.tip_arc_length[0]) >= end:
                 break
-    return np.array(samples), int(sim.contact.records.dropped.numpy().sum()), tight
+        hook, still = torch.full_like(data.base_force, HOOK), torch.zeros_like(data.base_force)
+        scene.endoscope.set_bending_command(hook, still)
+        for speed in (-WITHDRAWAL, WITHDRAWAL):
+            scene.endoscope.set_insertion_command(still + speed, still)
+            for step in range(round(WITHDRAWN / CONTROL_STEP)):
+                go_on(step)
+    return np.array(samples), int(sim.contact.records.dropped.numpy().sum()), min(spans)
 
 
 def ring_spans(sim: Any) -> np.ndarray:
