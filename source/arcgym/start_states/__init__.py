@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Start states: complete states of scope and wall in which the tip is at the start of a segment.
 
-Colon 1 has some beside its stage. All others are made when they are first needed, by the robot's scripted expert, and
-kept in the cache folder under a hash of all that they depend on.
+The shipped colons have some beside their stages. All others are made when they are first needed, by the robot's
+scripted expert, and kept in the cache folder under a hash of all that they depend on.
 """
 
 from typing import TYPE_CHECKING

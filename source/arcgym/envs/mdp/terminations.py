@@ -69,8 +69,7 @@ def wall_penetrated(env: ManagerBasedRLEnv) -> torch.Tensor:
 
     The episode must end: the wall does not tear, and its later forces mean nothing.
 
-    It takes about 100 N on one link in stiff tissue and 55 to 85 N in ``in_situ``: a full push that is kept on for 20 s
-    and coils the shaft, or one with the shaft twisted to its limit.
+    It takes a full push that is kept on and coils the shaft, or one with the shaft twisted to its limit.
     """
     return env.sim.wall_penetrated
 
