@@ -8,6 +8,7 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sim.contact import contact_record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
@@ -73,7 +74,7 @@ class ContactSearch:
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
         self.records = self._records(cfg.capacity * (self.link_count + FURTHER_LINKS))
         self.list_parts = 1 if device == "cpu" else GPU_LIST_PARTS
-        self.past = kernels.PastContacts()
+        self.past = contact_record_kernels.PastContacts()
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
 
@@ -197,9 +198,15 @@ class ContactSearch:
         )
         outputs = [self.candidates, self.records.dropped]
         wp.launch(kernels.count_candidates, (worlds, links), inputs=[], outputs=outputs, device=self.device)
-        wp.launch(kernels.allot_slots, worlds, inputs=[self.candidates], outputs=[self.records], device=self.device)
         wp.launch(
-            kernels.fill_slots,
+            contact_record_kernels.allot_slots,
+            worlds,
+            inputs=[self.candidates],
+            outputs=[self.records],
+            device=self.device,
+        )
+        wp.launch(
+            contact_record_kernels.fill_slots,
             (worlds, links + 1),
             inputs=[self.surface, self.candidates, self.past],
             outputs=[self.records],
@@ -210,14 +217,18 @@ class ContactSearch:
         """Find point and normal of each record."""
         links = (self.num_envs, self.link_count)
         wp.launch(
-            kernels.locate_contacts,
+            contact_record_kernels.locate_contacts,
             (self.num_envs, self.records.capacity),
             inputs=[x, body_q, self.links, self.surface],
             outputs=[self.records],
             device=self.device,
         )
         wp.launch(
-            kernels.use_directions_as_normals, links, inputs=[self.links], outputs=[self.records], device=self.device
+            contact_record_kernels.use_directions_as_normals,
+            links,
+            inputs=[self.links],
+            outputs=[self.records],
+            device=self.device,
         )
 
     def _list(self) -> None:
@@ -225,7 +236,7 @@ class ContactSearch:
         self.records.vertex_head.fill_(-1)
         self.records.ring_head.fill_(-1)
         wp.launch(
-            kernels.build_contact_lists,
+            contact_record_kernels.build_contact_lists,
             (self.num_envs, self.list_parts),
             inputs=[self.vertex_ring, self.list_parts],
             outputs=[self.records],
