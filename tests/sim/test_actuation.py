@@ -194,7 +194,7 @@ def test_introducer_keeps_the_shaft_outside_straight(tiny_sim: TinySim) -> None:
     limp = {"shaft_rigidity": 0.005, "drives": {"base": {"force_limit": 6.0}}}
     guided, free = (
         sideways(tiny_sim("proximal", 12, colon={"mobile_until": 0.0}, scope={"introducer": guide, **limp}))
-        for guide in (IntroducerCfg(), IntroducerCfg(stiffness=0.0))
+        for guide in (IntroducerCfg(), IntroducerCfg(stiffness_per_length=0.0))
     )
     assert guided < 0.005 < 0.015 < free
 
@@ -216,7 +216,7 @@ def test_a_loop_that_comes_out_of_the_anus_is_lifted(tiny_sim: TinySim, lower: f
     low = int(np.argmin(np.abs(sim.endoscope.rest_height + 0.05)))
     sim.endoscope.data.body_pos_w[0, low, 2] -= lower
     sim.actuation.apply(sim.state, sim.control, sim.contact.ring, sim.physics_dt)
-    # 1000 N/m on what is lower by more than 10 mm than in a straight shaft.
+    # A link of 25 mm has 1000 N/m on what is lower by more than 10 mm than in a straight shaft.
     assert sim.state.body_f.numpy()[low, 2] == pytest.approx(lift, abs=0.1)
 
 
@@ -224,5 +224,16 @@ def test_a_capsule_does_not_fall_out(tiny_sim: TinySim) -> None:
     sim = tiny_sim("capsule")
     sim.endoscope.set_tip_velocity_command(torch.tensor([[0.0, 0.0, -0.05]]), torch.zeros(1, 3))
     sim.step(480)
-    # A pull of 1 N against 1000 N/m below half its cylinder's length, 5 mm.
-    assert sim.endoscope.data.root_pos_w[0, 2].item() == pytest.approx(0.005 - 0.001, abs=2e-4)
+    # A pull of 1 N against 40 kN/m^2 * 20 mm = 800 N/m below half its cylinder's length, 5 mm.
+    assert sim.endoscope.data.root_pos_w[0, 2].item() == pytest.approx(0.005 - 0.00125, abs=2e-4)
+
+
+@pytest.mark.parametrize("links", [12, 24])
+def test_the_introducer_is_as_stiff_whatever_the_links(tiny_sim: TinySim, links: int) -> None:
+    sim = tiny_sim("proximal", links)
+    height = sim.endoscope.rest_height
+    sim.endoscope.data.body_pos_w[0, :, 0] += 0.001
+    sim.actuation.apply(sim.state, sim.control, sim.contact.ring, sim.physics_dt)
+    pull = -sim.state.body_f.numpy()[1:, 0].sum()
+    end = height[1] - 0.5 * sim.endoscope.stage.link_length[1]
+    assert pull == pytest.approx(4.0e4 * 0.001 * (0.005 - end), rel=1e-3)  # the shaft behind the base, up to 5 mm

@@ -16,13 +16,14 @@ class IntroducerCfg:
     """Guide outside the anus, as the examiner's hand: the shaft does not buckle there. The sphincter closes around it:
     neither a loop of the shaft nor a capsule comes out."""
 
-    stiffness: float = 1000.0
-    """Spring on every link outside [N/m], sideways and upwards. With links of 12.5 mm the shaft buckles at
-    2 sqrt(EI k / 12.5 mm) = 89 N, as a beam on an elastic foundation; without, 0.5 m of it at about 1 N."""
-    damping: float = 0.3
-    """[N s/m]."""
+    stiffness_per_length: float = 4.0e4
+    """Springs on the shaft outside, sideways and upwards [N/m per m of it], whatever its links. The shaft then buckles
+    at 2 sqrt(EI k) = 63 N, as a beam on an elastic foundation; without, 0.5 m of it at about 1 N. Raise it for a
+    stiffer guide, and with the drive's ``force_limit``."""
+    damping_per_length: float = 12.0
+    """Dampers beside the springs [N s/m per m of shaft]. Raise it if the shaft rattles outside."""
     height: float = 0.005
-    """Height above the anal verge up to which links are guided [m]."""
+    """Height above the anal verge up to which the shaft is guided [m]."""
     slack: float = 0.01
     """How much lower than in a straight shaft, and than the anal verge, a link may be before it is lifted [m]."""
 
@@ -32,8 +33,8 @@ class IntroducerCfg:
         Raises:
             ValueError: If a value is out of its bounds or a name is unknown.
         """
-        require_non_negative(self, "stiffness", unit="N/m")
-        require_non_negative(self, "damping", unit="N s/m")
+        require_non_negative(self, "stiffness_per_length", unit="N/m^2")
+        require_non_negative(self, "damping_per_length", unit="N s/m^2")
         require_non_negative(self, "height", "slack", unit="m")
 
 

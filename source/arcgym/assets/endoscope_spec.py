@@ -27,8 +27,8 @@ SCOPE_LENGTH = 1.68
 splenic flexures of real colons lie as far as 1.31 m from the anus. With 121 links and 30 twists the chain has 272
 degrees of freedom."""
 SHAFT_LIMIT = 1.0
-"""Largest angle of a shaft's hinge to either side [rad]: chords of 12.5 mm then turn on a radius of
-12.5 mm / (2 sin 0.5) = 13 mm."""
+"""Largest angle of a shaft's hinge to either side [rad], in proportion less between shorter links: chords of 12.5 mm
+then turn on a radius of 12.5 mm / (2 sin 0.5) = 13 mm."""
 TWIST_EVERY = 4
 """Every so many hinges one twists: every 50 mm of shaft. Torsion is smooth along the shaft, so it needs fewer."""
 TORSIONAL_RIGIDITY = 0.42
@@ -210,7 +210,7 @@ def proximal_spec(scope_length: float = SCOPE_LENGTH, shaft_link: float = SHAFT_
     radius[-bent:] = 0.0066
     rigidity = np.full(links - 1, 0.025)
     rigidity[-bent:] = 0.012
-    limit = np.full((links - 1, 2), SHAFT_LIMIT)
+    limit = np.full((links - 1, 2), _shaft_limit(shaft_link))
     limit[-bent:] = np.radians([180.0, 160.0]) / bent
     camera, lights = _tip_optics(length[-1], radius[-1], links)
     return EndoscopeSpec(
@@ -264,7 +264,7 @@ def magnetic_spec(scope_length: float = SCOPE_LENGTH, shaft_link: float = SHAFT_
         link_mass=mass,
         bending_rigidity=rigidity,
         torsional_rigidity=TORSIONAL_RIGIDITY * rigidity / 0.025,
-        hinge_limit=np.full((links - 1, 2), SHAFT_LIMIT),
+        hinge_limit=np.full((links - 1, 2), _shaft_limit(shaft_link)),
         camera=camera,
         lights=lights,
         slide_drive=DriveSpec(stiffness=0.0, damping=0.5),
@@ -309,6 +309,11 @@ def _chain_lengths(scope_length: float, shaft_link: float) -> np.ndarray:
     shaft_links = math.floor((scope_length - BASE_LINK - distal) / shaft_link + 1.0e-6)
     base = scope_length - distal - shaft_links * shaft_link
     return np.array([base] + [shaft_link] * shaft_links + [TIP_LINK] * TIP_LINKS)
+
+
+def _shaft_limit(shaft_link: float) -> float:
+    """Return the largest angle of a hinge between shaft links of a length [rad]."""
+    return SHAFT_LIMIT * min(1.0, shaft_link / SHAFT_LINK)
 
 
 def _tip_optics(

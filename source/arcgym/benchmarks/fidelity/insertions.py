@@ -148,9 +148,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     spec, setting = SPECS[case.robot](), case.setting
     endoscope = getattr(assets, f"{case.robot.upper()}_CFG")
     if setting == "links_half":
-        spec, guide = halved(spec), endoscope.introducer
-        guide = replace(guide, stiffness=0.5 * guide.stiffness, damping=0.5 * guide.damping)
-        endoscope = replace(endoscope, introducer=guide)
+        spec = halved(spec)
     if setting == "damping_fifth":
         spec = replace(spec, damping_time=0.2 * spec.damping_time, armature_time=spec.armature_time / 0.2)
     path = write_endoscope(spec, folder / f"{case.robot}_{case.material}_{setting or 'shipped'}.usda")
@@ -174,9 +172,6 @@ def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
     """Return a scope with every link but the base's cut in two, of the same shaft."""
     parts = np.r_[1, np.full(len(spec.link_length) - 1, 2)]
     bent = 2 * spec.bending_links
-    limit = _split_hinges(spec.hinge_limit)
-    if bent:
-        limit[-bent:] *= 0.5
     along = 0.25 * spec.link_length[-1]
     x, y, z = spec.camera.position
     return replace(
@@ -186,7 +181,7 @@ def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
         link_mass=np.repeat(spec.link_mass / parts, parts),
         bending_rigidity=_split_hinges(spec.bending_rigidity),
         torsional_rigidity=_split_hinges(spec.torsional_rigidity),
-        hinge_limit=limit,
+        hinge_limit=0.5 * _split_hinges(spec.hinge_limit),
         bending_links=bent,
         camera=replace(spec.camera, position=(x, y, z - along)),
         lights=spec.lights - np.array([0.0, 0.0, along]),
@@ -194,9 +189,12 @@ def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
 
 
 def _split_hinges(value: np.ndarray) -> np.ndarray:
-    """Return values at the hinges of the halved chain: at a link's middle the larger of its ends'."""
+    """Return rigidities or limits at the hinges of the halved chain: at a link's middle the harmonic mean of its ends'.
+
+    A hinge stands for half of its two links, so that half of what a middle hinge stands for was each of theirs.
+    """
     after = np.concatenate([value[1:], value[-1:]])
-    return np.stack([value, np.maximum(value, after)], axis=1).reshape(-1, *value.shape[1:])
+    return np.stack([value, 2.0 / (1.0 / value + 1.0 / after)], axis=1).reshape(-1, *value.shape[1:])
 
 
 def finer_colon(folder: Path) -> Path:

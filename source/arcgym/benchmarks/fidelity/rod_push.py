@@ -39,7 +39,7 @@ class PushSettings:
     hold: float = 2.0e4
     """Stiffness along the wall of a contact that friction holds [N/m]."""
     guide: float = 4.0e4
-    """Sideways foundation of the shaft outside, per length [N/m^2]: the introducer's springs over a link."""
+    """Sideways foundation of the shaft outside, per length [N/m^2], as the introducer's springs."""
     guide_height: float = 0.005
     """Height up to which it is guided [m]."""
     drag: float = 2.0

@@ -21,7 +21,7 @@ from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.tubes import FREE, Tube
 from arcgym.utils.math import quat_apply
 
-IN_AIR = {"stiffness": 0.0, "damping": 0.0}
+IN_AIR = {"stiffness_per_length": 0.0, "damping_per_length": 0.0}
 """Introducer that does nothing."""
 DEPTH = 0.4
 """How far the tip is below the colon [m]; the base may be withdrawn by half a metre."""

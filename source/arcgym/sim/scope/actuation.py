@@ -47,7 +47,8 @@ class Actuation:
             rest, guide.height = np.full(self.link_count, 1.0), -math.inf
             guide.min_height = float(endoscope.half_length[0])
         guide.rest = wp.array(rest, dtype=float, device=self.device)
-        guide.stiffness, guide.damping = cfg.stiffness, cfg.damping
+        guide.stiffness, guide.damping = cfg.stiffness_per_length, cfg.damping_per_length
+        guide.length = wp.array(endoscope.stage.link_length, dtype=float, device=self.device)
         return guide
 
     @property

@@ -23,11 +23,20 @@ SPHINCTER = wp.constant(0.05)
 class Introducer:
     """Springs that keep the shaft straight outside the anus, and what is inside from coming out of it."""
 
-    stiffness: float  # [N/m]
-    damping: float  # [N s/m]
-    height: float  # up to which links are pulled onto the Z axis [m]
+    stiffness: float  # by length of shaft [N/m^2]
+    damping: float  # by length of shaft [N s/m^2]
+    length: wp.array[float]  # of each link [m], shape (L,)
+    height: float  # up to which the shaft is pulled onto the Z axis [m]
     min_height: float  # down to which links that belong inside may sink [m]
     rest: wp.array[float]  # height of each link where the slide is at zero and the shaft straight [m], shape (L,)
+
+
+@wp.func
+def length_below(height: float, pose: wp.transform, length: float) -> float:
+    """Return how much of a link, its axis along Z, is lower than a height [m]."""
+    middle = wp.transform_get_translation(pose)[2]
+    rise = wp.abs(wp.transform_vector(pose, wp.vec3(0.0, 0.0, length))[2])
+    return length * wp.clamp(0.5 + (height - middle) / wp.max(rise, 0.1 * length), 0.0, 1.0)
 
 
 @wp.kernel
@@ -46,8 +55,9 @@ def load_links(
 ):
     """Weight of every link, and the springs of the introducer near the colon's first rings. Launch (L, W).
 
-    Low links are pulled sideways onto the Z axis. The base's slide tells how high each would be in a straight shaft; a
-    link up to ``SPHINCTER`` lower than that, and lower than ``min_height``, is lifted. ``ring`` has the shape (W, L).
+    What is low of a link is pulled sideways onto the Z axis. The base's slide tells how high each would be in a
+    straight shaft; a link up to ``SPHINCTER`` lower than that, and lower than ``min_height``, is lifted. ``ring`` has
+    the shape (W, L).
     """
     link, w = wp.tid()
     i = w * resistance.shape[0] + link
@@ -57,12 +67,13 @@ def load_links(
     if ring[w, link] <= FIRST_RINGS:
         v = wp.spatial_top(body_qd[i])
         damping = guide.damping + dt * guide.stiffness
-        if p[2] < guide.height:
-            force -= wp.vec3(guide.stiffness * p[0] + damping * v[0], guide.stiffness * p[1] + damping * v[1], 0.0)
-            held = wp.vec3(dt * damping, dt * damping, 0.0)
+        guided = length_below(guide.height, body_q[i], guide.length[link])
+        away = guide.stiffness * p + damping * v
+        force -= guided * wp.vec3(away[0], away[1], 0.0)
+        held = guided * dt * damping * wp.vec3(1.0, 1.0, 0.0)
         low = guide.min_height + wp.min(guide.rest[link] + joint_q[w * coords], 0.0) - p[2]
         if low > 0.0 and low < SPHINCTER:
-            force[2] = force[2] + guide.stiffness * low - damping * v[2]
-            held[2] = dt * damping
+            force[2] = force[2] + guide.length[link] * (guide.stiffness * low - damping * v[2])
+            held[2] = guide.length[link] * dt * damping
     body_f[i] = wp.spatial_vector(force, wp.vec3(0.0))
     resistance[link, w] = wp.spatial_vector(held, wp.vec3(0.0))
