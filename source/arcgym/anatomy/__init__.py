@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Colon anatomy: generate, import, validate, write and read stages. Needs NumPy, SciPy, Pillow and usd-core only.
+"""Colon anatomy: generate, import, validate, write and read stages. Needs NumPy, SciPy, scikit-image, Pillow, usd-core.
 
 In reading order:
 

@@ -2,6 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Build wall and visual meshes on grids of rings; generator and importer share them.
 
+From any lumen's surface, in reading order:
+
+- :mod:`triangle_surface`: a closed surface, cut from a field; :mod:`conformal_map`: coordinates along and round it;
+- :mod:`level_curves`: rings on it; :mod:`lumen_grid`: a grid of fixed size of them;
+- :mod:`coarse_wall`: the wall's two layers from the grid;
+
+and for surfaces swept along a centreline:
+
 - :mod:`wall`: the tetrahedral wall of rings and sectors;
 - :mod:`surface_grid`: triangles, normals, texture coordinates and skin weights of a visual surface.
 """
