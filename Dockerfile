@@ -16,7 +16,7 @@ WORKDIR /opt/arcgym
 COPY pyproject.toml constraints.txt README.md LICENSE ./
 COPY source source
 COPY assets assets
-RUN pip install -c constraints.txt ".[recorder]"
+RUN pip install -c constraints.txt "."
 
 WORKDIR /work
 VOLUME /cache

@@ -12,7 +12,7 @@ Stop = tuple[int, str, int]
 """Floor, words and indent [px] of a stop."""
 
 FLOORS: tuple[tuple[tuple[str, str], ...], ...] = (
-    (("cli", "the command arcgym; scripts/ calls it"),),
+    (("cli", "the command arcgym"), ("recordings", "replay, data sets")),
     (("rl", "rsl_rl, agents, runs"), ("arcgym_tasks", "configurations"), ("benchmarks", "arcgym bench")),
     (("envs", "ManagerBasedRLEnv, its terms in envs.mdp"),),
     (("managers", "observation, action, reward, ..."), ("viewers", "pictures, videos")),

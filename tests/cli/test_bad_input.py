@@ -27,7 +27,7 @@ def nothing_is_built(tmp_path, monkeypatch):
     monkeypatch.setattr(gymnasium, "make", make)
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     find_spec = importlib.util.find_spec
-    missing = ("wandb", "neptune", "h5py")
+    missing = ("wandb", "neptune")
     monkeypatch.setattr(importlib.util, "find_spec", lambda name, *a: None if name in missing else find_spec(name, *a))
     monkeypatch.chdir(tmp_path)
     yield
@@ -76,10 +76,6 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*TRAIN, "--resume", "--load_run", "["], "load_run '[' is no regular expression"),
         ([*PLAY, "--checkpoint", "model_7.pt"], "No checkpoint 'model_7.pt'"),
         ([*PLAY, "--policy", "rando"], "invalid choice: 'rando'"),
-        (
-            [*PLAY, "--policy", "zero", "--record", "x.hdf5"],
-            "not installed: pip install 'arcgym[recorder]'",
-        ),
         (["snapshots", *TASK, "--device", "tpu"], "--device is 'tpu', expected cpu, cuda or cuda:<n>"),
         ([*ZERO, "--steps", "0"], "--steps: 0 is too small, expected 1 or more"),
         ([*ZERO, "env.scene.colon.material=none"], "'none'"),

@@ -5,24 +5,33 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 import torch
 
 from arcgym.envs import ManagerBasedRLEnv, mdp
+from arcgym.envs.provenance import settings_hash
 from arcgym.managers import (
+    Episode,
     MetricsTermCfg,
     RecorderManagerBaseCfg,
     RecorderTerm,
     RecorderTermCfg,
+    RecordingError,
     TerminationTermCfg,
     episode_paths,
     export_hdf5,
     load_episodes,
+    save_episode,
 )
+from arcgym.managers.recorder_files import next_path
 from arcgym.utils import configclass
 
 
@@ -149,8 +158,8 @@ def test_files_are_never_overwritten(recording, tmp_path) -> None:
         env = recording()
         run(env, 3)
         env.close()
-    assert [path.name for path in episode_paths(tmp_path)] == [f"episode_{k:06d}.npz" for k in range(4)]
-    assert not list(tmp_path.glob("*.partial"))
+    assert [path.name for path in episode_paths(tmp_path)] == [f"episode_{k:06d}.hdf5" for k in range(4)]
+    assert not list(tmp_path.glob("*.partial*"))
 
 
 def test_nothing_is_asked_or_written_without_recorders(env, cfg, monkeypatch) -> None:
@@ -182,13 +191,102 @@ def test_configuration_mistakes_are_named(cfg) -> None:
         ManagerBasedRLEnv(cfg)
 
 
-def test_hdf5_has_the_layout_of_isaac_lab(recording, tmp_path) -> None:
-    h5py = pytest.importorskip("h5py")
+def test_episodes_can_be_joined_in_one_file(recording, tmp_path) -> None:
     run(recording(), 5)
-    assert export_hdf5(tmp_path, tmp_path / "all.hdf5", {"task": "counter"}) == 2
+    assert export_hdf5(tmp_path, tmp_path / "all.hdf5") == 2
     with h5py.File(tmp_path / "all.hdf5") as file:
         demo = file["data/demo_0"]
         np.testing.assert_allclose(demo["state/position"], [2.0, 4.0, 6.0])
         assert demo.attrs["num_samples"] == 3 and demo.attrs["success"]
         assert file["data"].attrs["total"] == 8
-        assert json.loads(file["data"].attrs["env_args"]) == {"task": "counter"}
+        assert json.loads(file["data"].attrs["env_args"])["type"] == "arcgym"
+    lengths = [len(episode.data["actions"]) for episode in load_episodes(tmp_path / "all.hdf5")]
+    assert lengths == [3, 5]
+
+
+def test_provenance_and_settings_are_told(recording, tmp_path) -> None:
+    env = recording()
+    run(env, 5)
+    episode = next(load_episodes(tmp_path))
+    assert episode.provenance["seed"] == 0 and episode.provenance["device"] == "cpu"
+    assert {"arcgym", "newton", "warp-lang", "torch"} <= set(episode.provenance["versions"])
+    assert episode.settings["decimation"] == 2 and episode.settings["scene"]["num_envs"] == 2
+    assert episode.provenance["settings"] == settings_hash(episode.settings)
+    assert settings_hash({**episode.settings, "decimation": 3}) != episode.provenance["settings"]
+    assert settings_hash({**episode.settings, "log_dir": "elsewhere"}) == episode.provenance["settings"]
+
+
+def long_episode(cfg) -> None:
+    cfg.episode_length_s, cfg.terminations["above"] = 100.0, None
+
+
+def test_a_second_that_is_over_is_on_disk(recording, cfg, tmp_path) -> None:
+    long_episode(cfg)
+    env = recording(env_ids=(0,), position=None)
+    run(env, 9, (0.0, 0.0))
+    assert not list(tmp_path.iterdir())
+    run(env, 1, (0.0, 0.0))
+    (partial,) = tmp_path.iterdir()
+    assert partial.name == "episode_000000.partial.hdf5" and episode_paths(tmp_path) == []
+    run(env, 15, (0.0, 0.0))
+    assert len(Episode.load(partial).data["actions"]) == 20
+    env.close()
+    assert [episode.info["length"] for episode in load_episodes(tmp_path)] == [25]
+
+
+KILLED = """
+import os, signal, sys
+sys.path.insert(0, {tests!r}); sys.path.insert(0, {envs!r})
+import torch
+import conftest, test_recorder_manager as own
+cfg = conftest.CounterEnvCfg()
+own.long_episode(cfg)
+cfg.recorders = own.RecorderCfg(dataset_export_dir_path={folder!r})
+env = own.ManagerBasedRLEnv(cfg)
+env.reset()
+own.run(env, 37, (0.01, 0.02))
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_kill_loses_at_most_the_last_second(tmp_path) -> None:
+    here = Path(__file__).parent
+    code = KILLED.format(tests=str(here.parent), envs=str(here), folder=str(tmp_path))
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=120)
+    assert result.returncode == -signal.SIGKILL, result.stderr.decode()
+    for world, path in enumerate(sorted(tmp_path.glob("*.partial.hdf5"))):
+        episode = Episode.load(path)
+        assert episode.info["recovered"] and not episode.info["complete"]
+        assert episode.info["length"] == 30 and float(episode.data["start"]) == 0.0
+        step = 0.02 * (world + 1)
+        np.testing.assert_allclose(episode.data["state/position"], step * np.arange(1, 31), rtol=1e-5)
+    assert world == 1
+    assert next_path(tmp_path, "episode").name == "episode_000002.hdf5"
+
+
+@pytest.mark.parametrize("kept", [4, 10, 13, 22])
+def test_the_end_of_an_episode_can_be_taken_back(recording, cfg, tmp_path, kept) -> None:
+    long_episode(cfg)
+    env = recording(env_ids=(0,))
+    run(env, 25, (0.01, 0.0))
+    env.recorder_manager.shorten(0, kept)
+    assert env.recorder_manager.length(0) == kept
+    run(env, 12, (0.02, 0.0))
+    env.close()
+    (episode,) = load_episodes(tmp_path)
+    np.testing.assert_allclose(episode.data["actions"][:, 0], [0.01] * kept + [0.02] * 12, rtol=1e-5)
+
+
+def test_files_that_are_no_recordings_are_named(tmp_path) -> None:
+    with pytest.raises(RecordingError, match="There is no recording"):
+        Episode.load(tmp_path / "none.hdf5")
+    (tmp_path / "text.hdf5").write_text("no")
+    with pytest.raises(RecordingError, match="no HDF5 file"):
+        Episode.load(tmp_path / "text.hdf5")
+    with h5py.File(tmp_path / "other.hdf5", "w") as file:
+        file.create_group("data")
+    with pytest.raises(RecordingError, match="no recording of ARCGym; expected version 1 or lower"):
+        Episode.load(tmp_path / "other.hdf5")
+    save_episode(Episode({"actions": np.zeros((2, 1))}, {"length": 2}), tmp_path / "one.hdf5")
+    with pytest.raises(RecordingError, match="no 'data/demo_3'; it holds 1 episodes"):
+        Episode.load(tmp_path / "one.hdf5", 3)

@@ -9,7 +9,7 @@ import torch
 from pixel_tasks import SteerToDot, mean_reward
 from small_agents import actor_cfg, runner_cfg
 
-from arcgym.managers.recorder_files import Episode
+from arcgym.managers import Episode, save_episode
 from arcgym.rl import OnPolicyRunner
 from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningAlgorithmCfg, RslRlBehaviorCloningRunnerCfg
 from arcgym.rl.behavior_cloning_runner import BehaviorCloningRunner
@@ -18,8 +18,9 @@ from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
 
-def save_episode(folder, number: int, success: bool = True, **data: np.ndarray) -> None:
-    Episode(data, {"success": success, "length": len(data["actions"])}).save(folder / f"episode_{number:06d}.npz")
+def write_episode(folder, number: int, success: bool = True, **data: np.ndarray) -> None:
+    episode = Episode(data, {"success": success, "length": len(data["actions"])})
+    save_episode(episode, folder / f"episode_{number:06d}.hdf5")
 
 
 def record_expert(folder, worlds: int = 64) -> None:
@@ -31,7 +32,7 @@ def record_expert(folder, worlds: int = 64) -> None:
         env.step(actions[-1])
     for world in range(worlds):
         steps = {"obs/policy": np.stack([image[world] for image in images])}
-        save_episode(folder, world, actions=np.stack([action[world].numpy() for action in actions]), **steps)
+        write_episode(folder, world, actions=np.stack([action[world].numpy() for action in actions]), **steps)
 
 
 def make_runner(folder, num_envs: int = 16, log_dir=None, **algorithm) -> BehaviorCloningRunner:
@@ -46,13 +47,13 @@ def make_runner(folder, num_envs: int = 16, log_dir=None, **algorithm) -> Behavi
 def test_failed_episodes_are_left_out(tmp_path):
     for number, success in enumerate((True, False)):
         steps = np.full((3, 1), number, dtype=np.float32)
-        save_episode(tmp_path, number, success, actions=steps, **{"obs/policy": steps})
+        write_episode(tmp_path, number, success, actions=steps, **{"obs/policy": steps})
     assert Demonstrations(tmp_path, ["policy"], "cpu").actions.flatten().tolist() == [0, 0, 0]
     assert len(Demonstrations(tmp_path, ["policy"], "cpu", successful_only=False)) == 6
 
 
 def test_missing_observations_name_the_cure(tmp_path):
-    save_episode(tmp_path, 0, actions=np.zeros((3, 1)))
+    write_episode(tmp_path, 0, actions=np.zeros((3, 1)))
     with pytest.raises(UsageError, match="no 'obs/policy'.*holds: actions.*PreStepObservationsRecorderCfg"):
         Demonstrations(tmp_path, ["policy"], "cpu")
 
@@ -68,7 +69,7 @@ def test_folder_must_be_given(tmp_path):
 
 
 def test_actions_must_be_the_tasks(tmp_path):
-    save_episode(tmp_path, 0, actions=np.zeros((3, 5)), **{"obs/policy": np.zeros((3, 1, 16, 16), dtype=np.uint8)})
+    write_episode(tmp_path, 0, actions=np.zeros((3, 5)), **{"obs/policy": np.zeros((3, 1, 16, 16), dtype=np.uint8)})
     with pytest.raises(UsageError, match="have 5 actions, expected 2"):
         make_runner(tmp_path, log_dir=str(tmp_path / "run"))
 

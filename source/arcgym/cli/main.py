@@ -17,6 +17,7 @@ from arcgym.utils.string import did_you_mean
 COMMANDS = {
     "train": ("arcgym.cli.train", "train a policy with rsl_rl"),
     "play": ("arcgym.cli.play", "run a trained policy, record it and export it"),
+    "replay": ("arcgym.cli.replay", "make a recorded episode again and compare it bit for bit"),
     "list": ("arcgym.cli.list_tasks", "list the registered tasks"),
     "zero": ("arcgym.cli.zero", "run a task with raw actions that are zero"),
     "random": ("arcgym.cli.random_actions", "run a task with uniform random actions"),

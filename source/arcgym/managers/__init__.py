@@ -14,9 +14,11 @@ from arcgym.managers.metrics_manager import MetricsManager
 from arcgym.managers.noise import ConstantNoiseCfg, GaussianNoiseCfg, NoiseCfg, UniformNoiseCfg
 from arcgym.managers.observation_manager import ObservationManager
 from arcgym.managers.recorder_cfg import RecorderManagerBaseCfg, RecorderTermCfg
-from arcgym.managers.recorder_files import Episode, episode_paths, export_hdf5, load_episodes
+from arcgym.managers.recorder_files import Episode, RecordingError, count_episodes, episode_paths, load_episodes
+from arcgym.managers.recorder_joining import export_hdf5
 from arcgym.managers.recorder_manager import RecorderManager
 from arcgym.managers.recorder_term import RecorderTerm
+from arcgym.managers.recorder_writer import save_episode
 from arcgym.managers.reward_manager import RewardManager
 from arcgym.managers.scene_entity_cfg import SceneEntityCfg
 from arcgym.managers.term_base import ManagerTermBase
@@ -60,13 +62,16 @@ __all__ = [
     "RecorderManagerBaseCfg",
     "RecorderTerm",
     "RecorderTermCfg",
+    "RecordingError",
     "RewardManager",
     "RewardTermCfg",
     "SceneEntityCfg",
     "TerminationManager",
     "TerminationTermCfg",
     "UniformNoiseCfg",
+    "count_episodes",
     "episode_paths",
     "export_hdf5",
     "load_episodes",
+    "save_episode",
 ]

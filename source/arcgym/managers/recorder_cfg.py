@@ -32,7 +32,7 @@ class RecorderManagerBaseCfg:
     """Folder of the files; made where it is missing. Files in it are never overwritten."""
 
     dataset_filename: str = "episode"
-    """Start of each file's name: ``<dataset_filename>_000000.npz`` and so on."""
+    """Start of each file's name: ``<dataset_filename>_000000.hdf5`` and so on."""
 
     dataset_export_mode: Literal["all", "succeeded_only", "none"] = "all"
     """Which episodes are written: all, also those cut short by a reset or :meth:`close`; those that a termination

@@ -1,19 +1,29 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recorded episodes: one ``.npz`` file each, written whole or not at all; on request all of them in one HDF5 file."""
+"""Recorded episodes: one HDF5 file each, in the layout of Isaac Lab and robomimic."""
 
 from __future__ import annotations
 
 import json
-import os
+import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 
-_INFO = "info"
+FORMAT = 1
+"""Version of the layout; readers refuse a higher one."""
+SUFFIX = ".hdf5"
+"""End of the names of recordings."""
+PARTIAL = f".partial{SUFFIX}"
+"""End of the name of an episode that is under way, or was when its program was killed."""
+
+
+class RecordingError(ValueError):
+    """A file is no recording, or one that this version cannot read."""
 
 
 @dataclass(frozen=True)
@@ -25,73 +35,95 @@ class Episode:
 
     info: dict[str, Any]
     """``length`` T, ``step_dt`` [s], ``env_id``, ``complete``, ``success``, ``terminated``, ``time_out``, ``ended_by``
-    (termination terms) and ``metrics`` by name."""
+    (termination terms) and ``metrics`` by name; ``recovered`` in place of most of these after a kill."""
 
-    def save(self, path: str | Path) -> None:
-        """Write the file, whole or not at all."""
-        path = Path(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        partial = path.with_suffix(".partial")
-        with partial.open("wb") as file:
-            np.savez_compressed(file, **{_INFO: np.array(json.dumps(self.info))}, **self.data)  # type: ignore[arg-type]
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, path)
+    provenance: dict[str, Any] = field(default_factory=dict)
+    """Where it comes from: ``task``, ``seed``, ``device``, ``versions``, hashes of ``stages``, ``settings`` (hash)."""
+
+    settings: dict[str, Any] = field(default_factory=dict)
+    """Configuration of the environment as plain values."""
+
+    steps: frozenset[str] = frozenset()
+    """Names of the values of steps."""
 
     @staticmethod
-    def load(path: str | Path) -> Episode:
-        """Read a file written by :meth:`save`."""
-        with np.load(path) as file:
-            data = {name: file[name] for name in file.files}
-        return Episode(info=json.loads(str(data.pop(_INFO))), data=data)
+    def load(path: str | Path, number: int = 0) -> Episode:
+        """Read an episode of a file.
+
+        Args:
+            path: The file, also one whose writer was killed.
+            number: Which of its episodes.
+
+        Raises:
+            RecordingError: If the file holds no such episode, or is of a later version.
+        """
+        with open_recording(path) as file:
+            name = f"data/demo_{number}"
+            if name not in file:
+                raise RecordingError(f"{path} has no '{name}'; it holds {len(file['data'])} episodes.")
+            return _read(file, file[name])
+
+
+def open_recording(path: str | Path) -> h5py.File:
+    """Open a recording to read, also one that is being written or whose writer was killed.
+
+    Raises:
+        RecordingError: If it is none, or of a later version.
+    """
+    try:
+        file = h5py.File(path, "r", libver="latest", swmr=True)
+    except FileNotFoundError as error:
+        raise RecordingError(f"There is no recording '{path}'.") from error
+    except OSError as error:
+        raise RecordingError(f"{path} is no HDF5 file: {error}") from error
+    version = file.attrs.get("arcgym_recording")
+    if version is None or "data" not in file or version > FORMAT:
+        file.close()
+        what = "is no recording of ARCGym" if version is None else f"is a recording of version {version}"
+        raise RecordingError(f"{path} {what}; expected version {FORMAT} or lower.")
+    return file
+
+
+def count_episodes(path: str | Path) -> int:
+    """Return the number of episodes in a file."""
+    with open_recording(path) as file:
+        return len(file["data"])
 
 
 def episode_paths(folder: str | Path) -> list[Path]:
-    """Return the episodes in a folder, in the order in which they were written."""
-    return sorted(Path(folder).glob("*_[0-9]*.npz"))
+    """Return the finished episodes in a folder, in the order in which they were begun."""
+    return sorted(path for path in Path(folder).glob(f"*_[0-9]*{SUFFIX}") if not path.name.endswith(PARTIAL))
 
 
-def load_episodes(folder: str | Path) -> Iterator[Episode]:
-    """Read the episodes in a folder one by one."""
-    return (Episode.load(path) for path in episode_paths(folder))
+def load_episodes(source: str | Path) -> Iterator[Episode]:
+    """Read one by one the episodes of a file, or the finished ones of a folder."""
+    source = Path(source)
+    for path in [source] if source.is_file() else episode_paths(source):
+        for number in range(count_episodes(path)):
+            yield Episode.load(path, number)
 
 
 def next_path(folder: str | Path, name: str) -> Path:
-    """Return the first path ``<name>_000000.npz``, ``<name>_000001.npz``, ... after all that exist in a folder."""
-    taken = [int(path.stem.rpartition("_")[2]) for path in Path(folder).glob(f"{name}_[0-9]*.npz")]
-    return Path(folder) / f"{name}_{max(taken, default=-1) + 1:06d}.npz"
+    """Return the first path ``<name>_000000.hdf5``, ``<name>_000001.hdf5``, ... after all that exist in a folder."""
+    number = re.compile(rf"{re.escape(name)}_(\d+)(?:\.partial)?\{SUFFIX}")
+    found = (number.fullmatch(path.name) for path in Path(folder).glob(f"{name}_*"))
+    taken = [int(match[1]) for match in found if match]
+    return Path(folder) / f"{name}_{max(taken, default=-1) + 1:06d}{SUFFIX}"
 
 
-def export_hdf5(folder: str | Path, path: str | Path, env_args: dict[str, Any] | None = None) -> int:
-    """Copy the episodes in a folder into one HDF5 file with the layout of Isaac Lab and robomimic.
-
-    Episode k is the group ``data/demo_<k>`` with the attributes ``num_samples`` and ``success``; its names become
-    groups and datasets. Needs h5py (``pip install arcgym[recorder]``).
-
-    Args:
-        folder: Where the episodes are.
-        path: File to write; appears when it is complete.
-        env_args: Facts about the environment, stored as JSON in an attribute.
-
-    Returns:
-        Number of episodes.
-    """
-    import h5py
-
-    path, count, total = Path(path), 0, 0
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_suffix(".partial")
-    with h5py.File(partial, "w") as file:
-        group = file.create_group("data")
-        for count, episode in enumerate(load_episodes(folder), start=1):
-            demo = group.create_group(f"demo_{count - 1}")
-            demo.attrs["num_samples"] = episode.info["length"]
-            demo.attrs["success"] = bool(episode.info["success"])
-            demo.attrs["info"] = json.dumps(episode.info)
-            for name, value in episode.data.items():
-                demo.create_dataset(name, data=value, compression="gzip" if value.ndim else None)
-            total += episode.info["length"]
-        group.attrs["total"] = total
-        group.attrs["env_args"] = json.dumps(env_args or {})
-    os.replace(partial, path)
-    return count
+def _read(file: h5py.File, group: h5py.Group) -> Episode:
+    arrays: dict[str, h5py.Dataset] = {}
+    group.visititems(lambda name, item: arrays.update({name: item}) if isinstance(item, h5py.Dataset) else None)
+    steps = frozenset(name for name, item in arrays.items() if item.maxshape[:1] == (None,))
+    length = min((arrays[name].shape[0] for name in steps), default=0)
+    data = {name: item[:length] if name in steps else item[()] for name, item in arrays.items()}
+    provenance = json.loads(group.attrs.get("provenance", "{}"))
+    settings = file.get(f"settings/{provenance.get('settings')}")
+    info = json.loads(group.attrs["info"]) if "info" in group.attrs else {"success": False, "recovered": True}
+    return Episode(
+        {name: np.asarray(value) for name, value in data.items()},
+        {"complete": False, "step_dt": provenance.get("step_dt"), **info, "length": length},
+        provenance,
+        json.loads(settings[()]) if settings is not None else {},
+        steps,
+    )

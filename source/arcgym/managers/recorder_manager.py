@@ -7,6 +7,7 @@ from __future__ import annotations
 import dataclasses
 import logging
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,8 +16,9 @@ import torch
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.recorder_buffer import EpisodeBuffer, Values
 from arcgym.managers.recorder_cfg import RecorderManagerBaseCfg, RecorderTermCfg
-from arcgym.managers.recorder_files import Episode, next_path
+from arcgym.managers.recorder_files import next_path
 from arcgym.managers.recorder_term import RecorderTerm
+from arcgym.managers.recorder_writer import EpisodeWriter, allow_files
 from arcgym.managers.term_resolver import collect_terms
 from arcgym.utils.string import resolve_callable
 
@@ -27,7 +29,7 @@ logger = logging.getLogger(__name__)
 
 
 class RecorderManager(ManagerBase):
-    """Collects what its terms answer, and writes each episode to a file of its own when it ends.
+    """Collects what its terms answer, and writes each episode to a file of its own, every second of it as it comes.
 
     Every step copies the recorded values to the host, for which it waits for the device. Without terms, or with
     ``dataset_export_mode="none"``, no method does anything.
@@ -41,6 +43,7 @@ class RecorderManager(ManagerBase):
         Raises:
             TypeError: If ``cfg`` is no recorder configuration or a member is not a recorder term.
             IndexError: If a world to record does not exist.
+            ValueError: If so many files cannot be open at a time.
         """
         if cfg is not None and not isinstance(cfg, RecorderManagerBaseCfg):
             raise TypeError(f"recorders is of type {type(cfg).__name__}, expected a RecorderManagerBaseCfg or None.")
@@ -51,13 +54,38 @@ class RecorderManager(ManagerBase):
             raise IndexError(f"Recorder env_ids are {self._worlds}; worlds go from 0 to {env.num_envs - 1}.")
         self._place = {world: place for place, world in enumerate(self._worlds)}
         self._buffer = EpisodeBuffer(len(self._worlds))
-        self.num_exported = 0
+        self._writers: dict[int, EpisodeWriter] = {}
+        self._chunk = max(1, round(1.0 / env.step_dt))
+        if self.active:
+            allow_files(len(self._worlds))
+        self.paths: list[Path] = []
         """Episodes written by this manager."""
+
+    @property
+    def num_exported(self) -> int:
+        """Number of episodes written by this manager."""
+        return len(self.paths)
 
     @property
     def active(self) -> bool:
         """Whether anything is recorded."""
         return bool(self._terms) and self._settings.dataset_export_mode != "none"
+
+    def length(self, world: int) -> int:
+        """Return the steps recorded of the episode under way in a world."""
+        written = self._writers[world].length if world in self._writers else 0
+        return written + self._buffer.length(self._place[world])
+
+    def shorten(self, world: int, length: int) -> None:
+        """Keep the first ``length`` steps of the episode under way alone, as after an undo.
+
+        Raises:
+            ValueError: If more than one world is recorded: their steps are kept together.
+        """
+        waiting = self._buffer.length(self._place[world])
+        self._buffer.shorten(self._place[world], min(waiting, self.length(world) - length))
+        if world in self._writers:
+            self._writers[world].shorten(length)
 
     def record_pre_step(self) -> None:
         """Open a step: the action is known, nothing has moved yet."""
@@ -70,6 +98,9 @@ class RecorderManager(ManagerBase):
         if self.active:
             self._record_step(lambda term: term.record_post_step())
             self._buffer.end_step()
+            for world in self._worlds:
+                if self._buffer.length(self._place[world]) >= self._chunk:
+                    self._write(world)
 
     def record_pre_reset(self, env_ids: torch.Tensor) -> None:
         """End the episodes of the worlds ``env_ids``, int64, shape (n,), and write them."""
@@ -84,9 +115,13 @@ class RecorderManager(ManagerBase):
 
     def close(self) -> None:
         """Write the episodes under way as incomplete ones. A step that failed half-way is not among theirs."""
-        if self.active:
-            self._buffer.drop_step()
-            self._export(self._worlds)
+        if not self.active:
+            return
+        if not self._buffer.is_open:
+            under_way = [world for world in self._worlds if self.length(world)]
+            self._record_once(torch.tensor(under_way), lambda term, ids: term.record_pre_reset(ids))
+        self._buffer.drop_step()
+        self._export(self._worlds)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
         """Do nothing: episodes end in :meth:`record_pre_reset`."""
@@ -125,18 +160,32 @@ class RecorderManager(ManagerBase):
                 self._buffer.add_once([self._place[w] for w in worlds], _to_host(_flatten(*ask(term, ids))))
         return worlds
 
-    def _export(self, worlds: list[int]) -> None:
-        """Write the episodes of some worlds; those without a step are dropped."""
-        for world in worlds:
-            length = self._buffer.length(self._place[world])
-            data = self._buffer.take(self._place[world])
-            info = {"length": length, "step_dt": self._env.step_dt, "env_id": world, **self._info(world)}
-            if length == 0 or (self._settings.dataset_export_mode == "succeeded_only" and not info["success"]):
-                continue
+    def _write(self, world: int) -> None:
+        """Hand the steps that wait over to the file; the first ones make it."""
+        steps = self._buffer.take(self._place[world])
+        if world not in self._writers:
+            facts, settings = self._env.provenance()
             path = next_path(self._settings.dataset_export_dir_path, self._settings.dataset_filename)
-            Episode(data, info).save(path)
-            self.num_exported += 1
-            logger.info("recorded %d steps of world %d: %s", length, world, path)
+            self._writers[world] = EpisodeWriter(path, facts | {"env_id": world}, settings, self._chunk)
+            self._writers[world].append(steps, self._buffer.take_once(self._place[world]))
+        else:
+            self._writers[world].append(steps, {})
+
+    def _export(self, worlds: list[int]) -> None:
+        """Finish the episodes of some worlds; those without a step are dropped."""
+        for world in worlds:
+            if self._buffer.length(self._place[world]):
+                self._write(world)
+            once = self._buffer.take_once(self._place[world])
+            writer = self._writers.pop(world, None)
+            if writer is None:
+                continue
+            info = {"length": writer.length, "step_dt": self._env.step_dt, "env_id": world, **self._info(world)}
+            if writer.length == 0 or (self._settings.dataset_export_mode == "succeeded_only" and not info["success"]):
+                writer.discard()
+                continue
+            self.paths.append(writer.finish(once, info))
+            logger.info("recorded %d steps of world %d: %s", writer.length, world, writer.path)
 
     def _info(self, world: int) -> dict[str, Any]:
         """How the episode of a world stands, from the environment's other managers."""

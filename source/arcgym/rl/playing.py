@@ -11,7 +11,6 @@ from typing import Any
 
 from rsl_rl.utils import resolve_callable
 
-from arcgym.rl.agent_checks import check_installed
 from arcgym.rl.checkpoint import read_checkpoint
 from arcgym.rl.device import place
 from arcgym.rl.exporter import export_policy_as_jit, export_policy_as_onnx
@@ -75,7 +74,7 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
     for path in getattr(env.env, "paths", []) if video else []:
         print(f"video: {path}")
     if records and options.record:
-        print(f"recorded: {_finish_records(task, options.record, records)}")
+        print(f"recorded: {_finish_records(options.record, records)}")
     if options.json:
         print(result.to_json())
     return result
@@ -97,8 +96,6 @@ def _check(env_cfg: Any, agent_cfg: Any, options: PlayOptions, folder: Path) -> 
     outputs = [folder] if options.checkpoint or options.video_length else []
     if options.record:
         outputs.append(Path(options.record))
-        if options.record.endswith(".hdf5"):
-            check_installed("h5py", f"--record {options.record}", extra="recorder")
     if options.checkpoint:
         check_run(env_cfg, agent_cfg, options.device, outputs)
         read_checkpoint(options.checkpoint)
@@ -119,11 +116,11 @@ def _record_to(record: str | None, env_cfg: Any) -> Path | None:
     return folder
 
 
-def _finish_records(task: str, record: str, folder: Path) -> str:
+def _finish_records(record: str, folder: Path) -> str:
     """Copy the episodes into one file where it is asked for, and say where they are."""
     from arcgym.managers import episode_paths, export_hdf5
 
     count = len(episode_paths(folder))
     if record.endswith(".hdf5"):
-        count = export_hdf5(folder, record, {"env_name": task, "type": "arcgym"})
+        count = export_hdf5(folder, record)
     return f"{count} episodes in {record}"

@@ -119,6 +119,16 @@ class EndoscopeCamera(SensorBase):
         """Let the exposure of the worlds start anew with their next picture."""
         fill_worlds(wp.to_torch(self._renderer.gain), env_ids, 0.0)
 
+    def world_settings(self) -> dict[str, torch.Tensor]:
+        """Return the looks of all worlds: ``light_gain`` (N,), ``color_gain`` (N, 3), ``texture_offset`` (N, 2)."""
+        names = ("light_gain", "color_gain", "texture_offset")
+        return {name: wp.to_torch(getattr(self._looks, name)) for name in names}
+
+    def memory(self) -> dict[str, torch.Tensor]:
+        """Return the last pictures, where they were taken, and the gain that the next exposure starts from."""
+        names = ("rgb", "depth", "radiance", "covered", "gain", "drawn_from")
+        return {name: wp.to_torch(getattr(self._renderer, name)) for name in names}
+
     def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
         """Set the brightness of the picture relative to the exposure's aim, shape (n,); 1 is neutral."""
         wp.to_torch(self._looks.light_gain)[slice(None) if env_ids is None else env_ids] = gain

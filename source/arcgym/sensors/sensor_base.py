@@ -39,6 +39,14 @@ class SensorBase(ABC):
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Forget what earlier readings left behind in the worlds `env_ids`; None: in all."""
 
+    def world_settings(self) -> dict[str, torch.Tensor]:
+        """Return what differs between worlds and no reading changes, as views of shape (N, ...)."""
+        return {}
+
+    def memory(self) -> dict[str, torch.Tensor]:
+        """Return the last readings and what the next ones depend on, as views of shape (N, ...)."""
+        return {}
+
     def advance(self, dt: float) -> None:
         """Let `dt` seconds pass and takes a reading of all worlds when the update period is over."""
         self._since_update += dt

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import torch
@@ -210,6 +210,40 @@ class Simulation:
         views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()} | self.contact.memory
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
+    def world_settings(self) -> dict[str, torch.Tensor]:
+        """Return what differs between worlds and no step changes, such as friction, as views of shape (N, ...)."""
+        return {
+            "friction": self.friction,
+            "moduli": self.moduli,
+            "anchor_scale": self.anchor_scale,
+            "rigid": self.rigid,
+        }
+
+    def write_state(
+        self, arrays: Mapping[str, torch.Tensor], env_ids: Sequence[int] | torch.Tensor | None = None
+    ) -> None:
+        """Put worlds into states given in full, with zero commands; call :meth:`forward` after the last write.
+
+        Args:
+            arrays: All arrays of :meth:`world_arrays` by name, each of shape (n, ...).
+            env_ids: The worlds, shape (n,); all by default.
+
+        Raises:
+            ValueError: If arrays are missing, unknown or of another shape, with their names.
+        """
+        ids = self._worlds(env_ids)
+        own = self.world_arrays()
+        wrong = sorted(set(own) ^ set(arrays))
+        wrong += [name for name in own if name not in wrong and arrays[name].shape != (len(ids), *own[name].shape[1:])]
+        if wrong:
+            raise ValueError(
+                f"This state does not fit {self.colon.path} with {self.endoscope.path}: {', '.join(wrong)} are "
+                "missing, unknown or of another shape."
+            )
+        for name, array in own.items():
+            array[ids] = arrays[name].to(array)
+        self._after_write(ids)
+
     def read_snapshot(self, env_id: int) -> Snapshot:
         """Complete state of one world, on the host."""
         return Snapshot.read(self, env_id)
@@ -236,10 +270,18 @@ class Simulation:
         Raises:
             IndexError: If there is no such state; indices on a GPU are not checked, for that would wait for it.
         """
-        ids = torch.arange(self.num_envs, device=self.device)
-        if env_ids is not None:
-            ids = torch.as_tensor(env_ids, device=self.device, dtype=torch.long)
+        ids = self._worlds(env_ids)
         self._library.write(self.world_arrays(), snapshot_index, ids)
+        self._after_write(ids)
+
+    def _worlds(self, env_ids: Sequence[int] | torch.Tensor | None) -> torch.Tensor:
+        """Return the indices of worlds on the device, int64; all for None."""
+        if env_ids is None:
+            return torch.arange(self.num_envs, device=self.device)
+        return torch.as_tensor(env_ids, device=self.device, dtype=torch.long)
+
+    def _after_write(self, ids: torch.Tensor) -> None:
+        """Let worlds whose state was written forget commands, averages and what the solvers remember."""
         self._clear_step(ids)
         mask = torch.zeros(self.num_envs + 1, dtype=torch.bool, device=self.device)
         mask[ids] = True

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Recorder terms: actions, observations, rewards, costs, forces, wall, poses of every step, and the initial state."""
+"""Recorder terms: actions, observations, rewards, costs, forces, wall, poses, metrics; states at either end."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from arcgym.managers.recorder_term import Record
 from arcgym.utils.configclass import configclass
 
 __all__ = [
+    "FinalStateRecorder",
     "InitialStateRecorder",
+    "PostStepMetricsRecorder",
+    "PostStepMetricsRecorderCfg",
     "PostStepCostsRecorder",
     "PostStepForcesRecorder",
     "PostStepForcesRecorderCfg",
@@ -26,6 +29,7 @@ __all__ = [
     "PreStepObservationsRecorder",
     "PreStepObservationsRecorderCfg",
     "TrajectoryRecorderCfg",
+    "WorldSettingsRecorder",
 ]
 
 
@@ -109,7 +113,16 @@ class PostStepWallRecorder(RecorderTerm):
 class PostStepPosesRecorder(RecorderTerm):
     """``poses/...``: the scope after the step, in world coordinates."""
 
-    NAMES = ("joint_pos", "body_pos_w", "body_quat_w", "tip_pos_w", "tip_quat_w", "tip_arc_length", "inserted_length")
+    NAMES = (
+        "joint_pos",
+        "joint_vel",
+        "body_pos_w",
+        "body_quat_w",
+        "tip_pos_w",
+        "tip_quat_w",
+        "tip_arc_length",
+        "inserted_length",
+    )
     """Attributes of :class:`arcgym.assets.endoscope_data.EndoscopeData`."""
 
     def record_post_step(self) -> Record:
@@ -127,6 +140,37 @@ class InitialStateRecorder(RecorderTerm):
     def record_post_reset(self, env_ids: torch.Tensor) -> Record:
         """Return the complete state of the worlds that start."""
         return "initial_state", {name: array[env_ids] for name, array in self._env.sim.world_arrays().items()}
+
+
+class FinalStateRecorder(RecorderTerm):
+    """``final_state/...``: the same at the episode's end, against which a replay is checked."""
+
+    def record_pre_reset(self, env_ids: torch.Tensor) -> Record:
+        """Return the complete state of the worlds that end."""
+        return "final_state", {name: array[env_ids] for name, array in self._env.sim.world_arrays().items()}
+
+
+class WorldSettingsRecorder(RecorderTerm):
+    """``world_settings/...``: what events made different in this world: friction, moduli, light, color, texture."""
+
+    def record_post_reset(self, env_ids: torch.Tensor) -> Record:
+        """Return the settings of the worlds that start, those of a sensor below its name."""
+        found: dict[str, Any] = dict(self._env.sim.world_settings())
+        for name, sensor in self._env.scene.sensors.items():
+            found |= {f"{name}/{key}": value for key, value in sensor.world_settings().items()}
+        return "world_settings", {name: value[env_ids] for name, value in found.items()}
+
+
+class PostStepMetricsRecorder(RecorderTerm):
+    """``metrics/<term>``, value of metrics terms in the step, shape (T,); those that the task lacks are left out."""
+
+    cfg: PostStepMetricsRecorderCfg
+
+    def record_post_step(self) -> Record:
+        """Return the values of the chosen terms."""
+        env: Any = self._env
+        values = env.metrics_manager.step_values
+        return "metrics", {name: values[name] for name in self.cfg.names if name in values}
 
 
 @configclass
@@ -157,10 +201,21 @@ class PostStepWallRecorderCfg(RecorderTermCfg):
 
 
 @configclass
+class PostStepMetricsRecorderCfg(RecorderTermCfg):
+    """Records metrics of every step."""
+
+    class_type: Any = PostStepMetricsRecorder
+    names: tuple[str, ...] = ("progress", "s_c", "s_o", "looping_ratio")
+    """Metrics terms of the task to record in every step. All of them are in ``info`` at the episode's end anyway."""
+
+
+@configclass
 class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
     """Everything but images; a step and world is some 4 kB before compression."""
 
     initial_state = RecorderTermCfg(class_type=InitialStateRecorder)
+    final_state = RecorderTermCfg(class_type=FinalStateRecorder)
+    world_settings = RecorderTermCfg(class_type=WorldSettingsRecorder)
     actions = RecorderTermCfg(class_type=PreStepActionsRecorder)
     observations: PreStepObservationsRecorderCfg | None = None
     """Off: ``PreStepObservationsRecorderCfg()`` records the group ``policy``."""
@@ -171,3 +226,5 @@ class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
     wall: PostStepWallRecorderCfg | None = PostStepWallRecorderCfg()
     """Strain and anchor tension."""
     poses = RecorderTermCfg(class_type=PostStepPosesRecorder)
+    metrics: PostStepMetricsRecorderCfg | None = PostStepMetricsRecorderCfg()
+    """Progress, view of the lumen and looping ratio of every step."""

@@ -1,0 +1,100 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where a recording comes from: task, seed, device, versions, and hashes of stages and settings."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from functools import lru_cache
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import warp as wp
+
+from arcgym import __version__
+from arcgym.utils.coerce import to_plain
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+PACKAGES = ("newton", "warp-lang", "torch", "numpy", "mujoco-warp")
+"""Packages whose versions a result may depend on."""
+NOT_PHYSICS = ("recorders", "viewer", "log_dir")
+"""Fields of a configuration that change nothing that happens."""
+
+
+def provenance(env: ManagerBasedEnv) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what a recording must say about its environment.
+
+    Returns:
+        Facts (``task``, ``seed``, ``device``, ``device_name``, ``num_envs``, ``step_dt`` [s], ``versions``, ``stages``
+        and ``settings``, the hash of the second), and the configuration as plain values.
+    """
+    settings = to_plain(env.cfg)
+    stages = {name: getattr(env.scene[name], "path", None) for name in env.scene.keys()}  # noqa: SIM118
+    facts = {
+        "task": env.spec.id if env.spec else None,
+        "seed": env.cfg.seed,
+        "device": str(env.device),
+        "device_name": _device_name(str(env.device)),
+        "num_envs": env.num_envs,
+        "step_dt": env.step_dt,
+        "versions": versions(),
+        "stages": {
+            name: {"path": str(path), "sha256": stage_hash(path)} for name, path in stages.items() if path is not None
+        },
+        "settings": settings_hash(settings),
+    }
+    return facts, settings
+
+
+def settings_hash(settings: dict[str, Any]) -> str:
+    """Return the hash of a configuration without what changes nothing that happens, 16 hexadecimal digits."""
+    kept = {name: value for name, value in settings.items() if name not in NOT_PHYSICS}
+    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()[:16]
+
+
+@lru_cache
+def versions() -> dict[str, str]:
+    """Return the versions of ARCGym, Python and the packages that results may depend on."""
+    found = {"arcgym": __version__, "python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def stage_hash(path: str | Path) -> str:
+    """Return the hash of a stage with all its layers and textures, 16 hexadecimal digits."""
+    path = Path(path).resolve()
+    return _stage_hash(path, path.stat().st_mtime_ns)
+
+
+@lru_cache
+def _stage_hash(path: Path, changed: int) -> str:
+    from pxr import UsdUtils
+
+    layers, assets, _ = UsdUtils.ComputeAllDependencies(str(path))
+    files = {Path(name).resolve() for name in [str(path), *(layer.realPath for layer in layers), *assets] if name}
+    digest = hashlib.sha256()
+    for file in sorted(files, key=lambda file: file.name):
+        digest.update(file.name.encode() + hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()[:16]
+
+
+def _device_name(device: str) -> str:
+    """Return the model of a GPU, or of the machine's processor."""
+    if device != "cpu":
+        return str(wp.get_device(device).name)
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()

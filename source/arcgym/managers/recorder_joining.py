@@ -1,0 +1,44 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several episodes in one file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import h5py
+
+from arcgym.managers.recorder_files import FORMAT, PARTIAL, episode_paths, open_recording
+
+
+def export_hdf5(folder: str | Path, path: str | Path) -> int:
+    """Copy the finished episodes in a folder into one file: episode k is the group ``data/demo_<k>``.
+
+    Args:
+        folder: Where the episodes are.
+        path: File to write; appears when it is complete.
+
+    Returns:
+        Number of episodes.
+    """
+    path, count, total = Path(path), 0, 0
+    path.parent.mkdir(parents=True, exist_ok=True)
+    partial = path.with_name(path.stem + PARTIAL)
+    with h5py.File(partial, "w", libver="latest") as file:
+        file.attrs["arcgym_recording"] = FORMAT
+        group = file.create_group("data")
+        for one in episode_paths(folder):
+            with open_recording(one) as source:
+                for name, settings in source.get("settings", {}).items():
+                    if f"settings/{name}" not in file:
+                        file[f"settings/{name}"] = settings[()]
+                for name, value in source["data"].attrs.items():
+                    group.attrs[name] = value
+                for demo in source["data"].values():
+                    source.copy(demo, group, f"demo_{count}")
+                    total += int(demo.attrs["num_samples"])
+                    count += 1
+        group.attrs["total"] = total
+    os.replace(partial, path)
+    return count
