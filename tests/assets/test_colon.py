@@ -44,7 +44,7 @@ def test_positions_share_memory_with_the_simulation(sim: Simulation) -> None:
 
 def test_rings_start_on_the_axis_at_their_arc_length(sim: Simulation) -> None:
     arc = torch.linspace(0.0, 0.2, RINGS)
-    torch.testing.assert_close(sim.colon.data.centerline_arc, arc)
+    torch.testing.assert_close(sim.colon.data.centerline_arc, arc.expand(2, -1))
     for world in range(2):
         expected = torch.stack([torch.zeros(RINGS), torch.zeros(RINGS), arc], dim=1)
         centers = sim.colon.data.centerline_pos_w[world, :-1]  # the blind end is half a thickness farther out

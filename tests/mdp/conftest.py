@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 import torch
 
+from arcgym.anatomy.segments import SEGMENTS
+
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
 RING_READOUTS = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
 
@@ -72,13 +74,18 @@ class FakeColon:
     def __init__(self, num_envs: int) -> None:
         arc = torch.linspace(0.0, 0.5, 6)
         points = torch.stack([torch.zeros(6), torch.zeros(6), arc], dim=1)
+        spans = torch.tensor([(0.0, 0.1), (0.1, 0.5), *[(0.5, 0.5)] * (len(SEGMENTS) - 2)])
         self.data = SimpleNamespace(
-            centerline_arc=arc,
+            centerline_arc=arc.repeat(num_envs, 1),
+            segment_spans=spans.expand(num_envs, len(SEGMENTS), 2),
             centerline_pos_w=points.expand(num_envs, 6, 3),
             **{name: torch.zeros(num_envs, 6) for name in RING_READOUTS},
         )
-        self.stage = SimpleNamespace(segment_bounds=lambda: {"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.5)})
         self.commands: dict[str, Any] = {}
+
+    def require_segment(self, name: str) -> None:
+        if name not in ("rectum", "sigmoid"):
+            raise ValueError(f"Segment '{name}' is not in colon.usda; it has rectum, sigmoid.")
 
     def write_stiffness_scale_to_sim(self, scale: torch.Tensor, env_ids: torch.Tensor) -> None:
         self.commands["stiffness"] = (scale.clone(), env_ids)

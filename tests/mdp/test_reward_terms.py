@@ -35,7 +35,7 @@ def test_success_is_by_arc_length(env) -> None:
 
 
 def test_unknown_segment_lists_the_known(env) -> None:
-    with pytest.raises(ValueError, match="'colon' is not in this colon.*rectum.*sigmoid"):
+    with pytest.raises(ValueError, match="'colon' is not in colon.usda.*rectum.*sigmoid"):
         mdp.success(env, segment="colon")
 
 

@@ -9,7 +9,7 @@ import dataclasses
 import numpy as np
 import pytest
 import warp as wp
-from tube_scene import tube_visual, tube_wall
+from tube_scene import MIDDLE, tube_visual, tube_wall
 
 from arcgym.sensors import SkinnedSurface
 
@@ -54,3 +54,70 @@ def test_foreign_wall_is_refused():
     short = dataclasses.replace(wall, points=wall.points[:100])
     with pytest.raises(ValueError, match="wall has 100 vertices"):
         SkinnedSurface(tube_visual(wall), short, 1, "cpu")
+
+
+def two_patients() -> tuple[list, list]:
+    """A tube as it is and one wider and half as long, with a coarser surface; both on the same grid of the wall."""
+    walls = [tube_wall(), tube_wall(radius=0.03)]
+    walls[1] = dataclasses.replace(walls[1], points=walls[1].points * np.array([1.0, 1.0, 0.5], np.float32))
+    visuals = [tube_visual(walls[0]), tube_visual(walls[1], radius=0.03)]
+    half = visuals[1].points * np.array([1.0, 1.0, 0.5], np.float32)
+    visuals[1] = dataclasses.replace(visuals[1], points=half, faces=visuals[1].faces[::2])
+    return visuals, walls
+
+
+def triangles(surface: SkinnedSurface, world: int) -> np.ndarray:
+    """Corners of a world's triangles that have an area, sorted, shape (F, 3, 3)."""
+    indices = surface.mesh.indices.numpy().reshape(surface.num_envs, -1, 3)[world]
+    corners = surface.points.numpy()[indices]
+    corners = corners[np.ptp(corners, axis=1).max(axis=1) > 0.0]
+    return corners[np.lexsort(corners[:, 0].round(6).T)]
+
+
+def test_each_world_has_the_surface_of_its_patient_and_takes_another_one():
+    visuals, walls = two_patients()
+    patient = wp.array([0, 1, 1], dtype=int, device="cpu")
+    surface = SkinnedSurface(visuals, walls, 3, "cpu", patient)
+    for wanted in ([0, 1, 1], [1, 1, 0]):
+        patient.assign(wanted)
+        surface.update(wall_array(*(walls[p].points for p in wanted)))
+        for world, p in enumerate(wanted):
+            expected = visuals[p].points[visuals[p].faces]
+            expected = expected[np.lexsort(expected[:, 0].round(6).T)]
+            found = triangles(surface, world)
+            assert len(found) == len(expected)
+            np.testing.assert_allclose(np.sort(found.reshape(-1)), np.sort(expected.reshape(-1)), atol=1.0e-6)
+
+
+@wp.kernel
+def shoot(
+    mesh: wp.uint64,
+    roots: wp.array[int],
+    origin: wp.array[wp.vec3],
+    direction: wp.array[wp.vec3],
+    distance: wp.array2d[float],
+):
+    world, ray = wp.tid()
+    query = wp.mesh_query_ray(mesh, origin[ray], direction[ray], 1.0, roots[world])
+    distance[world, ray] = wp.where(query.result, query.t, -1.0)
+
+
+def test_rays_meet_the_same_triangles_as_with_a_tree_of_the_patients_own():
+    visuals, walls = two_patients()
+    patient = wp.array([0, 1], dtype=int, device="cpu")
+    shared = SkinnedSurface(visuals, walls, 2, "cpu", patient)
+    rng = np.random.default_rng(0)
+    directions = rng.normal(size=(200, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    rays = [wp.array(values, dtype=wp.vec3, device="cpu") for values in (np.tile(MIDDLE, (200, 1)) * 0.5, directions)]
+    for order in ([0, 1], [1, 0]):
+        patient.assign(order)
+        shared.update(wall_array(*(walls[p].points for p in order)))
+        found = wp.zeros((2, 200), dtype=float, device="cpu")
+        wp.launch(shoot, (2, 200), inputs=[shared.mesh.id, shared.roots, *rays], outputs=[found], device="cpu")
+        for world, p in enumerate(order):
+            own = SkinnedSurface(visuals[p], walls[p], 1, "cpu")
+            expected = wp.zeros((1, 200), dtype=float, device="cpu")
+            wp.launch(shoot, (1, 200), inputs=[own.mesh.id, own.roots, *rays], outputs=[expected], device="cpu")
+            np.testing.assert_allclose(found.numpy()[world], expected.numpy()[0], atol=1.0e-6)
+            assert (found.numpy()[world] > 0.0).sum() > 60

@@ -100,11 +100,17 @@ class TubeScene(dict):
         wall = tube_wall(radius=radius)
         visual = tube_visual(wall, radius=radius)
         albedo, detail = write_textures(folder, plain)
-        self["colon"] = SimpleNamespace(
-            stage=SimpleNamespace(
-                wall=wall, visual=visual, visual_proxy=visual, albedo_texture=albedo, detail_texture=detail
-            ),
+        patient = SimpleNamespace(
             wall=wall,
+            visual=visual,
+            albedo_texture=albedo,
+            detail_texture=detail,
+            stage=SimpleNamespace(visual=visual),
+        )
+        self["colon"] = SimpleNamespace(
+            patients=(patient,),
+            patient_of=lambda env_id: patient,
+            patient_wp=wp.zeros(num_envs, dtype=int, device=device),
             nodal_pos_wp=wp.array(np.repeat(wall.points[:, None], num_envs, axis=1), dtype=wp.vec3, device=device),
         )
         camera = CameraSpec((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.radians(150.0), (0.001, 0.6))
@@ -125,4 +131,4 @@ class TubeScene(dict):
     @property
     def rest(self) -> np.ndarray:
         """Wall vertices at rest [m], shape (V, 3)."""
-        return self["colon"].stage.wall.points
+        return self["colon"].patients[0].wall.points

@@ -12,6 +12,7 @@ import torch
 import warp as wp
 from tiny import tiny_colon_stage
 
+from arcgym.assets.patient import patient_of_stage
 from arcgym.viewers import OutsideViewCfg, TwoPaneView, ViewerCfg
 from arcgym.viewers.frame_info import read_info
 
@@ -29,7 +30,8 @@ class FakeCamera:
 def make_env(with_camera: bool = True) -> SimpleNamespace:
     stage = tiny_colon_stage()
     points = wp.array(np.repeat(stage.wall.points[:, None], 2, axis=1), dtype=wp.vec3)
-    colon = SimpleNamespace(stage=stage, wall=stage.wall, nodal_pos_wp=points, points=wp.to_torch(points))
+    patient = patient_of_stage(stage, shell=False)
+    colon = SimpleNamespace(patient_of=lambda env_id: patient, nodal_pos_wp=points, points=wp.to_torch(points))
     position = torch.zeros(2, LINKS, 3)
     position[:, :, 2] = torch.arange(LINKS) * 0.02 - 0.05
     data = SimpleNamespace(

@@ -12,11 +12,13 @@ import torch
 import warp as wp
 from tiny import tiny_colon_stage
 
+from arcgym.assets.patient import patient_of_stage
 from arcgym.envs.mdp import ForceTiersCfg
 from arcgym.viewers.palette import deformation_colors, force_colors, shown_tiers
 from arcgym.viewers.wall_paint import WallPaint, wall_scale, window_at_links
 
 STAGE = tiny_colon_stage()
+PATIENT = patient_of_stage(STAGE, shell=False)
 SKIN = STAGE.visual_proxy
 
 
@@ -26,17 +28,17 @@ def make_colon(second: np.ndarray) -> SimpleNamespace:
     tension[1, 6] = 2.0
     points = wp.array(np.stack([STAGE.wall.points, second], axis=1), dtype=wp.vec3)
     data = SimpleNamespace(anchor_tension=tension)
-    return SimpleNamespace(stage=STAGE, wall=STAGE.wall, nodal_pos_wp=points, data=data)
+    return SimpleNamespace(nodal_pos_wp=points, data=data)
 
 
 def test_strain_is_that_of_the_chosen_world() -> None:
-    paint = WallPaint(make_colon(STAGE.wall.points * np.array([1.0, 1.0, 1.25], np.float32)))
+    paint = WallPaint(make_colon(STAGE.wall.points * np.array([1.0, 1.0, 1.25], np.float32)), PATIENT)
     np.testing.assert_allclose(paint.strain(0), 0.0, atol=1e-5)
     np.testing.assert_allclose(paint.strain(1), 0.25, atol=1e-4)
 
 
 def test_tension_is_shown_where_its_ring_is() -> None:
-    values = WallPaint(make_colon(STAGE.wall.points)).tension(1)
+    values = WallPaint(make_colon(STAGE.wall.points), PATIENT).tension(1)
     share = (SKIN.skin_weights * (STAGE.wall.ring[SKIN.skin_indices] == 6)).sum(axis=1)
     np.testing.assert_allclose(values, 2.0 * share, atol=1e-6)
     assert values.max() > 1.0
@@ -45,7 +47,7 @@ def test_tension_is_shown_where_its_ring_is() -> None:
 def test_force_is_shown_beside_the_link_that_presses() -> None:
     quaternions = np.tile([0.0, 0.0, 0.0, 1.0], (2, 1))
     middle = np.array([[0.015, 0.0, 0.05], [0.0, 0.0, 0.15]])
-    paint = WallPaint(make_colon(STAGE.wall.points))
+    paint = WallPaint(make_colon(STAGE.wall.points), PATIENT)
     values = paint.force(0, middle, quaternions, np.full(2, 0.02), np.array([6.0, 0.0]))
     top = SKIN.points[values.argmax()]
     assert 5.0 < values.max() <= 6.0

@@ -17,13 +17,14 @@ from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
 from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from arcgym.assets.colon import Colon, ColonData
+    from arcgym.assets.colon import Colon
+    from arcgym.assets.colon_data import ColonData
     from arcgym.assets.endoscope import Endoscope
     from arcgym.assets.endoscope_data import EndoscopeData
 
 _LAZY = {
     "Colon": "arcgym.assets.colon",
-    "ColonData": "arcgym.assets.colon",
+    "ColonData": "arcgym.assets.colon_data",
     "Endoscope": "arcgym.assets.endoscope",
     "EndoscopeData": "arcgym.assets.endoscope_data",
 }

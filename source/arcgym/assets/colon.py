@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import newton
@@ -13,21 +15,28 @@ import torch
 import warp as wp
 
 from arcgym.anatomy.segments import ANCHOR_FIXED, SEGMENTS
-from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
-from arcgym.anatomy.stage import WallMesh, read_colon
+from arcgym.anatomy.shell import ShellMesh
+from arcgym.anatomy.stage import ColonStage, WallMesh
 from arcgym.assets.anchors import AnchorSprings, anchor_springs
 from arcgym.assets.colon_cfg import ColonCfg
+from arcgym.assets.colon_data import ColonData
 from arcgym.assets.materials import Value, anchor_scale, shell_moduli, solid_moduli, tissue_preset
+from arcgym.assets.patient import Patient, read_patient
 from arcgym.assets.shell_loading import add_shell
 from arcgym.assets.usd_loading import add_colon_usd
 from arcgym.utils.paths import resolve_asset
+from arcgym.utils.string import did_you_mean
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
 
 
 class Colon:
-    """Soft colon of every world. V wall vertices, R rings, N worlds."""
+    """Soft colon of every world. V wall vertices, R rings, N worlds.
+
+    Every world has one of the :attr:`patients`. They share one grid of vertices; what :attr:`stage`, :attr:`path` and
+    :attr:`wall` say of places holds for the first of them.
+    """
 
     def __init__(self, cfg: ColonCfg):
         """Read and check the stage; nothing is allocated on the device yet.
@@ -37,8 +46,6 @@ class Colon:
             ValueError: If material, anchors or kind of wall are unknown, or a segment has no such name.
         """
         self.cfg = cfg
-        self.path = resolve_asset(cfg.usd_path)
-        self.stage = read_colon(self.path)
         self.tissue = tissue_preset(cfg.material)
         self.anchor_scale = anchor_scale(cfg.anchors)
         for field in ("anchor_stiffness", "anchor_slack"):
@@ -49,15 +56,31 @@ class Colon:
             raise ValueError(f"ColonCfg.wall_model is {cfg.wall_model!r}; choose 'shell' or 'solid'.")
         if cfg.wall_model == "solid" and cfg.wall_thickness is not None:
             raise ValueError("ColonCfg.wall_thickness is for wall_model='shell'; a solid is as thick as its stage.")
-        self.thickness = self._thickness()
-        self.wall: WallMesh | ShellMesh = self.stage.wall
-        if cfg.wall_model == "shell":
-            self.wall = mid_surface(self.stage.wall, self.thickness)
+        shell = cfg.wall_model == "shell"
+        chosen = (cfg.wall_thickness, self.tissue.thickness if shell else None)
+        thickness = next((value for value in chosen if value is not None), None)
+        self.patients: tuple[Patient, ...] = (read_patient(resolve_asset(cfg.usd_path), thickness, shell),)
+        """Colons, of which each world has one."""
 
-    def _thickness(self) -> float:
-        """Thickness of the wall in use [m]."""
-        chosen = (self.cfg.wall_thickness, self.tissue.thickness if self.cfg.wall_model == "shell" else None)
-        return next((value for value in chosen if value is not None), wall_thickness(self.stage.wall))
+    @property
+    def path(self) -> Path:
+        """Stage file of the first patient."""
+        return self.patients[0].path
+
+    @property
+    def stage(self) -> ColonStage:
+        """Stage of the first patient."""
+        return self.patients[0].stage
+
+    @property
+    def wall(self) -> WallMesh | ShellMesh:
+        """Wall of the first patient; all have its triangles, rings and layers."""
+        return self.patients[0].wall
+
+    @property
+    def thickness(self) -> float:
+        """Thickness of the wall [m], the same for all patients."""
+        return self.patients[0].thickness
 
     @property
     def num_nodes(self) -> int:
@@ -69,6 +92,22 @@ class Colon:
         """Number of rings R along the centreline."""
         return len(self.wall.ring_arc)
 
+    @cached_property
+    def segments(self) -> tuple[str, ...]:
+        """Names of the segments that all patients have, from the anus on."""
+        return tuple(name for name in SEGMENTS if all(name in patient.bounds for patient in self.patients))
+
+    def require_segment(self, name: str) -> None:
+        """Check that all patients have a segment.
+
+        Raises:
+            ValueError: If one does not have it; names its stage and the segments that it has.
+        """
+        if name in self.segments:
+            return
+        patient = next(patient for patient in self.patients if name not in patient.bounds)
+        raise ValueError(f"Segment '{name}' is not in {patient.path}. {did_you_mean(name, patient.bounds)}")
+
     def add_to(self, builder: newton.ModelBuilder) -> None:
         """Load the wall into ``builder`` and apply the material overrides."""
         if isinstance(self.wall, ShellMesh):
@@ -79,7 +118,7 @@ class Colon:
         mu, lam, _ = solid_moduli(*self.elasticity())
         for tet in range(first_tet, len(builder.tet_indices)):
             builder.tet_materials[tet] = (mu, lam, builder.tet_materials[tet][2])
-        ratio = self._value("density") / self.stage.material.density
+        ratio = self._value("density") / self.patients[0].material.density
         for i in particles:
             builder.particle_mass[i] *= ratio
 
@@ -100,7 +139,7 @@ class Colon:
 
     def _value(self, name: str) -> float:
         """Material value: the configuration's, else the preset's, else the stage's."""
-        values = [getattr(source, name) for source in (self.cfg, self.tissue, self.stage.material)]
+        values = [getattr(source, name) for source in (self.cfg, self.tissue, self.patients[0].material)]
         return next(value for value in values if value is not None)
 
     def mobile(self) -> np.ndarray:
@@ -121,7 +160,12 @@ class Colon:
         """Connect to the arrays of a built simulation; called once by it."""
         self._sim = sim
         self.nodal_pos_wp: wp.array = sim.nodal_pos
+        self.patient_wp: wp.array = sim.patient
         self.data = ColonData(self, sim)
+
+    def patient_of(self, env_id: int) -> Patient:
+        """Return the patient of a world; waits for the device."""
+        return self.patients[int(self.data.patient[env_id])]
 
     def write_nodal_pos_to_sim(self, pos: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Set wall positions [m], shape (n, V, 3), of the worlds ``env_ids`` (all by default)."""
@@ -179,44 +223,3 @@ class Colon:
     @staticmethod
     def _worlds(env_ids: Sequence[int] | torch.Tensor | None) -> slice | torch.Tensor | Sequence[int]:
         return slice(None) if env_ids is None else env_ids
-
-
-class ColonData:
-    """State of the wall as tensors that share memory with the simulation."""
-
-    def __init__(self, colon: Colon, sim: Simulation):
-        """Make views on the simulation's arrays."""
-        n, v = sim.num_envs, colon.num_nodes
-        self.nodal_pos_w: torch.Tensor = wp.to_torch(sim.nodal_pos).transpose(0, 1)
-        """Positions of the wall vertices [m], shape (N, V, 3)."""
-        self.nodal_vel_w: torch.Tensor = wp.to_torch(sim.nodal_vel).transpose(0, 1)
-        """Velocities of the wall vertices [m/s], shape (N, V, 3)."""
-        self.centerline_pos_w: torch.Tensor = wp.to_torch(sim.ring_centers)
-        """Centres of the deformed rings [m], shape (N, R, 3)."""
-        wall = colon.wall
-        self.centerline_arc = torch.tensor(wall.ring_arc, dtype=torch.float32, device=sim.device)
-        """Arc length of the rings at rest [m], shape (R,)."""
-        rest = torch.tensor(wall.points, dtype=torch.float32, device=sim.device)
-        self.default_nodal_state_w = torch.cat([rest, torch.zeros_like(rest)], dim=1).expand(n, v, 6)
-        """Rest state of the wall vertices, position [m] and velocity [m/s], shape (N, V, 6)."""
-        self.root_pos_w = torch.zeros(n, 3, device=sim.device)
-        """Position of the anal verge [m], shape (N, 3): the origin."""
-        readout = sim.wall_readout
-        self.wall_strain: torch.Tensor = wp.to_torch(readout.strain).transpose(0, 1)
-        """Largest principal strain (stretch - 1) of each ring's lumen faces, mean over the control step, (N, R)."""
-        self.wall_strain_peak: torch.Tensor = wp.to_torch(readout.strain_peak).transpose(0, 1)
-        """The same, largest physics step of the control step, shape (N, R)."""
-        self.anchor_tension: torch.Tensor = wp.to_torch(readout.tension).transpose(0, 1)
-        """Net pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
-        self.anchor_tension_peak: torch.Tensor = wp.to_torch(readout.tension_peak).transpose(0, 1)
-        """The same, largest physics step of the control step [N], shape (N, R)."""
-
-    @property
-    def nodal_state_w(self) -> torch.Tensor:
-        """Positions [m] and velocities [m/s] of the wall vertices, shape (N, V, 6)."""
-        return torch.cat([self.nodal_pos_w, self.nodal_vel_w], dim=2)
-
-    @property
-    def nodal_displacement(self) -> torch.Tensor:
-        """Distance of each wall vertex from its rest position [m], shape (N, V)."""
-        return torch.linalg.vector_norm(self.nodal_pos_w - self.default_nodal_state_w[..., :3], dim=2)

@@ -95,9 +95,7 @@ class EndoscopeData:
         """Angles the bending section is driven to (pitch, yaw) [rad], shape (N, 2); zero without one."""
         self._rest_insertion = endoscope.rest_insertion
         self._has_shaft = endoscope.stage.root == "slide_roll"
-        bounds = endoscope_segments(sim)
-        self._segment_ends = torch.tensor([end for _, end in bounds], device=sim.device)
-        self._segment_codes = torch.tensor([code for code, _ in bounds], device=sim.device)
+        self._segment_spans = sim.colon.data.segment_spans
 
     @property
     def inserted_length(self) -> torch.Tensor:
@@ -107,8 +105,11 @@ class EndoscopeData:
     @property
     def tip_segment(self) -> torch.Tensor:
         """Segment that the tip is in, index into ``SEGMENTS``, shape (N,), int64."""
-        place = torch.searchsorted(self._segment_ends, self.tip_arc_length.contiguous(), right=True)
-        return self._segment_codes[place.clamp(max=len(self._segment_codes) - 1)]
+        start, end = self._segment_spans.unbind(dim=2)
+        passed = (end <= self.tip_arc_length.unsqueeze(1)).sum(dim=1)
+        has = end > start
+        last = len(SEGMENTS) - 1 - has.flip(1).byte().argmax(dim=1)
+        return torch.minimum(torch.maximum(passed, has.byte().argmax(dim=1)), last)
 
 
 def _readings(endoscope: Endoscope) -> dict[str, torch.Tensor]:
@@ -126,8 +127,3 @@ def _readings(endoscope: Endoscope) -> dict[str, torch.Tensor]:
                 )
             readings[field] = wp.to_torch(array)
     return readings
-
-
-def endoscope_segments(sim: Simulation) -> list[tuple[int, float]]:
-    """(index into SEGMENTS, arc length of its end [m]) of each segment of the colon, in order."""
-    return [(SEGMENTS.index(name), end) for name, (_, end) in sim.colon.stage.segment_bounds().items()]

@@ -65,8 +65,6 @@ def find_covered(
 def cast_rays(
     surface: SurfaceView,
     lighting: Lighting,
-    albedo: wp.Texture2D,
-    detail: wp.Texture2D,
     drawn: wp.array[wp.bool],
     poses: wp.array[wp.transform],
     rays: wp.array3d[wp.vec3],
@@ -82,8 +80,6 @@ def cast_rays(
     Args:
         surface: Surface of all worlds.
         lighting: Lights and mucosa.
-        albedo: Colour texture.
-        detail: Texture of slope, height and wetness.
         drawn: Worlds to draw, shape (N,).
         poses: Camera poses, shape (N,).
         rays: Directions in the camera's frame, shape (H, W, S).
@@ -98,7 +94,7 @@ def cast_rays(
     if not drawn[world]:
         return
     if covered[world]:
-        radiance[world, row, column] = covered_radiance(lighting, albedo)
+        radiance[world, row, column] = covered_radiance(lighting, surface.albedo[surface.patient[world]])
         depth[world, row, column] = near
         return
     camera = poses[world]
@@ -110,7 +106,7 @@ def cast_rays(
         query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
         if query.result:
             hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
-            total += shade(surface, lighting, albedo, detail, hit, camera, direction, query.t, texture_offset[world])
+            total += shade(surface, lighting, world, hit, camera, direction, query.t, texture_offset[world])
             nearest = wp.min(nearest, query.t)
     radiance[world, row, column] = total / float(rays.shape[2])
     depth[world, row, column] = nearest

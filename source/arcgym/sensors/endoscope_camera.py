@@ -5,14 +5,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
 import warp as wp
 
-from arcgym.sensors.mucosa_textures import MucosaTextures
+from arcgym.sensors.mucosa_textures import MucosaTextures, load_textures, read_images
 from arcgym.sensors.sensor_base import SensorBase
 from arcgym.sensors.skinned_surface import SkinnedSurface
 from arcgym.sensors.surface_renderer import Optics, SurfaceRenderer, WorldLooks
@@ -23,6 +22,7 @@ from arcgym.utils.worlds import fill_worlds
 if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
     from arcgym.assets.endoscope_spec import CameraSpec
+    from arcgym.assets.patient import Patient
     from arcgym.scene.interactive_scene import InteractiveScene
     from arcgym.sensors.endoscope_camera_cfg import EndoscopeCameraCfg
 
@@ -62,13 +62,16 @@ class EndoscopeCamera(SensorBase):
         """Bind the camera to ``scene["colon"]`` and ``scene["endoscope"]`` and allocates its buffers."""
         self._colon, self._endoscope = scene["colon"], scene["endoscope"]
         self._device = str(scene.device)
-        stage = self._colon.stage
+        patients = self._colon.patients
         self._looks = WorldLooks.neutral(scene.num_envs, self._device)
         self._drawn = wp.full(scene.num_envs, True, dtype=wp.bool, device=self._device)
-        surface = SkinnedSurface(stage.visual_proxy, self._colon.wall, scene.num_envs, self._device)
-        textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device)
+        visuals, walls = [patient.visual for patient in patients], [patient.wall for patient in patients]
+        surface = SkinnedSurface(visuals, walls, scene.num_envs, self._device, self._colon.patient_wp)
+        images = [(patient.albedo_texture, patient.detail_texture) for patient in patients]
+        textures = load_textures(images, self._device)
         size = (self.cfg.width, self.cfg.height)
-        self._renderer = SurfaceRenderer(surface, stage.visual_proxy, textures, self._optics(), size, self.cfg.samples)
+        self._renderer = SurfaceRenderer(surface, visuals, textures, self._optics(), size, self.cfg.samples)
+        self._fine_patient: Patient | None = None
         self._snapshots: dict[tuple[int, int], SurfaceRenderer] = {}
         self._data = self._make_data()
 
@@ -144,7 +147,8 @@ class EndoscopeCamera(SensorBase):
     def snapshot_view(self, env_id: int = 0, size: int = 512, samples: int = 2) -> tuple[np.ndarray, np.ndarray]:
         """Draw one world large, from the fine surface, for people to look at.
 
-        The fine surface is made at the first call and kept. Exposure has no lag here.
+        The fine surface is made at the first call and kept until a world with another patient is drawn. Exposure has no
+        lag here.
 
         Args:
             env_id: World to draw, as it is now.
@@ -154,34 +158,32 @@ class EndoscopeCamera(SensorBase):
         Returns:
             Colour, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
         """
+        patient = self._colon.patient_of(env_id)
+        if patient is not self._fine_patient:
+            self._fine_patient, self._fine = patient, self._fine_surface(patient)
+            self._snapshots.clear()
         renderer = self._snapshot_renderer(size, samples)
         renderer.gain.zero_()
         renderer.surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
-        renderer.draw(
-            self._endoscope.camera_pose_wp[env_id : env_id + 1], self._looks.of_world(env_id), self._one_world
-        )
+        pose = self._endoscope.camera_pose_wp[env_id : env_id + 1]
+        drawn = wp.full(1, True, dtype=wp.bool, device=self._device)
+        renderer.draw(pose, self._looks.of_world(env_id), drawn)
         return renderer.rgb.numpy()[0].copy(), renderer.depth.numpy()[0].copy()
 
     def _snapshot_renderer(self, size: int, samples: int) -> SurfaceRenderer:
         """Return the renderer of one world's fine surface at this size, making it at first use."""
         key = (size, samples)
         if key not in self._snapshots:
-            visual, surface, textures = self._fine_surface
-            self._snapshots[key] = SurfaceRenderer(surface, visual, textures, self._optics(), (size, size), samples)
+            visual, surface, textures = self._fine
+            self._snapshots[key] = SurfaceRenderer(surface, [visual], [textures], self._optics(), (size, size), samples)
         return self._snapshots[key]
 
-    @cached_property
-    def _fine_surface(self) -> tuple[VisualMesh, SkinnedSurface, MucosaTextures]:
-        """The fine visual mesh of one world with its textures."""
-        stage = self._colon.stage
-        surface = SkinnedSurface(stage.visual, self._colon.wall, 1, self._device)
-        textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, self._device, smooth_levels=True)
-        return stage.visual, surface, textures
-
-    @cached_property
-    def _one_world(self) -> wp.array:
-        """Mask that draws the only world of a snapshot."""
-        return wp.full(1, True, dtype=wp.bool, device=self._device)
+    def _fine_surface(self, patient: Patient) -> tuple[VisualMesh, SkinnedSurface, MucosaTextures]:
+        """Return the fine visual mesh of one world with its textures."""
+        visual = patient.stage.visual
+        surface = SkinnedSurface(visual, patient.wall, 1, self._device)
+        images = read_images(patient.albedo_texture, patient.detail_texture)
+        return visual, surface, MucosaTextures(*images, self._device, smooth_levels=True)
 
     def _optics(self) -> Optics:
         """Gather what the endoscope's stage and the configuration say about camera and lights."""

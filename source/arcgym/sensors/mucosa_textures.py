@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -16,21 +19,52 @@ from arcgym.utils import warp_setup  # noqa: F401
 class MucosaTextures:
     """Albedo and detail texture with their pyramids of ever smaller copies, tiled in both directions."""
 
-    def __init__(self, albedo: Path, detail: Path, device: str, smooth_levels: bool = False) -> None:
-        """Load both images.
+    def __init__(self, color: np.ndarray, detail: np.ndarray, device: str, smooth_levels: bool = False) -> None:
+        """Copy both images to the device.
 
         Args:
-            albedo: Colour image in sRGB.
-            detail: RGBA image: slope along u, slope along v, height, wetness.
+            color: Colour, square roots of linear light, shape (H, W, 4), uint8.
+            detail: Slope along u, slope along v, height, wetness, shape (H, W, 4), uint8.
             device: Warp device.
             smooth_levels: Blend between two levels of the pyramid. Smoother in large pictures, twice the look-ups.
         """
         blend = wp.TextureFilterMode.LINEAR if smooth_levels else wp.TextureFilterMode.CLOSEST
-        color = _load_rgba(albedo)
-        color[..., :3] = _square_root_of_linear(color[..., :3])
         self.albedo = _make_texture(color, blend, device)
-        self.detail = _make_texture(_load_rgba(detail), blend, device)
+        self.detail = _make_texture(detail, blend, device)
         self.width, self.height = color.shape[1], color.shape[0]
+
+
+def read_images(albedo: Path, detail: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Read the images of :class:`MucosaTextures`.
+
+    Args:
+        albedo: Colour image in sRGB.
+        detail: RGBA image: slope along u, slope along v, height, wetness.
+
+    Raises:
+        FileNotFoundError: If one is missing.
+    """
+    color = _load_rgba(albedo)
+    color[..., :3] = _square_root_of_linear(color[..., :3])
+    return color, _load_rgba(detail)
+
+
+def load_textures(files: Sequence[tuple[Path, Path]], device: str) -> list[MucosaTextures]:
+    """Load pairs of images, see :func:`read_images`; pairs of the same content share their memory."""
+    with ThreadPoolExecutor() as pool:
+        contents = list(pool.map(_content, files))
+        distinct = dict(zip(contents, files, strict=True))
+        images = dict(zip(distinct, pool.map(lambda pair: read_images(*pair), distinct.values()), strict=True))
+    loaded = {content: MucosaTextures(*pair, device) for content, pair in images.items()}
+    return [loaded[content] for content in contents]
+
+
+def _content(files: tuple[Path, Path]) -> str:
+    """Return a hash of both images; of their names where one is missing, for :func:`read_images` to tell."""
+    digest = hashlib.sha256()
+    for path in files:
+        digest.update(path.read_bytes() if path.is_file() else str(path).encode())
+    return digest.hexdigest()
 
 
 def _load_rgba(path: Path) -> np.ndarray:

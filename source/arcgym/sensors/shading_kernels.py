@@ -10,13 +10,16 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.struct
 class SurfaceView:
-    """A :class:`SkinnedSurface` and its textures, for ray casting. W worlds, M vertices."""
+    """A :class:`SkinnedSurface` and its textures, for ray casting. W worlds, P patients, M vertices."""
 
     mesh: wp.uint64  # grouped by world
     roots: wp.array[int]  # root of each world's group, shape (W,)
     normals: wp.array[wp.vec3]  # unit normals towards the lumen, shape (W*M,)
-    attributes: wp.array[wp.vec4]  # u, v, tint and texels per metre of every vertex, shared by the worlds, shape (M,)
-    texture_size: wp.vec2  # length of the texture along u and v at its true scale [m]
+    patient: wp.array[int]  # patient of each world, shape (W,)
+    attributes: wp.array2d[wp.vec4]  # u, v, tint and texels per metre of every vertex of each patient, shape (M, P)
+    albedo: wp.array[wp.Texture2D]  # colour, shape (P,)
+    detail: wp.array[wp.Texture2D]  # slope, height and wetness, shape (P,)
+    texture_size: wp.array[wp.vec2]  # length of the texture along u and v at its true scale [m], shape (P,)
 
 
 @wp.struct
@@ -65,9 +68,10 @@ def surface_hit(
     w1 = query.v
     w2 = 1.0 - w0 - w1
     first = world * surface.attributes.shape[0]
-    a0 = surface.attributes[i0 - first]
-    a1 = surface.attributes[i1 - first]
-    a2 = surface.attributes[i2 - first]
+    p = surface.patient[world]
+    a0 = surface.attributes[i0 - first, p]
+    a1 = surface.attributes[i1 - first, p]
+    a2 = surface.attributes[i2 - first, p]
     at = a0 * w0 + a1 * w1 + a2 * w2
 
     p0 = wp.mesh_get_point(surface.mesh, corner)
@@ -172,8 +176,7 @@ def covered_radiance(lighting: Lighting, albedo: wp.Texture2D) -> wp.vec3:
 def shade(
     surface: SurfaceView,
     lighting: Lighting,
-    albedo: wp.Texture2D,
-    detail: wp.Texture2D,
+    world: int,
     hit: Hit,
     camera: wp.transform,
     direction: wp.vec3,
@@ -181,12 +184,13 @@ def shade(
     texture_offset: wp.vec2,
 ) -> wp.vec3:
     """Return the radiance that a hit sends back along the ray."""
+    p = surface.patient[world]
     uv = hit.uv + texture_offset
-    texel = wp.texture_sample(albedo, uv, dtype=wp.vec4f, lod=hit.level)
-    relief_texel = wp.texture_sample(detail, uv, dtype=wp.vec4f, lod=hit.level + 1.0)
+    texel = wp.texture_sample(surface.albedo[p], uv, dtype=wp.vec4f, lod=hit.level)
+    relief_texel = wp.texture_sample(surface.detail[p], uv, dtype=wp.vec4f, lod=hit.level + 1.0)
     color = mucosa_color(texel, hit.tint)
     slope = wp.vec2(2.0 * relief_texel[0] - 1.0, 2.0 * relief_texel[1] - 1.0)
-    relief = relief_normal(hit, slope, surface.texture_size, lighting.bump)
+    relief = relief_normal(hit, slope, surface.texture_size[p], lighting.bump)
     film = wp.normalize(hit.normal + (relief - hit.normal) * lighting.film)
     open_sky = wp.clamp(1.0 + 0.85 * hit.tint, 0.15, 1.0)
     gloss = lighting.gloss * (0.25 + 0.75 * relief_texel[3]) * open_sky

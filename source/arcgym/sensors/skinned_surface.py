@@ -4,17 +4,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import warp as wp
 
-from arcgym.sensors.skinning_kernels import group_roots, skin_vertices, wall_frames
+from arcgym.sensors.shared_tree import curve_points, sorted_faces
+from arcgym.sensors.skinning_kernels import group_roots, skin_vertices, wall_frames, write_faces
 from arcgym.utils import warp_setup  # noqa: F401
 
 if TYPE_CHECKING:
     from arcgym.anatomy.shell import ShellMesh
     from arcgym.anatomy.stage import VisualMesh, WallMesh
+
+LANES = 256
+"""Threads that write the triangles of a world."""
 
 
 class SkinnedSurface:
@@ -24,6 +29,9 @@ class SkinnedSurface:
     of being sheared. All worlds share one mesh whose triangles are grouped by world: a ray that starts at a world's
     root meets no other world. :meth:`update` only launches kernels and can be captured in a CUDA graph; CPU graphs of
     Warp 1.19 do not record the refit of a mesh, so there it has to run beside the graph.
+
+    Every world has one of P patients; surfaces of fewer vertices or triangles than the largest are filled up. One
+    patient's tree is that of its rest shape; several patients share one, see :mod:`arcgym.sensors.shared_tree`.
     """
 
     points: wp.array
@@ -35,24 +43,50 @@ class SkinnedSurface:
     roots: wp.array
     """Where ray queries of a world start, shape (num_envs,), int32."""
 
-    def __init__(self, visual: VisualMesh, wall: WallMesh | ShellMesh, num_envs: int, device: str) -> None:
-        """Bind `visual` to the rest shape of `wall`, once for all `num_envs` worlds."""
-        _check_binding(visual, wall)
+    def __init__(
+        self,
+        visual: VisualMesh | Sequence[VisualMesh],
+        wall: WallMesh | ShellMesh | Sequence[WallMesh | ShellMesh],
+        num_envs: int,
+        device: str,
+        patient: wp.array | None = None,
+    ) -> None:
+        """Bind surfaces to the rest shapes of their walls.
+
+        Args:
+            visual: Surface of the patient, or of each.
+            wall: Wall of the patient, or of each; all on one grid.
+            num_envs: Number of worlds.
+            device: Warp device.
+            patient: Patient of each world, shape (num_envs,), int32, read at every update; None for the first.
+
+        Raises:
+            ValueError: If a surface does not fit its wall.
+        """
+        visuals = list(visual) if isinstance(visual, Sequence) else [visual]
+        walls = list(wall) if isinstance(wall, Sequence) else [wall]
+        for one, of in zip(visuals, walls, strict=True):
+            _check_binding(one, of)
         self.num_envs = num_envs
-        self.num_nodes = len(wall.points)
-        self.num_vertices = len(visual.points)
+        self.num_nodes = len(walls[0].points)
+        self.num_vertices = max(len(one.points) for one in visuals)
         self.device = device
+        self.patient = wp.zeros(num_envs, dtype=int, device=device) if patient is None else patient
         self._device = wp.get_device(device)
         self._everywhere = wp.full(num_envs, True, dtype=wp.bool, device=device)
-        self._neighbors = wp.array(wall.frame_neighbors, dtype=wp.vec4i, device=device)
+        self._neighbors = wp.array(walls[0].frame_neighbors, dtype=wp.vec4i, device=device)
         self._frames = wp.zeros((self.num_nodes, num_envs), dtype=wp.mat33, device=device)
-        self._bind(visual, wall)
+        self._bind(visuals, walls)
         count = num_envs * self.num_vertices
         self.points = wp.zeros(count, dtype=wp.vec3, device=device)
         self.normals = wp.zeros(count, dtype=wp.vec3, device=device)
-        rest = wp.array(np.repeat(wall.points[:, None], num_envs, axis=1), dtype=wp.vec3, device=device)
-        self._skin(rest, self._everywhere)
-        self.mesh = self._build_mesh(visual.faces)
+        rest = np.stack([of.points for of in walls], axis=1)[:, self.patient.numpy()]
+        if len(visuals) == 1:
+            self._skin(wp.array(rest, dtype=wp.vec3, device=device), self._everywhere)
+            self.mesh = self._build_mesh(visuals[0].faces)
+        else:
+            self.mesh = self._build_shared(sorted_faces(visuals, walls[0]))
+            self.update(wp.array(rest, dtype=wp.vec3, device=device))
         self.roots = wp.zeros(num_envs, dtype=int, device=device)
         wp.launch(group_roots, num_envs, inputs=[self.mesh.id], outputs=[self.roots], device=device)
 
@@ -72,6 +106,7 @@ class SkinnedSurface:
                 " replay would trace rays through a stale tree. Update the camera outside the capture, or use CUDA."
             )
         self._skin(nodal_pos, self._everywhere if drawn is None else drawn)
+        self._exchange_faces()
         self.mesh.refit()
 
     def _skin(self, nodal_pos: wp.array, drawn: wp.array) -> None:
@@ -86,30 +121,51 @@ class SkinnedSurface:
         wp.launch(
             skin_vertices,
             (self.num_vertices, self.num_envs),
-            inputs=[nodal_pos, self._frames, *self._binding, drawn],
+            inputs=[nodal_pos, self._frames, self.patient, *self._binding, drawn],
             outputs=[self.points, self.normals],
             device=self.device,
         )
 
-    def _bind(self, visual: VisualMesh, wall: WallMesh | ShellMesh) -> None:
-        """Store offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
-        rest = wp.array(wall.points[:, None], dtype=wp.vec3, device=self.device)
+    def _exchange_faces(self) -> None:
+        """Give worlds that have another patient than before that patient's triangles."""
+        if self._faces is None:
+            return
         wp.launch(
-            wall_frames,
-            (self.num_nodes, 1),
-            inputs=[rest, self._neighbors, self._everywhere],
-            outputs=[self._frames],
+            write_faces,
+            (self.num_envs, LANES),
+            inputs=[self._faces, self.patient, self._written, self.num_vertices, LANES],
+            outputs=[self.mesh.indices],
             device=self.device,
         )
-        index = visual.skin_indices
-        frames = self._frames.numpy()[:, 0][index]
-        offsets = np.einsum("vkji,vkj->vki", frames, visual.points[:, None] - wall.points[index])
-        normals = np.einsum("vkji,vj->vki", frames, visual.normals)
+        wp.copy(self._written, self.patient)
+
+    def _bind(self, visuals: list[VisualMesh], walls: list[WallMesh | ShellMesh]) -> None:
+        """Store offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
+        count = len(walls)
+        rest = wp.array(np.stack([of.points for of in walls], axis=1), dtype=wp.vec3, device=self.device)
+        frames = wp.zeros((self.num_nodes, count), dtype=wp.mat33, device=self.device)
+        everywhere = wp.full(count, True, dtype=wp.bool, device=self.device)
+        wp.launch(
+            wall_frames,
+            (self.num_nodes, count),
+            inputs=[rest, self._neighbors, everywhere],
+            outputs=[frames],
+            device=self.device,
+        )
+        index = np.zeros((self.num_vertices, count, 4), np.int32)
+        weights = np.zeros((self.num_vertices, count, 4), np.float32)
+        offsets, normals = (np.zeros((self.num_vertices, 4, count, 3), np.float32) for _ in range(2))
+        for p, (visual, wall, frame) in enumerate(zip(visuals, walls, frames.numpy().swapaxes(0, 1), strict=True)):
+            own, carried = slice(len(visual.points)), frame[visual.skin_indices]
+            index[own, p], weights[own, p] = visual.skin_indices, visual.skin_weights
+            away = visual.points[:, None] - wall.points[visual.skin_indices]
+            offsets[own, :, p] = np.einsum("vkji,vkj->vki", carried, away)
+            normals[own, :, p] = np.einsum("vkji,vj->vki", carried, visual.normals)
         self._binding = (
             wp.array(index, dtype=wp.vec4i, device=self.device),
-            wp.array(visual.skin_weights, dtype=wp.vec4, device=self.device),
-            wp.array(offsets.astype(np.float32), dtype=wp.vec3, device=self.device),
-            wp.array(normals.astype(np.float32), dtype=wp.vec3, device=self.device),
+            wp.array(weights, dtype=wp.vec4, device=self.device),
+            wp.array(offsets, dtype=wp.vec3, device=self.device),
+            wp.array(normals, dtype=wp.vec3, device=self.device),
         )
 
     def _build_mesh(self, faces: np.ndarray) -> wp.Mesh:
@@ -119,11 +175,29 @@ class SkinnedSurface:
         by Morton codes at once (lbvh). With two faces a leaf it then draws as fast, and refits 1.7 ms slower at 1024
         worlds (``arcgym bench camera`` on an H100).
         """
+        self._faces = None
+        return self._grouped_mesh(self.points, faces)
+
+    def _build_shared(self, faces: np.ndarray) -> wp.Mesh:
+        """Build the grouped mesh of several patients, the triangles of each, shape (P, F, 3), in a common order.
+
+        The tree is made of points in that order, and then given the vertices and triangles of the worlds.
+        """
+        count = faces.shape[1]
+        spread = np.repeat(np.arange(count) * self.num_vertices // count, 3).reshape(-1, 3)
+        points = np.tile(curve_points(self.num_vertices), (self.num_envs, 1))
+        self.points.assign(points)
+        mesh = self._grouped_mesh(self.points, spread)
+        self._faces = wp.array(faces.swapaxes(0, 1).copy(), dtype=wp.vec3i, device=self.device)
+        self._written = wp.full(self.num_envs, -1, dtype=int, device=self.device)
+        return mesh
+
+    def _grouped_mesh(self, points: wp.array, faces: np.ndarray) -> wp.Mesh:
         first = np.arange(self.num_envs, dtype=np.int32) * self.num_vertices
         indices = (faces.reshape(1, -1).astype(np.int32) + first[:, None]).ravel()
         groups = np.repeat(np.arange(self.num_envs, dtype=np.int32), len(faces))
         return wp.Mesh(
-            self.points,
+            points,
             wp.array(indices, dtype=int, device=self.device),
             groups=wp.array(groups, dtype=int, device=self.device),
             bvh_constructor="sah" if self._device.is_cpu else "lbvh",

@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """Kernels that carry the visual surface along with the deforming wall, all worlds in one launch.
 
-Launch dimensions: V wall vertices, M vertices of the visual surface, W worlds.
+Launch dimensions: V wall vertices, M vertices of the visual surface, W worlds; P patients.
 """
 
 import warp as wp
@@ -43,10 +43,11 @@ def wall_frames(
 def skin_vertices(
     nodes: wp.array2d[wp.vec3],
     frames: wp.array2d[wp.mat33],
-    skin_indices: wp.array[wp.vec4i],
-    skin_weights: wp.array[wp.vec4],
-    rest_offsets: wp.array2d[wp.vec3],
-    rest_normals: wp.array2d[wp.vec3],
+    patient: wp.array[int],
+    skin_indices: wp.array2d[wp.vec4i],
+    skin_weights: wp.array2d[wp.vec4],
+    rest_offsets: wp.array3d[wp.vec3],
+    rest_normals: wp.array3d[wp.vec3],
     drawn: wp.array[wp.bool],
     points: wp.array[wp.vec3],
     normals: wp.array[wp.vec3],
@@ -56,10 +57,11 @@ def skin_vertices(
     Args:
         nodes: Wall positions x [m], shape (V, W).
         frames: Frames F of the wall vertices, shape (V, W).
-        skin_indices: Wall vertices that carry each vertex, shape (M,).
-        skin_weights: Weights w, shape (M,).
-        rest_offsets: Offsets o in the frames [m], shape (M, 4).
-        rest_normals: Normals in the frames, shape (M, 4).
+        patient: Patient of each world, shape (W,).
+        skin_indices: Wall vertices that carry each vertex, shape (M, P).
+        skin_weights: Weights w, shape (M, P).
+        rest_offsets: Offsets o in the frames [m], shape (M, 4, P).
+        rest_normals: Normals in the frames, shape (M, 4, P).
         drawn: Worlds to update, shape (W,).
         points: Positions [m], shape (W*M,); written.
         normals: Unit normals, shape (W*M,); written.
@@ -67,16 +69,46 @@ def skin_vertices(
     vertex, world = wp.tid()
     if not drawn[world]:
         return
-    index = skin_indices[vertex]
-    weight = skin_weights[vertex]
+    p = patient[world]
+    index = skin_indices[vertex, p]
+    weight = skin_weights[vertex, p]
     point = wp.vec3(0.0)
     normal = wp.vec3(0.0)
     for k in range(4):
         frame = frames[index[k], world]
-        point += weight[k] * (nodes[index[k], world] + frame * rest_offsets[vertex, k])
-        normal += weight[k] * (frame * rest_normals[vertex, k])
+        point += weight[k] * (nodes[index[k], world] + frame * rest_offsets[vertex, k, p])
+        normal += weight[k] * (frame * rest_normals[vertex, k, p])
     points[world * skin_indices.shape[0] + vertex] = point
     normals[world * skin_indices.shape[0] + vertex] = wp.normalize(normal)
+
+
+@wp.kernel
+def write_faces(
+    faces: wp.array2d[wp.vec3i],
+    patient: wp.array[int],
+    written: wp.array[int],
+    vertices: int,
+    lanes: int,
+    indices: wp.array[int],
+):
+    """Give worlds whose patient is another one than before that patient's triangles. Launch (W, lanes).
+
+    Args:
+        faces: Triangles of each patient, shape (F, P).
+        patient: Patient of each world, shape (W,).
+        written: Patient whose triangles each world has, shape (W,).
+        vertices: Vertices of a world, M.
+        lanes: Threads a world.
+        indices: Corners of the triangles of all worlds, shape (3*W*F,); written.
+    """
+    world, lane = wp.tid()
+    p = patient[world]
+    if written[world] == p:
+        return
+    for face in range(lane, faces.shape[0], lanes):
+        corner = 3 * (world * faces.shape[0] + face)
+        for k in range(3):
+            indices[corner + k] = world * vertices + faces[face, p][k]
 
 
 @wp.kernel

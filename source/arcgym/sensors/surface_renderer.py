@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -74,15 +75,18 @@ class SurfaceRenderer:
     def __init__(
         self,
         surface: SkinnedSurface,
-        visual: VisualMesh,
-        textures: MucosaTextures,
+        visuals: Sequence[VisualMesh],
+        textures: Sequence[MucosaTextures],
         optics: Optics,
         size: tuple[int, int],
         samples: int,
     ) -> None:
-        """Allocate everything for pictures of `size` (width, height) [px] with `samples` rays per pixel."""
+        """Allocate everything for pictures of `size` (width, height) [px] with `samples` rays per pixel.
+
+        `visuals` and `textures` are those of each patient that `surface` was made of.
+        """
         width, height = size
-        self.surface, self.textures, self.optics = surface, textures, optics
+        self.surface, self.textures, self.optics = surface, tuple(textures), optics
         self.shape = (surface.num_envs, height, width)
         device = self.device = surface.device
         rays = fisheye_rays(width, height, optics.field_of_view, samples)
@@ -94,7 +98,7 @@ class SurfaceRenderer:
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
-        self._view = _surface_view(surface, visual, textures)
+        self._view = _surface_view(surface, visuals, textures)
         self._lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
 
     def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
@@ -112,8 +116,6 @@ class SurfaceRenderer:
             inputs=[
                 self._view,
                 self._lighting,
-                self.textures.albedo,
-                self.textures.detail,
                 drawn,
                 poses,
                 self.rays,
@@ -164,16 +166,25 @@ class SurfaceRenderer:
         )
 
 
-def _surface_view(surface: SkinnedSurface, visual: VisualMesh, textures: MucosaTextures) -> SurfaceView:
+def _surface_view(
+    surface: SkinnedSurface, visuals: Sequence[VisualMesh], textures: Sequence[MucosaTextures]
+) -> SurfaceView:
     """Pack what the kernel needs of the surface."""
-    density = texel_density(visual, textures.width, textures.height)
-    attributes = np.column_stack([visual.uv, visual.tint, density]).astype(np.float32)
+    device = surface.device
+    attributes = np.zeros((surface.num_vertices, len(visuals), 4), np.float32)
+    for p, (visual, image) in enumerate(zip(visuals, textures, strict=True)):
+        density = texel_density(visual, image.width, image.height)
+        attributes[: len(visual.points), p] = np.column_stack([visual.uv, visual.tint, density])
+    sizes = [(TEXTURE_LENGTH * image.width / image.height, TEXTURE_LENGTH) for image in textures]
     view = SurfaceView()
     view.mesh = surface.mesh.id
     view.roots = surface.roots
     view.normals = surface.normals
-    view.attributes = wp.array(attributes, dtype=wp.vec4, device=surface.device)
-    view.texture_size = wp.vec2(TEXTURE_LENGTH * textures.width / textures.height, TEXTURE_LENGTH)
+    view.patient = surface.patient
+    view.attributes = wp.array(attributes, dtype=wp.vec4, device=device)
+    view.albedo = wp.array([image.albedo for image in textures], dtype=wp.Texture2D, device=device)
+    view.detail = wp.array([image.detail for image in textures], dtype=wp.Texture2D, device=device)
+    view.texture_size = wp.array(sizes, dtype=wp.vec2, device=device)
     return view
 
 

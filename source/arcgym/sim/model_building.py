@@ -11,6 +11,7 @@ import newton
 
 from arcgym.anatomy.measures import inner_faces
 from arcgym.anatomy.shell import ShellMesh
+from arcgym.anatomy.stage import WallMesh
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
@@ -74,8 +75,7 @@ def wall_modes(wall: WallParameters) -> RingModes:
     return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness, wall.elements.parts)
 
 
-def wall_lumen(colon: Colon) -> LumenTopology:
-    """Return the faces of the wall that the scope touches, sorted along the centreline."""
-    wall = colon.wall
+def wall_lumen(wall: ShellMesh | WallMesh) -> LumenTopology:
+    """Return the faces of a wall that the scope touches, sorted along the centreline."""
     faces = wall.triangles if isinstance(wall, ShellMesh) else inner_faces(wall.tets, wall.layer)
     return lumen_topology(wall.points, faces, wall.ring, wall.layer)

@@ -62,6 +62,8 @@ class Simulation:
             raise ValueError(f"num_envs is {num_envs}; at least one world is needed.")
         self.cfg, self.colon, self.endoscope, self.num_envs = cfg, colon, endoscope, num_envs
         self.device = cfg.device
+        self.patient = wp.zeros(num_envs, dtype=int, device=self.device)
+        """Patient of each world, index into ``colon.patients``, shape (N,)."""
         self.model = model_building.scope_model(endoscope, cfg.mass_scaling, num_envs, self.device)
         self.state, self.control = self.model.state(), self.model.control()
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
@@ -84,7 +86,7 @@ class Simulation:
     def _build_wall(self) -> None:
         """Wall positions and velocities, contact search, wall solver and its readout."""
         cfg, colon, scope = self.cfg, self.colon, self.endoscope
-        wall, lumen = model_building.wall_parameters(colon), model_building.wall_lumen(colon)
+        wall, lumen = model_building.wall_parameters(colon), model_building.wall_lumen(colon.wall)
         points = np.repeat(wall.points.astype(np.float32)[:, None], self.num_envs, axis=1)
         self.nodal_pos = wp.array(points, dtype=wp.vec3, device=self.device)
         self.nodal_vel = wp.zeros_like(self.nodal_pos)

@@ -63,14 +63,15 @@ def points_at(points: torch.Tensor, arc: torch.Tensor, at: torch.Tensor) -> torc
 
     Args:
         points: Vertices [m], shape (N, R, 3).
-        arc: Arc length of each vertex, ascending [m], shape (R,).
+        arc: Arc length of each vertex, ascending [m], shape (N, R).
         at: Arc lengths wanted, clamped to the polyline [m], shape (N, K).
 
     Returns:
         Points [m], shape (N, K, 3).
     """
-    at = at.clamp(arc[0], arc[-1])
-    right = torch.searchsorted(arc, at).clamp(1, len(arc) - 1)
-    fraction = ((at - arc[right - 1]) / (arc[right] - arc[right - 1])).unsqueeze(-1)
+    at = at.clamp(arc[:, :1], arc[:, -1:])
+    right = torch.searchsorted(arc, at).clamp(1, arc.shape[1] - 1)
+    before = arc.gather(1, right - 1)
+    fraction = ((at - before) / (arc.gather(1, right) - before)).unsqueeze(-1)
     index = right.unsqueeze(-1).expand(-1, -1, 3)
     return torch.lerp(points.gather(1, index - 1), points.gather(1, index), fraction)

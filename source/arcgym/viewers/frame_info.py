@@ -63,7 +63,7 @@ def read_info(
         tip_force=float(data.tip_force[env_id]),
         max_force=float(data.window_force_norm[env_id].max()),
         reward=reward,
-        task_range=_task_range(env),
+        task_range=_task_range(env, env_id),
         terms=terms,
     )
 
@@ -75,6 +75,6 @@ def _metrics(env: ManagerBasedEnv, env_id: int, names: Sequence[str]) -> dict[st
     return {name: float(values[name][env_id]) for name in names if name in values}
 
 
-def _task_range(env: ManagerBasedEnv) -> tuple[float, float] | None:
+def _task_range(env: ManagerBasedEnv, env_id: int) -> tuple[float, float] | None:
     segment = getattr(env.cfg, "segment", None)
-    return env.scene["colon"].stage.segment_bounds().get(segment)
+    return env.scene["colon"].patient_of(env_id).bounds.get(segment)

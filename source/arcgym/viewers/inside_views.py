@@ -13,7 +13,7 @@ from arcgym.assets import PROXIMAL_CFG
 from arcgym.assets.endoscope_stage import read_endoscope
 from arcgym.sensors import EndoscopeCameraCfg, SkinnedSurface
 from arcgym.sensors.endoscope_camera import lights_in_camera
-from arcgym.sensors.mucosa_textures import MucosaTextures
+from arcgym.sensors.mucosa_textures import MucosaTextures, read_images
 from arcgym.sensors.surface_renderer import Optics, SurfaceRenderer, WorldLooks
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.paths import resolve_asset
@@ -37,9 +37,9 @@ def inside_views(stage: ColonStage) -> list[tuple[str, np.ndarray]]:
     camera, lights = scope.camera, lights_in_camera(scope.lights, scope.camera)
     near = float(camera.clipping[0])
     optics = Optics(camera.field_of_view, lights, near, cfg.far, cfg.lighting, cfg.exposure)
-    textures = MucosaTextures(stage.albedo_texture, stage.detail_texture, "cpu", smooth_levels=True)
+    textures = MucosaTextures(*read_images(stage.albedo_texture, stage.detail_texture), "cpu", smooth_levels=True)
     surface = SkinnedSurface(stage.visual, stage.wall, 1, "cpu")
-    renderer = SurfaceRenderer(surface, stage.visual, textures, optics, (SIZE, SIZE), 4)
+    renderer = SurfaceRenderer(surface, [stage.visual], [textures], optics, (SIZE, SIZE), 4)
     looks, drawn = WorldLooks.neutral(1, "cpu"), wp.full(1, True, dtype=wp.bool, device="cpu")
     views = []
     for name, share in VIEWS.items():

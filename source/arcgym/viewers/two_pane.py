@@ -23,6 +23,7 @@ from arcgym.viewers.viewer_cfg import ViewerCfg
 from arcgym.viewers.wall_paint import WallPaint, window_at_links
 
 if TYPE_CHECKING:
+    from arcgym.assets.patient import Patient
     from arcgym.envs import ManagerBasedEnv
 
 _MARGIN = 8
@@ -41,7 +42,7 @@ class TwoPaneView:
     """
 
     def __init__(self, env: ManagerBasedEnv, cfg: ViewerCfg | None = None) -> None:
-        """Build the surface of one world.
+        """Build the surface of the first world.
 
         Args:
             env: Environment whose scene holds ``colon``, ``endoscope`` and, if it has one, ``camera``.
@@ -51,22 +52,7 @@ class TwoPaneView:
         self._env = env
         self._tiers = shown_tiers(tiers_of(env.cfg))
         self._colon, self._scope = env.scene["colon"], env.scene["endoscope"]
-        stage = self._colon.stage
-        device = str(self._colon.nodal_pos_wp.device)
-        self._surface = SkinnedSurface(stage.visual_proxy, self._colon.wall, 1, device)
-        scope = self._scope.stage
-        self._outside = OutsideView(
-            self.cfg.outside,
-            self._surface,
-            stage.visual_proxy.points,
-            scope.link_length,
-            scope.link_radius,
-            self._scope.data.window_arc.cpu().numpy(),
-            scope.bending_links,
-            self._tiers,
-        )
-        self._paint = WallPaint(self._colon) if self.cfg.outside.wall_color != "displacement" else None
-        self._bounds = stage.segment_bounds()
+        self._show(self._colon.patient_of(0))
         self._env_id, self._time = 0, 0.0
         self.rewards: deque[float] = deque(maxlen=_HISTORY)
         self.forces: deque[float] = deque(maxlen=_HISTORY)
@@ -81,6 +67,9 @@ class TwoPaneView:
         Returns:
             Picture, uint8, shape (H, W, 3) with even H and W.
         """
+        patient = self._colon.patient_of(env_id)
+        if patient is not self._patient:
+            self._show(patient)
         shown = read_info(self._env, env_id, info, self.cfg.metrics)
         self._remember(env_id, shown)
         height, width = self.cfg.outside.height, self.cfg.outside.width
@@ -95,6 +84,24 @@ class TwoPaneView:
         panel = (_MARGIN, height + 2 * _MARGIN, size[0] - _MARGIN, size[1] - _MARGIN)
         draw_panel(draw, panel, shown, self._bounds, self.rewards, self.forces, self._tiers)
         return np.asarray(picture)
+
+    def _show(self, patient: Patient) -> None:
+        """Build the surface of a patient and what is drawn from it."""
+        scope, visual = self._scope.stage, patient.visual
+        self._patient, self._bounds = patient, patient.bounds
+        self._surface = SkinnedSurface(visual, patient.wall, 1, str(self._colon.nodal_pos_wp.device))
+        self._outside = OutsideView(
+            self.cfg.outside,
+            self._surface,
+            visual.points,
+            scope.link_length,
+            scope.link_radius,
+            self._scope.data.window_arc.cpu().numpy(),
+            scope.bending_links,
+            self._tiers,
+        )
+        is_painted = self.cfg.outside.wall_color != "displacement"
+        self._paint = WallPaint(self._colon, patient) if is_painted else None
 
     def _endoscope_view(self, env_id: int, size: int) -> Image.Image:
         if "camera" in self._env.scene.keys():

@@ -12,6 +12,7 @@ import warp as wp
 from scipy.spatial.transform import Rotation
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
+from arcgym.assets.patient import Patient
 from arcgym.sim.model_building import wall_lumen
 from arcgym.sim.wall.wall_readout import inverse_rest
 from arcgym.viewers.palette import FORCE_TIERS, Tiers, deformation_colors, force_colors
@@ -86,29 +87,29 @@ def _force_table(force: np.ndarray, tiers: Tiers) -> np.ndarray:
 class WallPaint:
     """Values of the wall of one world for the vertices of its visual surface, on the host."""
 
-    def __init__(self, colon: Any) -> None:
+    def __init__(self, colon: Any, patient: Patient) -> None:
         """Store rest shape and skin.
 
         Args:
-            colon: The scene's colon; its proxy surface is what is drawn.
+            colon: The scene's colon.
+            patient: Patient of the worlds to paint; its surface for the policy's camera is what is drawn.
         """
-        self._colon = colon
-        self._faces = wall_lumen(colon).faces
-        self._inverse = inverse_rest(colon.wall.points[self._faces])
-        visual = colon.stage.visual_proxy
-        self._skin, self._weights = visual.skin_indices, visual.skin_weights
+        self._colon, self._wall = colon, patient.wall
+        self._faces = wall_lumen(patient.wall).faces
+        self._inverse = inverse_rest(patient.wall.points[self._faces])
+        self._skin, self._weights = patient.visual.skin_indices, patient.visual.skin_weights
 
     def strain(self, env_id: int) -> np.ndarray:
         """Largest principal strain of the lumen faces around each vertex as they are now, shape (M,)."""
         corners = self._positions(env_id)[self._faces]
-        values = np.zeros(len(self._colon.wall.points))
+        values = np.zeros(len(self._wall.points))
         np.maximum.at(values, self._faces.ravel(), np.repeat(face_strains(corners, self._inverse), 3))
         return self._skinned(values)
 
     def tension(self, env_id: int) -> np.ndarray:
         """Pull of each vertex's ring on its anchors, mean over the control step [N], shape (M,)."""
         rings = self._colon.data.anchor_tension[env_id].cpu().numpy()
-        return self._skinned(rings[self._colon.wall.ring])
+        return self._skinned(rings[self._wall.ring])
 
     def force(
         self, env_id: int, link_pos: np.ndarray, link_quat: np.ndarray, link_length: np.ndarray, link_force: np.ndarray

@@ -12,6 +12,7 @@ import warp as wp
 
 from arcgym.anatomy import Centerline, ColonStage
 from arcgym.assets.endoscope_spec import CameraSpec
+from arcgym.assets.patient import patient_of_stage
 from arcgym.benchmarks.timing import median_ms
 from arcgym.sensors import EndoscopeCamera, EndoscopeCameraCfg
 
@@ -29,7 +30,9 @@ class RestingScene(dict):
         )
         poses = centerline_poses(stage.centerline, num_envs)
         self["colon"] = SimpleNamespace(
-            stage=stage, wall=stage.wall, nodal_pos_wp=wp.array(nodes, dtype=wp.vec3, device=device)
+            patients=(patient_of_stage(stage, shell=False),),
+            patient_wp=wp.zeros(num_envs, dtype=int, device=device),
+            nodal_pos_wp=wp.array(nodes, dtype=wp.vec3, device=device),
         )
         self["endoscope"] = SimpleNamespace(
             stage=optics, camera_pose_wp=wp.array(poses, dtype=wp.transform, device=device)

@@ -130,4 +130,4 @@ def left_colon(scene: InteractiveScene) -> np.ndarray:
     """Return the centerline from the anus to the end of the descending colon [m], shape (n, 3)."""
     end = scene["colon"].stage.segment_bounds()["descending"][1]
     data = scene["colon"].data
-    return data.centerline_pos_w[0][data.centerline_arc < end].cpu().numpy()
+    return data.centerline_pos_w[0][data.centerline_arc[0] < end].cpu().numpy()

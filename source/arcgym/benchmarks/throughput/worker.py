@@ -13,6 +13,7 @@ import sys
 import time
 from typing import Any
 
+from arcgym.anatomy.segments import SEGMENTS
 from arcgym.benchmarks.hardware import device_mib, peak_host_mib
 from arcgym.benchmarks.throughput.settings import Row, Settings
 from arcgym.benchmarks.worlds import advance, forward_axis, load_env_cfg, make_env, random_actions
@@ -89,14 +90,14 @@ def fill_segment(env: Any) -> None:
     following = snapshots.names[snapshots.index(env.cfg.segment) + 1 :]
     if not following:
         sys.exit(f"{env.cfg.segment} is the last segment with a start state; take --start entry")
-    _, end = env.scene["colon"].stage.segment_bounds()[env.cfg.segment]
+    end = env.scene["colon"].data.segment_spans[:, SEGMENTS.index(env.cfg.segment), 1]
     env.sim.write_snapshot(snapshots.index(following[0]))
     env.sim.forward()
     actions = torch.zeros(env.num_envs, env.action_manager.total_action_dim, device=env.device)
     actions[:, forward_axis(env)] = -1.0
     for _ in range(MOST_WITHDRAWING):
         advance(env, actions)
-        if float(env.scene["endoscope"].data.tip_arc_length.max()) < end - BEFORE_END:
+        if bool((env.scene["endoscope"].data.tip_arc_length < end - BEFORE_END).all()):
             return
 
 

@@ -72,7 +72,7 @@ class reset_to_segment_start(ManagerTermBase):
 
     @staticmethod
     def _find(env: ManagerBasedEnv, segment: str) -> int:
-        is_first = segment_span(env, segment)[0] <= 0.0
+        is_first = bool((segment_span(env, segment)[0] <= 0.0).all())
         if env.sim.snapshots is None or segment not in env.sim.snapshots.names:
             states = find_stored(env.scene, segment) if is_first else ensure(env.scene, segment)
             if states is None:

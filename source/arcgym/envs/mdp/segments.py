@@ -6,13 +6,11 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import torch
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.envs.mdp.settings import task_setting
-from arcgym.utils.string import did_you_mean
 from arcgym.utils.validation import expects
 
 if TYPE_CHECKING:
@@ -21,23 +19,23 @@ if TYPE_CHECKING:
 __all__ = ["segment_progress", "segment_span", "success"]
 
 
-def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[float, float]:
-    """Return start and end of a segment, rest arc length from the anal verge [m].
+def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[torch.Tensor, torch.Tensor]:
+    """Return start and end of a segment in each world's patient, rest arc length from the anal verge [m], shape (N,).
+
+    They are views that follow the patients; copy them to keep them.
 
     Args:
         env: The environment; its scene holds ``colon``.
         segment: A name of :data:`arcgym.anatomy.segments.SEGMENTS`. None takes the task's, ``env.cfg.segment``.
 
     Raises:
-        ValueError: If the colon does not have the segment, with those it has.
+        ValueError: If a patient does not have the segment, with those it has.
     """
     name = task_setting(env, "segment", segment)
-    if env not in _BOUNDS:
-        _BOUNDS[env] = env.scene["colon"].stage.segment_bounds()
-    bounds = _BOUNDS[env]
-    if name not in bounds:
-        raise ValueError(f"Segment '{name}' is not in this colon. {did_you_mean(name, bounds)}")
-    return bounds[name]
+    colon = env.scene["colon"]
+    colon.require_segment(name)
+    start, end = colon.data.segment_spans[:, SEGMENTS.index(name)].unbind(dim=1)
+    return start, end
 
 
 @expects(segment=SEGMENTS)
@@ -62,6 +60,3 @@ def success(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
     """
     _, end = segment_span(env, segment)
     return env.scene["endoscope"].data.tip_arc_length >= end
-
-
-_BOUNDS: WeakKeyDictionary[ManagerBasedEnv, dict[str, tuple[float, float]]] = WeakKeyDictionary()

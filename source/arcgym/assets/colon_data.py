@@ -1,0 +1,80 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""State of the colon's wall in every world."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+import warp as wp
+
+from arcgym.assets.patient import span_table
+
+if TYPE_CHECKING:
+    from arcgym.assets.colon import Colon
+    from arcgym.sim.simulation import Simulation
+
+
+class ColonData:
+    """State of the wall as tensors that share memory with the simulation. V vertices, R rings, P patients, N worlds."""
+
+    def __init__(self, colon: Colon, sim: Simulation):
+        """Make views on the simulation's arrays."""
+        self.nodal_pos_w: torch.Tensor = wp.to_torch(sim.nodal_pos).transpose(0, 1)
+        """Positions of the wall vertices [m], shape (N, V, 3)."""
+        self.nodal_vel_w: torch.Tensor = wp.to_torch(sim.nodal_vel).transpose(0, 1)
+        """Velocities of the wall vertices [m/s], shape (N, V, 3)."""
+        self.centerline_pos_w: torch.Tensor = wp.to_torch(sim.ring_centers)
+        """Centres of the deformed rings [m], shape (N, R, 3)."""
+        self.patient: torch.Tensor = wp.to_torch(sim.patient)
+        """Patient of each world, index into :attr:`Colon.patients`, shape (N,), int32; to be read only."""
+        self.root_pos_w = torch.zeros(sim.num_envs, 3, device=sim.device)
+        """Position of the anal verge [m], shape (N, 3): the origin."""
+        patients = colon.patients
+        self._rest = _table([patient.wall.points for patient in patients], sim.device)
+        self._ring_arc = _table([patient.wall.ring_arc for patient in patients], sim.device)
+        self._spans = _table(span_table(patients), sim.device)
+        self.centerline_arc: torch.Tensor = self._ring_arc[self.patient]
+        """Arc length of the rings at rest [m], shape (N, R)."""
+        self.segment_spans: torch.Tensor = self._spans[self.patient]
+        """Arc length at start and end of each of :data:`arcgym.anatomy.segments.SEGMENTS` [m], shape (N, S, 2). One
+        that a patient does not have begins and ends where the one before it ends."""
+        readout = sim.wall_readout
+        self.wall_strain: torch.Tensor = wp.to_torch(readout.strain).transpose(0, 1)
+        """Largest principal strain (stretch - 1) of each ring's lumen faces, mean over the control step, (N, R)."""
+        self.wall_strain_peak: torch.Tensor = wp.to_torch(readout.strain_peak).transpose(0, 1)
+        """The same, largest physics step of the control step, shape (N, R)."""
+        self.anchor_tension: torch.Tensor = wp.to_torch(readout.tension).transpose(0, 1)
+        """Net pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
+        self.anchor_tension_peak: torch.Tensor = wp.to_torch(readout.tension_peak).transpose(0, 1)
+        """The same, largest physics step of the control step [N], shape (N, R)."""
+
+    @property
+    def default_nodal_state_w(self) -> torch.Tensor:
+        """Rest state of the wall vertices, position [m] and velocity [m/s], shape (N, V, 6)."""
+        rest = self.default_nodal_pos_w
+        return torch.cat([rest, torch.zeros_like(rest)], dim=2)
+
+    @property
+    def default_nodal_pos_w(self) -> torch.Tensor:
+        """Rest positions of the wall vertices [m], shape (N, V, 3)."""
+        if len(self._rest) == 1:
+            return self._rest.expand(len(self.patient), -1, -1)
+        return self._rest[self.patient]
+
+    @property
+    def nodal_state_w(self) -> torch.Tensor:
+        """Positions [m] and velocities [m/s] of the wall vertices, shape (N, V, 6)."""
+        return torch.cat([self.nodal_pos_w, self.nodal_vel_w], dim=2)
+
+    @property
+    def nodal_displacement(self) -> torch.Tensor:
+        """Distance of each wall vertex from its rest position [m], shape (N, V)."""
+        return torch.linalg.vector_norm(self.nodal_pos_w - self.default_nodal_pos_w, dim=2)
+
+
+def _table(values: list[np.ndarray] | np.ndarray, device: str) -> torch.Tensor:
+    """Values of all patients, shape (P, ...), float32."""
+    return torch.tensor(np.stack(list(values)), dtype=torch.float32, device=device)

@@ -1,0 +1,101 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A patient: what the simulation, the camera and the tasks need of one colon's stage."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from arcgym.anatomy.segments import SEGMENTS
+from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
+from arcgym.anatomy.stage import Centerline, ColonStage, TissueMaterial, VisualMesh, WallMesh, read_colon
+
+Bounds = dict[str, tuple[float, float]]
+"""Arc length at start and end [m] of each segment that a colon has."""
+
+
+@dataclass(frozen=True)
+class Patient:
+    """One colon. Its stage, with the fine surface, is read when it is first asked for."""
+
+    path: Path
+    """Stage file."""
+    wall: WallMesh | ShellMesh
+    """Simulated wall."""
+    thickness: float
+    """Thickness of the wall [m]."""
+    material: TissueMaterial
+    """Tissue that the stage asks for."""
+    centerline: Centerline
+    """Centreline at rest."""
+    bounds: Bounds
+    """Arc length at start and end of each segment [m]."""
+    visual: VisualMesh
+    """Surface that the policy's camera sees."""
+    albedo_texture: Path
+    """Colour of the mucosa."""
+    detail_texture: Path
+    """Relief of the mucosa."""
+
+    @property
+    def name(self) -> str:
+        """Name of the folder that the stage lies in, such as ``colon_1``."""
+        return self.path.resolve().parent.name
+
+    @cached_property
+    def stage(self) -> ColonStage:
+        """All of the stage."""
+        return read_colon(self.path)
+
+
+def read_patient(path: Path, thickness: float | None, shell: bool) -> Patient:
+    """Read a stage.
+
+    Args:
+        path: Stage file.
+        thickness: Thickness of the wall [m]; None takes the stage's.
+        shell: Whether the wall is to be a shell, or the stage's tetrahedra.
+
+    Raises:
+        StageError: If the stage cannot be used.
+    """
+    return patient_of_stage(read_colon(path), path, thickness, shell)
+
+
+def patient_of_stage(
+    stage: ColonStage, path: Path = Path("colon.usda"), thickness: float | None = None, shell: bool = True
+) -> Patient:
+    """Return the patient of a stage in memory; arguments as of :func:`read_patient`."""
+    thickness = wall_thickness(stage.wall) if thickness is None else thickness
+    patient = Patient(
+        path=path,
+        wall=mid_surface(stage.wall, thickness) if shell else stage.wall,
+        thickness=thickness,
+        material=stage.material,
+        centerline=stage.centerline,
+        bounds=stage.segment_bounds(),
+        visual=stage.visual_proxy,
+        albedo_texture=stage.albedo_texture,
+        detail_texture=stage.detail_texture,
+    )
+    patient.__dict__["stage"] = stage
+    return patient
+
+
+def span_table(patients: Sequence[Patient]) -> np.ndarray:
+    """Return arc length at start and end [m] of each of ``SEGMENTS``, shape (P, S, 2), float32.
+
+    A segment that a patient does not have begins and ends where the one before it ends.
+    """
+    table = np.zeros((len(patients), len(SEGMENTS), 2), np.float32)
+    for row, patient in zip(table, patients, strict=True):
+        end = 0.0
+        for code, name in enumerate(SEGMENTS):
+            row[code] = patient.bounds.get(name, (end, end))
+            end = row[code, 1]
+    return table
