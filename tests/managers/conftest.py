@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 import torch
 
+from arcgym.utils.world_random import WorldRandom
+
 JOINTS = ["root_slide", "root_roll", "hinge_1", "hinge_2", "hinge_3"]
 
 
@@ -33,4 +35,5 @@ def env() -> Any:
         step_dt=0.1,
         max_episode_length_s=2.0,
         value=torch.tensor([1.0, 3.0]),
+        random=WorldRandom(2, "cpu", seed=0),
     )

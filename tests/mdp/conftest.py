@@ -12,6 +12,7 @@ import pytest
 import torch
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.utils.world_random import WorldRandom
 
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
 RING_READOUTS = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
@@ -126,6 +127,7 @@ class FakeEnv:
         self.common_step_counter, self.max_episode_length = 0, 100
         self.episode_length_buf = torch.zeros(num_envs, dtype=torch.long)
         self.cfg = SimpleNamespace(segment="sigmoid", lumen="paper")
+        self.random = WorldRandom(num_envs, "cpu", seed=0)
         self.scene = {
             "endoscope": FakeEndoscope(num_envs, num_links),
             "colon": FakeColon(num_envs),

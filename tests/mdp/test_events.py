@@ -14,6 +14,7 @@ import torch
 from arcgym.envs import mdp
 from arcgym.envs.mdp import events
 from arcgym.managers import EventTermCfg
+from arcgym.utils.world_random import WorldRandom
 
 
 class FakeSim:
@@ -66,11 +67,17 @@ def test_an_episode_may_begin_at_rest_whatever_the_segment(env, by: str) -> None
     assert env.sim.written == [(-1, [0])]
 
 
-def test_perturbation_turns_the_target_within_two_deviations(env) -> None:
-    torch.manual_seed(0)
-    mdp.perturb_tip(env, torch.tensor([1] * 200), std=0.2)
-    angle, env_ids = env.scene["endoscope"].commands["turn"]
-    assert angle.shape == (200, 3) and env_ids.unique().tolist() == [1]
+@pytest.fixture
+def many(env):
+    """The same with the random numbers of 2001 worlds."""
+    env.random = WorldRandom(2001, "cpu", seed=0)
+    return env
+
+
+def test_perturbation_turns_the_target_within_two_deviations(many) -> None:
+    mdp.perturb_tip(many, torch.arange(200), std=0.2)
+    angle, env_ids = many.scene["endoscope"].commands["turn"]
+    assert angle.shape == (200, 3) and env_ids.tolist() == list(range(200))
     assert angle.abs().amax().item() == pytest.approx(0.4) and angle.std().item() == pytest.approx(0.2, rel=0.15)
 
 
@@ -92,22 +99,21 @@ def test_randomization_stays_in_its_bounds(env, name, entity, command, shape, bo
     assert bool((value >= bounds[0]).all()) and bool((value <= bounds[1]).all())
 
 
-def test_log_uniform_has_its_median_at_the_geometric_mean(env) -> None:
-    torch.manual_seed(0)
-    mdp.randomize_tissue_stiffness(env, torch.arange(2001), scale=(0.25, 4.0))
-    value, _ = env.scene["colon"].commands["stiffness"]
+def test_log_uniform_has_its_median_at_the_geometric_mean(many) -> None:
+    mdp.randomize_tissue_stiffness(many, torch.arange(2001), scale=(0.25, 4.0))
+    value, _ = many.scene["colon"].commands["stiffness"]
     assert math.log(value.median().item()) == pytest.approx(0.0, abs=0.1)
 
 
-def test_tissue_is_one_of_the_presets_in_each_world(env) -> None:
-    mdp.randomize_tissue(env, torch.arange(200), presets=("soft_nu045", "paper"))
-    value, _ = env.scene["colon"].commands["material"]
+def test_tissue_is_one_of_the_presets_in_each_world(many) -> None:
+    mdp.randomize_tissue(many, torch.arange(200), presets=("soft_nu045", "paper"))
+    value, _ = many.scene["colon"].commands["material"]
     assert {(round(e), round(nu, 2)) for e, nu in value.tolist()} == {(500_000, 0.45), (5_000_000, 0.49)}
 
 
-def test_anchors_are_one_of_the_scales_in_each_world(env) -> None:
-    mdp.randomize_anchors(env, torch.arange(200))
-    value, _ = env.scene["colon"].commands["anchors"]
+def test_anchors_are_one_of_the_scales_in_each_world(many) -> None:
+    mdp.randomize_anchors(many, torch.arange(200))
+    value, _ = many.scene["colon"].commands["anchors"]
     assert set(value.tolist()) == {0.25, 1.0, 4.0}
 
 

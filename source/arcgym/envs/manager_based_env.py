@@ -25,6 +25,7 @@ from arcgym.utils.progress import report
 from arcgym.utils.seed import set_seed
 from arcgym.utils.string import resolve_callable
 from arcgym.utils.threads import one_thread
+from arcgym.utils.world_random import WorldRandom
 from arcgym.utils.worlds import replace_worlds
 
 if TYPE_CHECKING:
@@ -90,6 +91,8 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.scene: InteractiveScene = _class_of(cfg.scene)(cfg.scene, cfg.sim)
         self.sim = self.scene.sim
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
+        self.random = WorldRandom(self.num_envs, self.device, torch.initial_seed() if cfg.seed is None else cfg.seed)
+        """Random numbers of events, noise and delays: a stream for every world."""
         report("compiling kernels (first run only)")
         self._refresh_all()
         self._init_buffers()
@@ -169,6 +172,8 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     def seed(self, seed: int = -1) -> int:
         """Seed every random number generator and return the seed; a negative one draws one."""
         seed = set_seed(seed)
+        if hasattr(self, "random"):
+            self.random.reseed(seed)
         self._np_random, self._np_random_seed = gym.utils.seeding.np_random(seed)
         return seed
 
@@ -262,6 +267,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         """
         if self.closed:
             raise gym.error.ClosedEnvironmentError(f"{self} is closed.")
+        self.random.advance()
         self.action_manager.process_action(torch.as_tensor(action, dtype=torch.float32, device=self.device))
         self.action_manager.apply_action()
         self.recorder_manager.record_pre_step()
@@ -276,6 +282,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
             env_ids: World indices, int64, shape (n,).
         """
         self.recorder_manager.record_pre_reset(env_ids)
+        self.random.begin(env_ids)
         self.scene.reset(env_ids)
         self.event_manager.apply("reset", env_ids, global_env_step_count=self.common_step_counter)
         for manager in self._managers():

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import torch
 
+from arcgym.utils.world_random import WorldRandom
 from arcgym.utils.worlds import fill_worlds
 
 Store = bool | torch.Tensor
@@ -75,7 +76,9 @@ class DelayBuffer:
         lag_range: tuple[int, int],
         num_envs: int,
         device: str,
+        random: WorldRandom,
         *,
+        tag: str = "delay",
         per_env: bool = True,
         hold_prob: float = 0.0,
         update_period: int = 0,
@@ -86,6 +89,8 @@ class DelayBuffer:
             lag_range: Smallest and largest lag [control steps].
             num_envs: Number of worlds N.
             device: Device of the observations.
+            random: Random numbers of the worlds.
+            tag: What the lags are for, to draw with.
             per_env: Whether each world draws its own lag.
             hold_prob: Probability of keeping the lag when a new one is due.
             update_period: Control steps between new lags; zero draws one each step.
@@ -94,7 +99,8 @@ class DelayBuffer:
             raise ValueError(f"Delay lags must satisfy 0 <= min <= max, got {lag_range}.")
         self._lag_range = lag_range
         self._num_envs = num_envs
-        self._device = device
+        self._random = random
+        self._tag = tag
         self._per_env = per_env
         self._hold_prob = hold_prob
         self._period = max(update_period, 1)
@@ -129,13 +135,14 @@ class DelayBuffer:
         """Count a control step in some worlds and give those that are due a new lag."""
         self._age[worlds] += 1
         draw = self._draw()
-        is_due = (self._age % self._period == 0) & (self._uniform() >= self._hold_prob)
+        is_due = (self._age % self._period == 0) & (
+            self._each(self._random.uniform(f"{self._tag}: hold")) >= self._hold_prob
+        )
         self._lag[worlds] = torch.where(is_due, draw, self._lag)[worlds]
 
     def _draw(self) -> torch.Tensor:
-        size = self._num_envs if self._per_env else 1
-        lag = torch.randint(self._lag_range[0], self._lag_range[1] + 1, (size,), device=self._device)
-        return lag.expand(self._num_envs).clone()
+        return self._each(self._random.integers(self._tag, self._lag_range[0], self._lag_range[1] + 1)).clone()
 
-    def _uniform(self) -> torch.Tensor:
-        return torch.rand(self._num_envs if self._per_env else 1, device=self._device)
+    def _each(self, drawn: torch.Tensor) -> torch.Tensor:
+        """Return what every world drew, or the first world's in all, shape (N,)."""
+        return drawn if self._per_env else drawn[:1].expand(self._num_envs)

@@ -38,7 +38,7 @@ class EventManager(ManagerBase):
                     f"Term '{name}' of EventManager: no mode '{term.mode}'. {did_you_mean(term.mode, self.modes)}"
                 )
             if term.mode == "interval":
-                self._time_left[name] = self._draw(name, 1 if term.is_global_time else self.num_envs)
+                self._time_left[name] = self._draw(name, torch.arange(1 if term.is_global_time else self.num_envs))
             if term.mode == "reset" and term.min_step_count_between_reset > 0:
                 self._last_step[name] = torch.full((self.num_envs,), -term.min_step_count_between_reset)
 
@@ -82,8 +82,8 @@ class EventManager(ManagerBase):
         super().reset(env_ids)
         for name, time_left in self._time_left.items():
             if not self._terms[name].is_global_time:
-                selected = slice(None) if env_ids is None else env_ids.cpu()
-                time_left[selected] = self._draw(name, len(time_left[selected]))
+                selected = torch.arange(self.num_envs) if env_ids is None else env_ids.cpu()
+                time_left[selected] = self._draw(name, selected)
         return {}
 
     def _due(self, name: str, dt: float) -> torch.Tensor:
@@ -92,7 +92,7 @@ class EventManager(ManagerBase):
         time_left -= dt
         is_due = time_left < 1e-6
         due = is_due.nonzero().flatten()
-        time_left[due] = self._draw(name, len(due))
+        time_left[due] = self._draw(name, due)
         if self._terms[name].is_global_time and len(due) > 0:
             due = torch.arange(self.num_envs)
         return due.to(self.device)
@@ -104,11 +104,13 @@ class EventManager(ManagerBase):
         last[ids] = step
         return ids.to(self.device)
 
-    def _draw(self, name: str, size: int) -> torch.Tensor:
+    def _draw(self, name: str, worlds: torch.Tensor) -> torch.Tensor:
+        """Return the times until the next events of some worlds [s], on the CPU as the indices; (n,)."""
         limits = self._terms[name].interval_range_s
         if limits is None:
             raise ValueError(f"Term '{name}' of EventManager has mode 'interval': interval_range_s must be given.")
-        return limits[0] + (limits[1] - limits[0]) * torch.rand(size)
+        drawn = self._env.random.uniform(f"interval of {name}", env_ids=worlds, on_cpu=True)
+        return limits[0] + (limits[1] - limits[0]) * drawn
 
     def _columns(self) -> list[str]:
         return ["index", "name", "mode"]

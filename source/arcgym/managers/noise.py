@@ -10,6 +10,7 @@ import torch
 
 from arcgym.utils import configclass
 from arcgym.utils.validation import FINITE, require, require_non_negative, require_order
+from arcgym.utils.world_random import WorldRandom
 
 
 @configclass
@@ -19,13 +20,19 @@ class NoiseCfg:
     operation: Literal["add", "scale", "abs"] = "add"
     """Whether the noise is added, multiplied, or put in place of the value."""
 
-    def sample(self, value: torch.Tensor) -> torch.Tensor:
-        """Draw noise of the shape of ``value``."""
+    def sample(self, value: torch.Tensor, random: WorldRandom, tag: str) -> torch.Tensor:
+        """Draw noise of the shape of ``value``, (N, ...).
+
+        Args:
+            value: Observation of every world.
+            random: Random numbers of the worlds.
+            tag: What the noise is for, to draw with.
+        """
         raise NotImplementedError(f"{type(self).__name__} does not define sample.")
 
-    def apply(self, value: torch.Tensor) -> torch.Tensor:
-        """Return the corrupted value, in new memory."""
-        noise = self.sample(value)
+    def apply(self, value: torch.Tensor, random: WorldRandom, tag: str) -> torch.Tensor:
+        """Return the corrupted value, in new memory; arguments as of :meth:`sample`."""
+        noise = self.sample(value, random, tag)
         if self.operation == "add":
             return value + noise
         return value * noise if self.operation == "scale" else noise
@@ -46,7 +53,7 @@ class ConstantNoiseCfg(NoiseCfg):
         """
         require(self, "bias", FINITE)
 
-    def sample(self, value: torch.Tensor) -> torch.Tensor:
+    def sample(self, value: torch.Tensor, random: WorldRandom, tag: str) -> torch.Tensor:
         """Return the offset in the shape of ``value``."""
         return torch.full_like(value, self.bias)
 
@@ -71,9 +78,9 @@ class UniformNoiseCfg(NoiseCfg):
         require(self, "n_max", FINITE)
         require_order(self, "n_min", "n_max")
 
-    def sample(self, value: torch.Tensor) -> torch.Tensor:
+    def sample(self, value: torch.Tensor, random: WorldRandom, tag: str) -> torch.Tensor:
         """Draw noise of the shape of ``value``."""
-        return self.n_min + (self.n_max - self.n_min) * torch.rand_like(value)
+        return self.n_min + (self.n_max - self.n_min) * random.uniform(tag, *value.shape[1:])
 
 
 @configclass
@@ -95,6 +102,6 @@ class GaussianNoiseCfg(NoiseCfg):
         require(self, "mean", FINITE)
         require_non_negative(self, "std")
 
-    def sample(self, value: torch.Tensor) -> torch.Tensor:
+    def sample(self, value: torch.Tensor, random: WorldRandom, tag: str) -> torch.Tensor:
         """Draw noise of the shape of ``value``."""
-        return self.mean + self.std * torch.randn_like(value)
+        return self.mean + self.std * random.normal(tag, *value.shape[1:])

@@ -77,7 +77,7 @@ class ObservationPipeline:
         if is_copied:
             value = self._finite(value)
         if self._noise is not None:
-            value = self._noise.apply(value)
+            value = self._noise.apply(value, self._env.random, self._label)
         if self.cfg.clip is not None:
             value, is_copied = value.clamp(*self.cfg.clip), True
         if self._scale is not None:
@@ -102,6 +102,8 @@ class ObservationPipeline:
             (self.cfg.delay_min_lag, self.cfg.delay_max_lag),
             self._env.num_envs,
             self._env.device,
+            self._env.random,
+            tag=f"{self._label}: delay",
             per_env=self.cfg.delay_per_env,
             hold_prob=self.cfg.delay_hold_prob,
             update_period=self.cfg.delay_update_period,

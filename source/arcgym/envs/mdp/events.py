@@ -91,7 +91,7 @@ def perturb_tip(env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1) -
     Args:
         std: Standard deviation of each angle [rad].
     """
-    angle = std * torch.randn(len(env_ids), 3, device=env.device).clamp(-2.0, 2.0)
+    angle = std * env.random.normal("perturb_tip", 3, env_ids=env_ids).clamp(-2.0, 2.0)
     env.scene["endoscope"].turn_tip_target(angle, env_ids)
 
 
@@ -102,7 +102,7 @@ def randomize_light(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[flo
     Args:
         gain: Smallest and largest factor.
     """
-    env.scene["camera"].write_light_gain(_log_uniform(env, gain, len(env_ids)), env_ids)
+    env.scene["camera"].write_light_gain(_log_uniform(env, "light", env_ids, gain), env_ids)
 
 
 @expects(gain=POSITIVE)
@@ -112,12 +112,12 @@ def randomize_color(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[flo
     Args:
         gain: Smallest and largest factor.
     """
-    env.scene["camera"].write_color_gain(_log_uniform(env, gain, len(env_ids), 3), env_ids)
+    env.scene["camera"].write_color_gain(_log_uniform(env, "color", env_ids, gain, 3), env_ids)
 
 
 def randomize_texture(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
     """Shift the mucosa texture by a uniform offset in both directions, so that vessels are no landmarks."""
-    env.scene["camera"].write_texture_offset(torch.rand(len(env_ids), 2, device=env.device), env_ids)
+    env.scene["camera"].write_texture_offset(env.random.uniform("texture", 2, env_ids=env_ids), env_ids)
 
 
 @expects(scale=POSITIVE)
@@ -129,7 +129,7 @@ def randomize_tissue_stiffness(
     Args:
         scale: Smallest and largest factor.
     """
-    env.scene["colon"].write_stiffness_scale_to_sim(_log_uniform(env, scale, len(env_ids)), env_ids)
+    env.scene["colon"].write_stiffness_scale_to_sim(_log_uniform(env, "stiffness", env_ids, scale), env_ids)
 
 
 @expects(presets=TISSUE_PRESETS)
@@ -146,7 +146,7 @@ def randomize_tissue(
     """
     tissues = [tissue_preset(name) for name in presets]
     values = [(tissue.youngs_modulus, tissue.poissons_ratio) for tissue in tissues]
-    chosen = _choice(env, values, len(env_ids))
+    chosen = _choice(env, "tissue", env_ids, values)
     env.scene["colon"].write_material_to_sim(chosen[:, 0], chosen[:, 1], env_ids)
 
 
@@ -160,7 +160,7 @@ def randomize_anchors(
         anchors: Names from :data:`arcgym.assets.materials.ANCHOR_SCALES`.
     """
     scales = [anchor_scale(name) for name in anchors]
-    env.scene["colon"].write_anchor_scale_to_sim(_choice(env, scales, len(env_ids)), env_ids)
+    env.scene["colon"].write_anchor_scale_to_sim(_choice(env, "anchors", env_ids, scales), env_ids)
 
 
 @expects(probability=FRACTION)
@@ -170,7 +170,7 @@ def randomize_rigidity(env: ManagerBasedEnv, env_ids: torch.Tensor, probability:
     Args:
         probability: Share of the worlds that are held; 1 holds all.
     """
-    rigid = torch.rand(len(env_ids), device=env.device) < probability
+    rigid = env.random.uniform("rigidity", env_ids=env_ids) < probability
     env.scene["colon"].write_rigid_to_sim(rigid, env_ids)
 
 
@@ -183,16 +183,18 @@ def randomize_friction(
     Args:
         friction: Smallest and largest coefficient.
     """
-    env.scene["endoscope"].write_friction_to_sim(_log_uniform(env, friction, len(env_ids)), env_ids)
+    env.scene["endoscope"].write_friction_to_sim(_log_uniform(env, "friction", env_ids, friction), env_ids)
 
 
-def _choice(env: ManagerBasedEnv, values: Sequence[object], count: int) -> torch.Tensor:
-    """Return ``count`` of ``values``, drawn with replacement, shape (count, ...)."""
+def _choice(env: ManagerBasedEnv, tag: str, env_ids: torch.Tensor, values: Sequence[object]) -> torch.Tensor:
+    """Return one of ``values`` for each of some worlds, shape (n, ...)."""
     pool = torch.tensor(values, dtype=torch.float32, device=env.device)
-    return pool[torch.randint(len(pool), (count,), device=env.device)]
+    return pool[env.random.integers(tag, 0, len(pool), env_ids=env_ids)]
 
 
-def _log_uniform(env: ManagerBasedEnv, bounds: tuple[float, float], *shape: int) -> torch.Tensor:
-    """Return numbers whose logarithm is uniform between the logarithms of ``bounds``, which must be positive."""
+def _log_uniform(
+    env: ManagerBasedEnv, tag: str, env_ids: torch.Tensor, bounds: tuple[float, float], *shape: int
+) -> torch.Tensor:
+    """Return numbers whose logarithm is uniform between the logarithms of ``bounds`` (positive), shape (n, ...)."""
     low, high = (math.log(bound) for bound in bounds)
-    return torch.exp(low + (high - low) * torch.rand(shape, device=env.device))
+    return torch.exp(low + (high - low) * env.random.uniform(tag, *shape, env_ids=env_ids))
