@@ -13,7 +13,11 @@ from arcgym.rl.rollout import run_policy, zero_policy
 
 
 def wrap(env, success: list[bool] | None = None) -> RslRlVecEnvWrapper:
-    env.termination_manager = SimpleNamespace(success=torch.tensor(success or [False, False]))
+    succeeds = torch.tensor(success or [False, False])
+    env.termination_manager = SimpleNamespace(
+        success=succeeds, active_terms=["arrived"], get_term=lambda name: succeeds
+    )
+    env.step_dt = 0.5
     env.metrics_manager = SimpleNamespace(finished={"progress": torch.tensor([0.25, 0.75])})
     return RslRlVecEnvWrapper(env)
 
@@ -51,6 +55,10 @@ def test_only_the_first_episode_of_a_world_counts(counting_env):
     assert result.success_rate == 0.5
     assert result.reward_per_episode == (2 * 1.0 + 5 * 3.0) / 2
     assert result.metrics == {"Episode_Metrics/progress": (0.25 + 0.75) / 2}
+    assert result.first_episodes == [
+        {"world": 0, "success": 1, "end": "arrived", "reward": 2.0, "seconds": 1.0, "progress": 0.25},
+        {"world": 1, "success": 0, "end": "non_finite", "reward": 15.0, "seconds": 2.5, "progress": 0.75},
+    ]
 
 
 def test_worlds_that_have_not_ended_are_named(counting_env):

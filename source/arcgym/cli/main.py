@@ -18,6 +18,8 @@ COMMANDS = {
     "train": ("arcgym.cli.train", "train a policy with rsl_rl"),
     "play": ("arcgym.cli.play", "run a trained policy, record it and export it"),
     "replay": ("arcgym.cli.replay", "make a recorded episode again and compare it bit for bit"),
+    "study": ("arcgym.cli.study", "train a grid of algorithms, tasks, robots and seeds"),
+    "study report": ("arcgym.cli.study_report", "make table and pictures of a study's folder"),
     "list": ("arcgym.cli.list_tasks", "list the registered tasks"),
     "zero": ("arcgym.cli.zero", "run a task with raw actions that are zero"),
     "random": ("arcgym.cli.random_actions", "run a task with uniform random actions"),

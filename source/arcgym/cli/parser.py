@@ -38,11 +38,13 @@ class CommandParser(argparse.ArgumentParser):
             **kwargs,
         )
         self.takes_overrides = takes_overrides
+        self.override = OVERRIDE
+        """Form of the overrides that are accepted."""
 
     def parse(self, argv: Sequence[str]) -> argparse.Namespace:
         """Return the arguments; overrides are in ``overrides``. A mistake exits with status 2."""
         args, rest = self.parse_known_args(list(argv))
-        args.overrides = [text for text in rest if self.takes_overrides and OVERRIDE.fullmatch(text)]
+        args.overrides = [text for text in rest if self.takes_overrides and self.override.fullmatch(text)]
         for text in rest:
             if text not in args.overrides:
                 self.error(self._unknown(text))

@@ -11,7 +11,16 @@ from typing import Any
 from arcgym.cli.arguments import RunArguments, TaskArguments
 from arcgym.utils.errors import UsageError
 
-AGENT_FIELDS = ("seed", "max_iterations", "experiment_name", "run_name", "load_run", "logger", "log_project_name")
+AGENT_FIELDS = (
+    "seed",
+    "max_iterations",
+    "max_minutes",
+    "experiment_name",
+    "run_name",
+    "load_run",
+    "logger",
+    "log_project_name",
+)
 """Arguments that are fields of the agent's configuration."""
 
 PLAY = "-Play"

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
+from pathlib import Path
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.task import load_cfgs, load_run_cfgs
@@ -25,6 +26,9 @@ class TrainArguments(RunArguments):
     """Arguments of ``arcgym train``."""
 
     max_iterations: int | None = argument("updates to run, on top of those of a resumed run", None, type=positive)
+    max_minutes: float | None = argument("minutes of learning, those of a resumed run included", None, type=float)
+    log_dir: str | None = argument("folder of this run (default: logs/rsl_rl/<experiment>/<time>)", None)
+    evaluate: bool = argument("run each world's first episode when learning has ended", False)
     run_name: str | None = argument("suffix of the run's folder", None)
     resume: bool = argument("go on from a checkpoint (--load_run, --checkpoint)", False)
     logger: str | None = argument("where curves go", None, choices=("tensorboard", "wandb", "neptune"))
@@ -49,5 +53,8 @@ def run(namespace: argparse.Namespace) -> int:
     from arcgym.rl.training import TrainOptions, train
 
     interval = args.video_interval if args.video else None
-    options = TrainOptions(args.device, args.distributed, checkpoint, interval, args.video_length)
+    folder = Path(args.log_dir) if args.log_dir else None
+    options = TrainOptions(
+        args.device, args.distributed, checkpoint, interval, args.video_length, folder, args.evaluate
+    )
     return train(args.task, env_cfg, agent_cfg, options)

@@ -10,17 +10,15 @@ from typing import Any
 import torch
 
 
-def linear_rate(start: float, end: float, iteration: int, num_iterations: int) -> float:
-    """Return the learning rate of an iteration on the line from ``start`` to ``end``; after the last it stays there.
+def linear_rate(start: float, end: float, fraction: float) -> float:
+    """Return the learning rate on the line from ``start`` to ``end``; after the end it stays there.
 
     Args:
-        start: Rate of iteration 0.
-        end: Rate of iteration ``num_iterations - 1`` and later.
-        iteration: Iterations completed before this one.
-        num_iterations: Iterations of the whole run.
+        start: Rate at the beginning of the run.
+        end: Rate at its end.
+        fraction: Share of the run that is over, from 0 to 1.
     """
-    fraction = min(iteration / max(num_iterations - 1, 1), 1.0)
-    return start + (end - start) * fraction
+    return start + (end - start) * min(max(fraction, 0.0), 1.0)
 
 
 def set_learning_rate(algorithm: Any, rate: float) -> None:

@@ -6,13 +6,17 @@
 from __future__ import annotations
 
 import json
+import math
+import statistics
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import torch
 from tensordict import TensorDict
 
+from arcgym.rl.first_episodes import FirstEpisodes
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
 Policy = Callable[[TensorDict], torch.Tensor]
@@ -51,9 +55,13 @@ class RolloutResult:
     metrics: dict[str, float] = field(default_factory=dict)
     """Mean of each ``Episode_Metrics/…`` over these episodes."""
 
+    first_episodes: list[dict[str, Any]] = field(default_factory=list, repr=False)
+    """What each of these episodes was, see :meth:`arcgym.rl.first_episodes.FirstEpisodes.rows`."""
+
     def to_json(self) -> str:
-        """Return all figures as one line of JSON; what no episode gave is null."""
+        """Return all figures but the list of episodes as one line of JSON; what no episode gave is null."""
         figures = {name: None if value != value else value for name, value in asdict(self).items()}
+        del figures["first_episodes"]
         return json.dumps(figures)
 
     def __str__(self) -> str:
@@ -96,62 +104,30 @@ def run_policy(
         on_step: Called after every step with the number of steps done.
     """
     start = time.perf_counter()
-    tally = _Tally(env)
+    tally = FirstEpisodes(env)
     obs = env.get_observations()
     with torch.inference_mode():
         while tally.steps < (steps or env.max_episode_length) and (steps or not tally.is_complete()):
-            obs, rewards, dones, _ = env.step(policy(obs))
+            obs, rewards, dones, extras = env.step(policy(obs))
             if hasattr(policy, "reset"):
                 policy.reset(dones)
-            tally.add(rewards, dones > 0)
+            tally.add(rewards, dones > 0, extras.get("costs", {}))
             if on_step is not None:
                 on_step(tally.steps)
-    return tally.result(time.perf_counter() - start)
+    rows = tally.rows()
+    return RolloutResult(
+        steps=tally.steps,
+        num_envs=env.num_envs,
+        reward_per_step=tally.reward_per_step,
+        episodes=len(rows),
+        reward_per_episode=_mean(rows, "reward"),
+        success_rate=_mean(rows, "success"),
+        wall_time=time.perf_counter() - start,
+        metrics={f"Episode_Metrics/{name}": value for name, value in tally.metrics.items()},
+        first_episodes=rows,
+    )
 
 
-class _Tally:
-    """Sums over a rollout, of each world's first episode where they are of episodes."""
-
-    def __init__(self, env: RslRlVecEnvWrapper) -> None:
-        self.env = env
-        self.steps = 0
-        self.total = torch.zeros((), device=env.device)
-        self.returns = torch.zeros(env.num_envs, device=env.device)
-        self.has_ended = torch.zeros(env.num_envs, dtype=torch.bool, device=env.device)
-        self.has_succeeded = torch.zeros_like(self.has_ended)
-        self.metrics: dict[str, torch.Tensor] = {}
-
-    def add(self, rewards: torch.Tensor, done: torch.Tensor) -> None:
-        """Take in a step: rewards, shape (N,), and the worlds that are done, bool, shape (N,)."""
-        self.steps += 1
-        self.total += rewards.sum()
-        self.returns += rewards * ~self.has_ended
-        ends = done & ~self.has_ended
-        self.has_succeeded |= ends & self.env.unwrapped.termination_manager.success
-        for name, values in self.env.unwrapped.metrics_manager.finished.items():
-            self.metrics[name] = torch.where(ends, values, self.metrics.get(name, torch.zeros_like(values)))
-        self.has_ended |= done
-
-    def is_complete(self) -> bool:
-        """Return whether each world's first episode has ended. Waits for the device."""
-        return bool(self.has_ended.all())
-
-    def result(self, wall_time: float) -> RolloutResult:
-        """Return the figures."""
-        episodes = int(self.has_ended.sum())
-        return RolloutResult(
-            steps=self.steps,
-            num_envs=self.env.num_envs,
-            reward_per_step=float(self.total) / max(self.steps * self.env.num_envs, 1),
-            episodes=episodes,
-            reward_per_episode=self._mean(self.returns),
-            success_rate=self._mean(self.has_succeeded.float()),
-            wall_time=wall_time,
-            metrics={f"Episode_Metrics/{name}": self._mean(value) for name, value in self.metrics.items()}
-            if episodes
-            else {},
-        )
-
-    def _mean(self, values: torch.Tensor) -> float:
-        """Return the mean over the worlds whose first episode ended; NaN when there is none."""
-        return float(values[self.has_ended].mean())
+def _mean(rows: list[dict[str, Any]], name: str) -> float:
+    """Return the mean of a column; NaN when there is no row."""
+    return statistics.fmean(row[name] for row in rows) if rows else math.nan

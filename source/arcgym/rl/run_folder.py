@@ -42,6 +42,19 @@ def create_run_folder(experiment: str, run_name: str = "", root: Path = LOG_ROOT
     raise AssertionError("the numbers never end")
 
 
+def claim_folder(path: Path) -> Path:
+    """Create and return the folder of a new run at a given place.
+
+    Raises:
+        UsageError: There is a file, or a folder that holds something.
+    """
+    folder = path.resolve()
+    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        raise UsageError(f"--log_dir is {path}, which holds something already; expected a new or empty folder.")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
 @contextmanager
 def removed_on_failure(folder: Path | None) -> Iterator[None]:
     """Remove a run's folder if the block fails or is interrupted: a run that never started leaves nothing."""
@@ -112,10 +125,15 @@ def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "la
     )
 
 
+def find_newest_checkpoint(run: Path) -> Path | None:
+    """Return the numbered checkpoint of a run with the most iterations, or None where it has none."""
+    numbered = _checkpoints(run)
+    return numbered[-1] if numbered else None
+
+
 def _select(run: Path, checkpoint: str) -> Path | None:
     if checkpoint == "latest":
-        numbered = _checkpoints(run)
-        return numbered[-1] if numbered else None
+        return find_newest_checkpoint(run)
     path = run / ("model_best.pt" if checkpoint == "best" else checkpoint)
     return path if path.is_file() else None
 

@@ -22,6 +22,7 @@ from arcgym.rl.divergence import check_finite
 from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
 from arcgym.rl.learning_rate import linear_rate, set_learning_rate
 from arcgym.rl.patient_writer import PatientWriter
+from arcgym.rl.run_clock import BudgetSpent, RunClock
 from arcgym.utils.errors import UsageError
 
 
@@ -30,7 +31,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
 
     * writes checkpoints whole or not at all, and one more on Ctrl-C or SIGTERM; a full disk does not stop it,
     * loads checkpoints as weights only, so that a foreign one runs no code,
-    * stops when a loss or a weight is no longer finite, before that is saved,
+    * stops when a loss or a weight is no longer finite, before that is saved, or when its time is over,
     * resumes with the next iteration and with the environment's step counter, so that curricula go on,
     * keeps ``model_best.pt``, the checkpoint with the highest mean episode reward.
     """
@@ -45,6 +46,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 "the two would set the learning rate in turns."
             )
         self.completed_iterations = 0
+        self.clock = RunClock(train_cfg.get("max_minutes"))
         self.best_reward = float("-inf")
         self.last_checkpoint: Path | None = None
         if not train_cfg.get("store_git_diff", False):
@@ -70,18 +72,23 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         """
         if self.cfg.get("init_policy") and self.completed_iterations == 0:
             self._start_from(self.cfg["init_policy"])
-        update = self.alg.update
-        init_writer = self.logger.init_logging_writer
+        update, log, init_writer = self.alg.update, self.logger.log, self.logger.init_logging_writer
         self.logger.init_logging_writer = lambda: self._init_writer(init_writer)  # type: ignore[method-assign]
+        self.logger.log = lambda **values: self._log(log, **values)  # type: ignore[method-assign]
         with InterruptGuard() as guard:
             self.alg.update = lambda: self._update(update, guard)  # type: ignore[method-assign]
+            self.clock.start()
             try:
-                super().learn(num_learning_iterations, init_at_random_ep_len)
+                super().learn(0 if self.clock.is_over else num_learning_iterations, init_at_random_ep_len)
+            except BudgetSpent:
+                self._save_last(self.current_learning_iteration)
+                print(f"learning ended after {self.clock.seconds / 60.0:.1f} minutes, as agent.max_minutes says")
             except TrainingInterrupted:
-                self._save_interrupted()
+                self._save_last(max(self.completed_iterations - 1, 0))
                 raise
             finally:
-                self.alg.update = update  # type: ignore[method-assign]
+                self.clock.stop()
+                self.alg.update, self.logger.log = update, log  # type: ignore[method-assign]
                 self.logger.init_logging_writer = init_writer  # type: ignore[method-assign]
 
     def save(self, path: str, infos: dict | None = None) -> None:
@@ -90,6 +97,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             "completed_iterations": self.completed_iterations,
             "common_step_counter": int(self.env.unwrapped.common_step_counter),  # type: ignore[attr-defined]
             "best_reward": self._update_best(path),
+            **self.clock.state(),
         }
         checkpoint = {
             **self.alg.save(),
@@ -121,6 +129,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         self.completed_iterations = int(infos.get("completed_iterations", 0))
         self.current_learning_iteration = self.completed_iterations
         self.best_reward = infos.get("best_reward", self.best_reward)
+        self.clock.restore(infos)
         self.env.unwrapped.common_step_counter = infos.get("common_step_counter", 0)  # type: ignore[attr-defined]
         return infos
 
@@ -149,8 +158,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         end = self.cfg.get("final_learning_rate")
         if end is not None:
             start = self.cfg["algorithm"]["learning_rate"]
-            rate = linear_rate(start, end, self.completed_iterations, self.cfg["max_iterations"])
-            set_learning_rate(self.alg, rate)
+            done = self.completed_iterations / max(self.cfg["max_iterations"] - 1, 1)
+            set_learning_rate(self.alg, linear_rate(start, end, max(done, self.clock.fraction)))
 
     def _models(self) -> dict[str, torch.nn.Module]:
         """Return the algorithm's networks by name."""
@@ -163,9 +172,21 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         if writer is not None and not isinstance(writer, LogWriter):
             self.logger.writer = PatientWriter(writer)  # type: ignore[assignment]
 
-    def _save_interrupted(self) -> None:
+    def _log(self, log: Callable[..., None], **values: Any) -> None:
+        """Write the curves of an iteration with what the run has taken so far; end the run when its time is over."""
+        worlds = self.env.num_envs * getattr(self, "gpu_world_size", 1)
+        self.clock.transitions += self.cfg["num_steps_per_env"] * worlds
+        if self.logger.writer is not None:
+            self.logger.writer.add_scalar("Perf/transitions", self.clock.transitions, values["it"])  # type: ignore
+            self.logger.writer.add_scalar("Perf/seconds", self.clock.seconds, values["it"])  # type: ignore
+        log(**values)
+        if self.clock.is_over:
+            raise BudgetSpent
+
+    def _save_last(self, iteration: int) -> None:
+        """Save one more checkpoint and close the log."""
         if self.logger.log_dir is not None and not self.logger.disable_logs:
-            self.save(str(Path(self.logger.log_dir) / f"model_{max(self.completed_iterations - 1, 0)}.pt"))
+            self.save(str(Path(self.logger.log_dir) / f"model_{iteration}.pt"))
             self.logger.stop_logging_writer()
 
     def _update_best(self, path: str) -> float:

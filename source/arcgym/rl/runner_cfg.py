@@ -271,6 +271,10 @@ class RslRlOnPolicyRunnerCfg:
     max_iterations: int = 500
     """Updates of a full training run."""
 
+    max_minutes: float | None = None
+    """Minutes of learning after which a run ends, resumed parts included; None has no such end. Building the worlds
+    does not count. Set it to compare unlike algorithms at equal time."""
+
     save_interval: int = 50
     """Updates between two checkpoints; the last one is always kept."""
 
@@ -305,8 +309,9 @@ class RslRlOnPolicyRunnerCfg:
     """Whether the worlds start at random places of their time limit, so that time-outs do not come all at once."""
 
     final_learning_rate: float | None = None
-    """Learning rate of the last of ``max_iterations``, reached on a line from ``algorithm.learning_rate``; None keeps
-    it constant. Set it for long runs that get worse late. Needs the schedule ``fixed``."""
+    """Learning rate at the end of ``max_iterations``, or of ``max_minutes`` if that comes first, reached on a line from
+    ``algorithm.learning_rate``; None keeps it constant. Set it for long runs that get worse late. Needs the schedule
+    ``fixed``."""
 
     check_for_nan: bool = True
     """Whether the runner stops at a NaN in observation or reward. The environment resets broken worlds before that."""
@@ -338,7 +343,7 @@ class RslRlOnPolicyRunnerCfg:
         require_at_least(self, -1, "seed")
         require_at_least(self, 1, "num_steps_per_env", "max_iterations", "save_interval")
         require(self, "logger", ("tensorboard", *LOG_WRITERS))
-        require_positive(self, "clip_actions")
+        require_positive(self, "clip_actions", "max_minutes")
         require_non_negative(self, "final_learning_rate")
         for name in ("experiment_name", "run_name"):
             value = getattr(self, name)

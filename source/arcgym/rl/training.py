@@ -17,11 +17,12 @@ from rsl_rl.utils import resolve_callable
 import arcgym
 from arcgym.rl.device import check_launcher, is_main_process, place
 from arcgym.rl.divergence import TrainingDiverged
+from arcgym.rl.evaluation import evaluate
 from arcgym.rl.interrupt import TrainingInterrupted
 from arcgym.rl.make_env import VideoOptions, make_env
 from arcgym.rl.preflight import check_run
 from arcgym.rl.rollout_memory import describe_rollout
-from arcgym.rl.run_folder import LOG_ROOT, create_run_folder, removed_on_failure, write_params
+from arcgym.rl.run_folder import LOG_ROOT, claim_folder, create_run_folder, removed_on_failure, write_params
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
 
@@ -44,6 +45,12 @@ class TrainOptions:
     video_length: int = 200
     """Control steps of a video."""
 
+    folder: Path | None = None
+    """Folder of the run, which must not exist yet or be empty; None makes one below ``logs/rsl_rl``."""
+
+    evaluates: bool = False
+    """Whether each world's first episode is run with the last policy when learning has ended."""
+
 
 def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = TrainOptions()) -> int:
     """Check everything, build environment and runner, learn, and say where the results are.
@@ -55,25 +62,29 @@ def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = Train
         UsageError: Something is wrong that can be known before the run; no folder has been made.
     """
     check_launcher(options.distributed)
-    check_run(env_cfg, agent_cfg, options.device, [LOG_ROOT / agent_cfg.experiment_name], trains=True)
+    output = options.folder or LOG_ROOT / agent_cfg.experiment_name
+    check_run(env_cfg, agent_cfg, options.device, [output], trains=True)
     device = place(env_cfg, agent_cfg, options.device, options.distributed)
     with contextlib.ExitStack() as stack:
         if not is_main_process():
             silence = stack.enter_context(open(os.devnull, "w"))
             stack.enter_context(contextlib.redirect_stdout(silence))
-        folder = _start_folder(task, env_cfg, agent_cfg) if is_main_process() else None
+        folder = _start_folder(task, env_cfg, agent_cfg, options.folder) if is_main_process() else None
         with removed_on_failure(folder):
             env = make_env(task, env_cfg, agent_cfg, _video(options, folder))
             runner = _make_runner(env, agent_cfg, folder, device)
             if options.checkpoint is not None:
                 runner.load(str(options.checkpoint))
                 print(f"resumed from {options.checkpoint} at iteration {runner.current_learning_iteration}")
-        return _learn(runner, env, agent_cfg, folder)
+        return _learn(runner, env, agent_cfg, folder, device if options.evaluates else None)
 
 
-def _start_folder(task: str, env_cfg: Any, agent_cfg: Any) -> Path:
+def _start_folder(task: str, env_cfg: Any, agent_cfg: Any, wanted: Path | None) -> Path:
     """Return the folder of this run, with its parameters in it."""
-    folder = create_run_folder(agent_cfg.experiment_name, agent_cfg.run_name)
+    if wanted is None:
+        folder = create_run_folder(agent_cfg.experiment_name, agent_cfg.run_name)
+    else:
+        folder = claim_folder(wanted)
     with removed_on_failure(folder):
         env_cfg.log_dir = str(folder)
         about = {"task": task, "arcgym": arcgym.__version__, "command": sys.argv}
@@ -99,11 +110,15 @@ def _make_runner(env: RslRlVecEnvWrapper, agent_cfg: Any, folder: Path | None, d
     return runner
 
 
-def _learn(runner: Any, env: RslRlVecEnvWrapper, agent_cfg: Any, folder: Path | None) -> int:
-    """Learn, say where the results are, and return the exit status."""
+def _learn(
+    runner: Any, env: RslRlVecEnvWrapper, agent_cfg: Any, folder: Path | None, evaluation_device: str | None
+) -> int:
+    """Learn, evaluate where it is asked for, say where the results are, and return the exit status."""
     status = 0
     try:
         runner.learn(agent_cfg.max_iterations, agent_cfg.init_at_random_ep_len)
+        if evaluation_device is not None and is_main_process():
+            evaluate(runner, env, evaluation_device, folder)
     except TrainingInterrupted as interrupt:
         status = 128 + interrupt.signal_number
         if folder is not None:

@@ -64,9 +64,9 @@ class RslRlVecEnvWrapper(VecEnv):
         """Return the latest observations without computing them again, which would advance their histories."""
         return self._obs
 
-    def reset(self) -> tuple[TensorDict, dict]:
-        """Reset every world and return observations and extras."""
-        obs, extras = self.env.reset()
+    def reset(self, seed: int | None = None) -> tuple[TensorDict, dict]:
+        """Reset every world, after setting the seed if one is given, and return observations and extras."""
+        obs, extras = self.env.reset(seed=seed)
         self._obs = self._pack(obs)
         return self._obs, extras
 

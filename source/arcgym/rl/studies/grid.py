@@ -1,0 +1,85 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""From a study's configuration to its cells, in Hydra's grammar."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from arcgym.rl.studies.cell import Cell
+from arcgym.rl.studies.study_cfg import AXES, StudyCfg
+
+NAMED = ("algorithm", "task", "robot", "seed")
+"""Axes that every cell's name has; others are appended."""
+
+_PLAIN = re.compile(r"[A-Za-z_][\w./+-]*|-?\d+(\.\d+)?(e-?\d+)?")
+
+
+def sweep_overrides(cfg: StudyCfg) -> list[str]:
+    """Return the grid as overrides that Hydra's sweeper multiplies out, such as ``seed=1,2,3``."""
+    return [f"{_key(name)}={','.join(hydra_value(value) for value in values)}" for name, values in cfg.grid.items()]
+
+
+def hydra_value(value: Any) -> str:
+    """Return a value as Hydra's grammar writes it."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (list, tuple)):
+        return f"[{','.join(hydra_value(item) for item in value)}]"
+    if isinstance(value, Mapping):
+        return "{" + ",".join(f"{key}:{hydra_value(item)}" for key, item in value.items()) + "}"
+    text = str(value)
+    return text if _PLAIN.fullmatch(text) else "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'"
+
+
+def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
+    """Return a cell from a study's configuration in which each name of the grid has one value.
+
+    Settings of the task come on top of the study's, those of the algorithm on top of both, and the grid's last.
+
+    Args:
+        values: Fields of :class:`StudyCfg` as plain values, and ``axes``, the names that the grid varies.
+        study: Folder of the study.
+    """
+    task = f"ARC-{str(values['task']).capitalize()}-{values['robot']}" if values.get("robot") else values["task"]
+    groups = [values["tasks"].get(task, {}), values["algorithms"].get(values["algorithm"], {})]
+    merged = {name: values[name] for name in ("num_envs", "minutes", "max_iterations")}
+    overrides: dict[str, Any] = {}
+    for group in ({"env": values["env"], "agent": values["agent"]}, *groups):
+        merged |= {name: value for name, value in group.items() if name not in ("env", "agent")}
+        for kind in ("env", "agent"):
+            overrides |= dict(_leaves(group.get(kind, {}), kind))
+    axes = {}
+    for name in values["axes"]:
+        if name not in NAMED:
+            axes[name] = values[name] if name in AXES else _at(values, name)
+            (merged if name in AXES else overrides)[name] = axes[name]
+    texts = tuple(f"{path}={hydra_value(value)}" for path, value in overrides.items())
+    return Cell(
+        study, task, values["algorithm"], values["seed"], axes, evaluate=values["evaluate"], overrides=texts, **merged
+    )
+
+
+def _key(name: str) -> str:
+    """Return the key of an override; paths need not exist in the study's configuration."""
+    return f"++{name}" if name.startswith(("env.", "agent.")) else name
+
+
+def _leaves(values: Mapping[str, Any], path: str) -> Iterator[tuple[str, Any]]:
+    for name, value in values.items():
+        if isinstance(value, Mapping) and value:
+            yield from _leaves(value, f"{path}.{name}")
+        else:
+            yield f"{path}.{name}", value
+
+
+def _at(values: Mapping[str, Any], path: str) -> Any:
+    for part in path.split("."):
+        values = values[part]
+    return values

@@ -1,0 +1,127 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Runs one cell of a study in a process of its own, wherever a launcher of Hydra puts it."""
+
+from __future__ import annotations
+
+import fcntl
+import re
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from omegaconf import DictConfig, OmegaConf
+
+from arcgym.rl.studies.cell import LOG_FILE, Cell
+from arcgym.rl.studies.grid import make_cell
+from arcgym.rl.studies.stopping import was_stopped
+
+TAIL = 15
+"""Lines of the log that are kept of a cell that failed."""
+
+POLL_S = 0.5
+REPORT_S = 60.0
+_WATCHED = {"iteration": r"Learning iteration (\d+)", "reward": r"Mean reward: *(\S+)"}
+
+
+def run_cell(cfg: DictConfig) -> dict[str, Any]:
+    """Run a cell, or go on with it, and return its name and state; what is finished is left alone.
+
+    Args:
+        cfg: Fields of :class:`arcgym.rl.studies.study_cfg.StudyCfg` with one value for each name of the grid, and
+            ``axes``, ``folder``, ``device`` and ``stop_at``.
+    """
+    values: Any = OmegaConf.to_container(cfg, resolve=True)
+    cell = make_cell(values, Path(values["folder"]))
+    with _alone(cell) as is_mine:
+        state = _run(cell, values["device"], values["stop_at"]) if is_mine else "running"
+    return {"name": cell.name, "state": state}
+
+
+def _run(cell: Cell, device: str | None, stop_at: float | None) -> str:
+    """Run the cell's process unless there is nothing to do, and return the state it is left in."""
+    before = cell.read_state()
+    if before["state"] == "finished" and before["settings"] == cell.settings():
+        return "finished"
+    teacher = cell.teacher()
+    if teacher is not None and teacher.read_state()["state"] != "finished":
+        cell.write_state("waiting", waits_for=teacher.name)
+        return "waiting"
+    if _is_time(stop_at):
+        return before["state"]
+    seconds = before.get("seconds", 0.0)
+    cell.write_state("running", seconds=seconds)
+    print(f"{cell.name}: {'goes on' if cell.checkpoint() else 'starts'}", flush=True)
+    start = time.monotonic()
+    status, stopped = _wait(cell, device, stop_at)
+    seconds += time.monotonic() - start
+    state = "stopped" if stopped or status > 128 or status < 0 else "failed" if status else "finished"
+    tail = {"status": status, "log": read_tail(cell)} if state == "failed" else {}
+    cell.write_state(state, seconds=seconds, **tail)
+    print(f"{cell.name}: {state} after {seconds:.0f} s", flush=True)
+    return state
+
+
+def _wait(cell: Cell, device: str | None, stop_at: float | None) -> tuple[int, bool]:
+    """Run the cell's command and return its exit status, and whether it was asked to stop."""
+    command = cell.command(device)
+    stopped, reported = False, time.monotonic()
+    with (cell.folder / LOG_FILE).open("a") as log:
+        print("$", *command[1:], file=log, flush=True)
+        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        try:
+            while process.poll() is None:
+                time.sleep(POLL_S)
+                if not stopped and _is_time(stop_at):
+                    stopped = True
+                    process.terminate()
+                if time.monotonic() - reported > REPORT_S:
+                    reported = time.monotonic()
+                    print(f"{cell.name}: {describe_progress(cell)}", flush=True)
+        finally:
+            process.terminate()
+    return process.returncode, stopped
+
+
+def _is_time(stop_at: float | None) -> bool:
+    """Return whether cells are to stop."""
+    return was_stopped() or (stop_at is not None and time.time() >= stop_at)
+
+
+def describe_progress(cell: Cell) -> str:
+    """Return where a running cell is, in words, from the end of its log."""
+    text = _end_of_log(cell, 20_000)
+    found = {name: re.findall(pattern, text) for name, pattern in _WATCHED.items()}
+    said = [f"{name} {values[-1]}" for name, values in found.items() if values]
+    return ", ".join(said) or "building"
+
+
+def read_tail(cell: Cell, lines: int = TAIL) -> str:
+    """Return the last lines of a cell's log."""
+    return "\n".join(_end_of_log(cell, 20_000).splitlines()[-lines:])
+
+
+def _end_of_log(cell: Cell, size: int) -> str:
+    path = cell.folder / LOG_FILE
+    if not path.is_file():
+        return ""
+    with path.open("rb") as file:
+        file.seek(max(path.stat().st_size - size, 0))
+        return file.read().decode(errors="replace")
+
+
+@contextmanager
+def _alone(cell: Cell) -> Iterator[bool]:
+    """Yield whether no other process runs the cell while the block does."""
+    cell.folder.mkdir(parents=True, exist_ok=True)
+    with (cell.folder / "lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            yield False
+            return
+        yield True

@@ -1,0 +1,135 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""What a study is: settings that all its cells share, and the values that make its grid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from arcgym.utils.coerce import from_dict
+from arcgym.utils.configclass import configclass, validate
+from arcgym.utils.errors import UsageError
+from arcgym.utils.string import did_you_mean
+from arcgym.utils.validation import FieldError, require_at_least, require_positive
+
+AXES = ("algorithm", "task", "robot", "seed", "num_envs", "minutes", "max_iterations")
+"""Names that the grid may vary, beside paths ``env.…`` and ``agent.…``."""
+
+GROUP_FIELDS = ("num_envs", "minutes", "max_iterations", "env", "agent", "after")
+"""Names that the settings of one algorithm or one task may have."""
+
+
+@configclass
+class StudyCfg:
+    """A grid of training runs. Each combination of the values in ``grid`` is a cell."""
+
+    name: str = ""
+    """Name of the study, and of its folder below ``logs/studies``."""
+
+    algorithm: str = "ppo"
+    """Agent where the grid does not vary it, such as ``ppo`` or ``sac``."""
+
+    task: str = ""
+    """Task where the grid does not vary it: a registered name, or a segment if ``robot`` is given."""
+
+    robot: str | None = None
+    """Robot, such as ``Magnetic``: makes ``ARC-<task>-<robot>`` of the task. None where tasks are named in full."""
+
+    seed: int = 1
+    """Seed where the grid does not vary it."""
+
+    num_envs: int | None = None
+    """Worlds of each cell; None takes the task's."""
+
+    minutes: float | None = None
+    """Minutes of learning of each cell; None learns for ``max_iterations``."""
+
+    max_iterations: int | None = None
+    """Updates of each cell. None is without end where ``minutes`` are given, and the agent's number where not."""
+
+    evaluate: bool = True
+    """Whether each world's first episode is run with the last policy. The table needs it."""
+
+    env: dict[str, Any] = {}
+    """Overrides of the environment's configuration in all cells, by path, such as ``{"lumen": "metric"}``."""
+
+    agent: dict[str, Any] = {}
+    """Overrides of the agent's configuration in all cells, by path."""
+
+    tasks: dict[str, dict[str, Any]] = {}
+    """Settings of single tasks by full name, on top of the above: ``num_envs``, ``minutes``, ``max_iterations``,
+    ``env``, ``agent``."""
+
+    algorithms: dict[str, dict[str, Any]] = {}
+    """Settings of single algorithms, on top of those. ``after`` names an algorithm of the grid that must be finished
+    first; the text ``{checkpoint}`` in a value stands for its last checkpoint with the same task and seed."""
+
+    grid: dict[str, list[Any]] = {}
+    """Values by name: ``algorithm``, ``task``, ``robot``, ``seed``, ``num_envs``, ``minutes``, ``max_iterations``, or a
+    path that starts with ``env.`` or ``agent.``. The last name varies fastest."""
+
+    def validate_config(self) -> None:
+        """Check numbers and names.
+
+        Raises:
+            FieldError: A value is out of range or a name is unknown.
+        """
+        require_at_least(self, 1, "num_envs", "max_iterations")
+        require_at_least(self, -1, "seed")
+        require_positive(self, "minutes")
+        if not self.name or "/" in self.name or self.name.startswith("."):
+            raise FieldError(self, "name", f"is '{self.name}', expected a name without '/' and no '.' in front.")
+        for name, values in self.grid.items():
+            if name not in AXES and not name.startswith(("env.", "agent.")):
+                paths = "a path that starts with 'env.' or 'agent.'"
+                raise FieldError(self, "grid", f"varies '{name}', expected {paths} or one of: {', '.join(AXES)}.")
+            if not values:
+                raise FieldError(self, "grid", f"gives '{name}' no values, expected one or more.")
+        for kind in ("tasks", "algorithms"):
+            for owner, settings in getattr(self, kind).items():
+                for name in settings:
+                    if name not in GROUP_FIELDS:
+                        raise FieldError(self, kind, f"gives '{owner}' '{name}'. {did_you_mean(name, GROUP_FIELDS)}")
+
+
+def find_study(name: str, folder: Path) -> Path:
+    """Return the file of a study: a path, or the name of one in ``folder``.
+
+    Raises:
+        UsageError: There is none.
+    """
+    path = Path(name)
+    if path.is_file():
+        return path
+    shipped = {file.stem: file for file in folder.glob("*.yaml")}
+    if name in shipped:
+        return shipped[name]
+    raise UsageError(f"No study '{name}': expected a YAML file or the name of one. {did_you_mean(name, shipped)}")
+
+
+def read_study(path: Path) -> StudyCfg:
+    """Return the study that a YAML file describes; its name is the file's where it gives none.
+
+    Raises:
+        UsageError: The file is no YAML, or something in it is wrong.
+    """
+    try:
+        values = yaml.safe_load(path.read_text())
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise UsageError(f"{path} is no YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(values, dict):
+        raise UsageError(f"{path} holds {type(values).__name__}, expected the fields of a study.")
+    cfg = StudyCfg(name=path.stem)
+    for name in values:
+        if name not in vars(cfg):
+            raise UsageError(f"{path} has the field '{name}'. {did_you_mean(str(name), vars(cfg))}")
+    try:
+        from_dict(cfg, values)
+        validate(cfg, "study")
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{path}: {error}") from error
+    return cfg

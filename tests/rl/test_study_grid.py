@@ -1,0 +1,130 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A study's file and the cells that it makes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arcgym.cli.study import SHIPPED
+from arcgym.rl.studies.grid import hydra_value
+from arcgym.rl.studies.launch import all_cells, check_cells
+from arcgym.rl.studies.study_cfg import StudyCfg, find_study, read_study
+from arcgym.utils.errors import UsageError
+
+FOLDER = Path("/studies/one")
+RECTUM, SIGMOID = "ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"
+
+
+def study(**fields) -> StudyCfg:
+    return StudyCfg(name="one", **{"task": RECTUM, **fields})
+
+
+def test_the_grid_is_multiplied_out_and_its_last_name_varies_fastest():
+    cells = all_cells(study(grid={"task": [RECTUM, SIGMOID], "algorithm": ["ppo", "sac"]}), FOLDER)
+    assert [cell.name for cell in cells] == [
+        "rectum-magnetic_ppo_seed1",
+        "rectum-magnetic_sac_seed1",
+        "sigmoid-magnetic_ppo_seed1",
+        "sigmoid-magnetic_sac_seed1",
+    ]
+
+
+def test_segment_and_robot_make_a_task():
+    grid = {"task": ["rectum", "sigmoid"], "robot": ["Capsule", "Magnetic"]}
+    tasks = [cell.task for cell in all_cells(study(grid=grid), FOLDER)]
+    assert tasks == ["ARC-Rectum-Capsule", RECTUM, "ARC-Sigmoid-Capsule", SIGMOID]
+
+
+def test_the_grid_comes_on_top_of_the_algorithm_and_the_algorithm_on_top_of_the_task():
+    """learning_rate: study 1, task 2, algorithm 3; gamma: study 0.9, grid 0.5; worlds: study 8, algorithm 4."""
+    rate = "algorithm.learning_rate"
+    cfg = study(
+        num_envs=8,
+        agent={rate: 1, "algorithm.gamma": 0.9},
+        env={"lumen": "metric"},
+        tasks={RECTUM: {"agent": {rate: 2}}},
+        algorithms={"ppo": {"agent": {rate: 3}, "num_envs": 4}},
+        grid={"agent.algorithm.gamma": [0.5]},
+    )
+    (cell,) = all_cells(cfg, FOLDER)
+    assert cell.num_envs == 4
+    assert cell.axes == {"agent.algorithm.gamma": 0.5}
+    assert cell.name == "rectum-magnetic_ppo_seed1_gamma=0.5"
+    assert list(cell.overrides) == [
+        "env.lumen=metric",
+        "agent.algorithm.learning_rate=3",
+        "agent.algorithm.gamma=0.5",
+    ]
+
+
+def test_the_command_line_sweeps_too():
+    cells = all_cells(study(grid={"seed": [1, 2]}), FOLDER, ["seed=5,6,7", "++agent.algorithm.gamma=0.9,0.99"])
+    assert [(cell.seed, cell.axes["agent.algorithm.gamma"]) for cell in cells] == [
+        (seed, gamma) for seed in (5, 6, 7) for gamma in (0.9, 0.99)
+    ]
+
+
+def test_a_cell_names_the_checkpoint_of_the_one_it_comes_after(tmp_path):
+    cfg = study(
+        grid={"algorithm": ["ppo_teacher", "distillation"]},
+        algorithms={"distillation": {"after": "ppo_teacher", "agent": {"teacher_checkpoint": "{checkpoint}"}}},
+    )
+    teacher, pupil = all_cells(cfg, tmp_path)
+    (teacher.folder / "run_1").mkdir(parents=True)
+    (teacher.folder / "run_1" / "model_7.pt").touch()
+    assert pupil.command("cpu")[-1] == f"agent.teacher_checkpoint='{teacher.folder}/run_1/model_7.pt'"
+    with pytest.raises(UsageError, match="comes after 'rectum-magnetic_ppo_teacher_seed1'"):
+        check_cells([pupil])
+
+
+def test_a_resumed_cell_makes_the_iterations_that_are_left(tmp_path):
+    """model_9 is of the tenth of 25 iterations: 15 are left."""
+    (cell,) = all_cells(study(max_iterations=25), tmp_path)
+    assert cell.command(None)[cell.command(None).index("--max_iterations") + 1] == "25"
+    for run, model in (("run_1", 3), ("run_1", 9), ("run_2", 4)):
+        (cell.folder / run).mkdir(parents=True, exist_ok=True)
+        (cell.folder / run / f"model_{model}.pt").touch()
+    (cell.folder / "run_2" / "model_4.pt").unlink()
+    words = cell.command(None)
+    assert words[words.index("--max_iterations") + 1] == "15"
+    assert words[words.index("--checkpoint") + 1].endswith("run_1/model_9.pt")
+    assert words[words.index("--log_dir") + 1].endswith("run_3")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(None, "null"), (True, "true"), (0.05, "0.05"), ([1, "a b"], "[1,'a b']"), ("it's", r"'it\'s'"), ("ppo", "ppo")],
+)
+def test_values_are_written_in_the_grammar_of_hydra(value, text):
+    from hydra.core.override_parser.overrides_parser import OverridesParser
+
+    assert hydra_value(value) == text
+    assert OverridesParser.create().parse_override(f"x={text}").value() == value
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("nme: x", "has the field 'nme'. Did you mean 'name'"),
+        ("minutes: 0", "minutes is 0"),
+        ("grid: {sed: [1]}", "varies 'sed'"),
+        ("grid: {seed: []}", "gives 'seed' no values"),
+        ("algorithms: {sac: {worlds: 4}}", "gives 'sac' 'worlds'"),
+        ("[1, 2]", "holds list"),
+    ],
+)
+def test_mistakes_in_a_file_are_named(tmp_path, text, message):
+    path = tmp_path / "one.yaml"
+    path.write_text(text)
+    with pytest.raises(UsageError, match=message.replace(".", r"\.")):
+        read_study(path)
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.yaml")), ids=lambda path: path.stem)
+def test_shipped_studies_are_whole(path):
+    cells = all_cells(read_study(find_study(path.stem, SHIPPED)), FOLDER)
+    check_cells(cells)
+    assert len(cells) > 2
