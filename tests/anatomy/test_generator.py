@@ -13,9 +13,9 @@ from tiny import tiny_colon_stage
 
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.generate import AnatomyError, make_colon
-from arcgym.anatomy.generator.refine import refine
 from arcgym.anatomy.generator.spec import ColonSpec, default_segments
 from arcgym.anatomy.measures import tet_quality
+from arcgym.anatomy.meshing.refine import refine
 from arcgym.anatomy.meshing.surface_grid import skin_to_rings
 from arcgym.anatomy.meshing.wall import polygon_triangles
 from arcgym.anatomy.mucosa.texture import make_textures

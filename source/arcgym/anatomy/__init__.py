@@ -23,6 +23,7 @@ from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, R
 from arcgym.anatomy.stage import (
     Centerline,
     ColonStage,
+    ContactSurface,
     StageError,
     TissueMaterial,
     VisualMesh,
@@ -45,6 +46,7 @@ __all__ = [
     "Centerline",
     "ColonSpec",
     "ColonStage",
+    "ContactSurface",
     "FoldSpec",
     "SegmentSpec",
     "StageError",

@@ -11,8 +11,8 @@ In reading order:
   :mod:`acute_bends` move them; :mod:`posture` lays the same wall along another course;
 - :mod:`surface` is the lumen as a function of arc length and angle, with its :mod:`folds`;
 - :mod:`lesions` places diverticula and polyps, :mod:`lesion_shapes` gives them their form;
-- :mod:`wall` and :mod:`visual` sample the surface (rows: :mod:`rows`, finer triangles: :mod:`refine`), and
-  :mod:`quantize` rounds it for small files;
+- :mod:`wall` and :mod:`visual` sample the surface (rows: :mod:`rows`), and :mod:`quantize` rounds it
+  for small files;
 - :mod:`acceptance` rejects what is not as the spec asks.
 """
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from arcgym.anatomy.generator.lesion_shapes import distance_to, shape_lesion
 from arcgym.anatomy.generator.lesions import Lesion
-from arcgym.anatomy.generator.refine import refine
 from arcgym.anatomy.generator.rows import row_positions
 from arcgym.anatomy.generator.surface import DOME_LENGTH, Surface
 from arcgym.anatomy.measures import face_normals
+from arcgym.anatomy.meshing.refine import refine
 from arcgym.anatomy.meshing.surface_grid import (
     dome_texture,
     grid_triangles,

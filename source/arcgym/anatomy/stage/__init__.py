@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from arcgym.anatomy.stage.layout import (
     CENTERLINE_PATH,
+    CONTACT_PATH,
     LANDMARKS_PATH,
     PROXY_PATH,
     ROOT_PATH,
@@ -18,11 +19,20 @@ from arcgym.anatomy.stage.layout import (
     WALL_PATH,
 )
 from arcgym.anatomy.stage.reader import read_colon
-from arcgym.anatomy.stage.types import Centerline, ColonStage, StageError, TissueMaterial, VisualMesh, WallMesh
+from arcgym.anatomy.stage.types import (
+    Centerline,
+    ColonStage,
+    ContactSurface,
+    StageError,
+    TissueMaterial,
+    VisualMesh,
+    WallMesh,
+)
 from arcgym.anatomy.stage.writer import write_colon
 
 __all__ = [
     "CENTERLINE_PATH",
+    "CONTACT_PATH",
     "LANDMARKS_PATH",
     "PROXY_PATH",
     "ROOT_PATH",
@@ -31,6 +41,7 @@ __all__ = [
     "WALL_PATH",
     "Centerline",
     "ColonStage",
+    "ContactSurface",
     "StageError",
     "TissueMaterial",
     "VisualMesh",

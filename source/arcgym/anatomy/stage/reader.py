@@ -12,7 +12,15 @@ from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade
 
 from arcgym.anatomy.measures import flipped_normal_fraction, tet_volumes, winds_outwards
 from arcgym.anatomy.stage import layout
-from arcgym.anatomy.stage.types import Centerline, ColonStage, StageError, TissueMaterial, VisualMesh, WallMesh
+from arcgym.anatomy.stage.types import (
+    Centerline,
+    ColonStage,
+    ContactSurface,
+    StageError,
+    TissueMaterial,
+    VisualMesh,
+    WallMesh,
+)
 
 _REMAKE = "Remake the stage with scripts/tools/author_assets.py or write it with arcgym.anatomy.write_colon"
 """Advice where a stage is broken."""
@@ -44,6 +52,7 @@ def read_colon(path: str | Path) -> ColonStage:
         albedo_texture=reader.asset(f"{layout.MUCOSA_PATH}/Albedo", "inputs:file"),
         detail_texture=reader.asset(layout.MUCOSA_PATH, layout.DETAIL_TEXTURE),
         metadata=metadata,
+        contact=_read_contact(reader, len(wall.points)),
     )
 
 
@@ -170,10 +179,7 @@ def _read_visual(reader: _Reader, path: str, wall_count: int) -> VisualMesh:
         skin_indices=reader.indices(path, layout.SKIN_INDICES, 4, wall_count, count),
         skin_weights=reader.array(path, layout.SKIN_WEIGHTS, 4, count),
     )
-    sums = visual.skin_weights.sum(1)
-    if np.abs(sums - 1).max() > 1e-3:
-        found = f"weights of a vertex sum to {sums.min():.3f} to {sums.max():.3f}, expected 1"
-        raise reader.error(path, layout.SKIN_WEIGHTS, found, "Divide each row by its sum")
+    _check_weights(reader, path, visual.skin_weights)
     if winds_outwards(visual.points, visual.faces):
         found = "the faces are wound so that they face away from the lumen"
         raise reader.error(path, "faceVertexIndices", found, "Reverse the order of each face's vertices")
@@ -182,6 +188,33 @@ def _read_visual(reader: _Reader, path: str, wall_count: int) -> VisualMesh:
         found = f"{100 * flipped:.0f} % of the normals point away from the lumen"
         raise reader.error(path, "normals", found, "Multiply them by -1: the visual normals point into the lumen")
     return visual
+
+
+def _read_contact(reader: _Reader, wall_count: int) -> ContactSurface | None:
+    """Read the contact surface; stages without one are touched at the wall's inner layer."""
+    path = layout.CONTACT_PATH
+    if not reader.usd.GetPrimAtPath(path):
+        return None
+    reader.prim(path, "Mesh")
+    points, columns = reader.array(path, "points", 3), int(reader.value(path, layout.COLUMNS))
+    if columns < 3 or len(points) % columns:
+        mend = "Write rows of as many points as there are columns, three or more"
+        raise reader.error(path, layout.COLUMNS, f"{len(points)} points in {columns} columns", mend)
+    contact = ContactSurface(
+        points=points,
+        columns=columns,
+        skin_indices=reader.indices(path, layout.SKIN_INDICES, 4, wall_count, len(points)),
+        skin_weights=reader.array(path, layout.SKIN_WEIGHTS, 4, len(points)),
+    )
+    _check_weights(reader, path, contact.skin_weights)
+    return contact
+
+
+def _check_weights(reader: _Reader, path: str, weights: np.ndarray) -> None:
+    sums = weights.sum(1)
+    if np.abs(sums - 1).max() > 1e-3:
+        found = f"weights of a vertex sum to {sums.min():.3f} to {sums.max():.3f}, expected 1"
+        raise reader.error(path, layout.SKIN_WEIGHTS, found, "Divide each row by its sum")
 
 
 def _read_centerline(reader: _Reader) -> Centerline:

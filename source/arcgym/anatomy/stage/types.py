@@ -79,6 +79,45 @@ class VisualMesh:
 
 
 @dataclass(frozen=True)
+class ContactSurface:
+    """Inner surface that the scope touches, with folds that the wall is too coarse for.
+
+    A grid of rows from the anal verge to the caecal pole and columns round the lumen, with vertex
+    ``row * columns + column``, carried by the wall's inner layer. It closes after the last column; its last row is the
+    pole, as often as there are columns. Rows and columns divide each cell of the wall evenly
+    (:class:`arcgym.anatomy.meshing.lumen_grid.GridShape`): with k columns a sector, the cell between rings r, r + 1 and
+    sectors j, j + 1 carries rows ``r * k`` to ``(r + 1) * k`` and columns ``j * k`` to ``(j + 1) * k``; rows beyond the
+    last ring are carried by it alone.
+    """
+
+    points: np.ndarray
+    """Rest positions [m], shape (M, 3), float32."""
+    columns: int
+    """Points around the lumen."""
+    skin_indices: np.ndarray
+    """Wall vertices that carry each vertex, shape (M, 4), int32."""
+    skin_weights: np.ndarray
+    """Their weights, summing to 1, shape (M, 4), float32."""
+
+    @property
+    def rows(self) -> int:
+        """Rows from the anal verge to the pole."""
+        return len(self.points) // self.columns
+
+    def faces(self) -> np.ndarray:
+        """Return two triangles for each cell of the grid, normals out of the lumen, shape (F, 3), int32.
+
+        Those at the pole have no area.
+        """
+        row, column = np.meshgrid(np.arange(self.rows - 1), np.arange(self.columns), indexing="ij")
+        after = (column + 1) % self.columns
+        a, b = row * self.columns + column, (row + 1) * self.columns + column
+        c, d = (row + 1) * self.columns + after, row * self.columns + after
+        halves = [np.stack([a, d, c], -1), np.stack([a, c, b], -1)]
+        return np.concatenate([half.reshape(-1, 3) for half in halves]).astype(np.int32)
+
+
+@dataclass(frozen=True)
 class Centerline:
     """Centreline of the lumen from the anal verge to the caecal pole."""
 
@@ -128,6 +167,8 @@ class ColonStage:
     """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.mucosa.texture`)."""
     metadata: dict[str, Any] = field(default_factory=dict)
     """Provenance, licence, patient, frame."""
+    contact: ContactSurface | None = None
+    """What the scope touches; None where that is the wall's inner layer."""
 
     @property
     def length(self) -> float:

@@ -12,7 +12,7 @@ import numpy as np
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, UsdShade, Vt
 
 from arcgym.anatomy.stage import layout
-from arcgym.anatomy.stage.types import Centerline, ColonStage, TissueMaterial, VisualMesh, WallMesh
+from arcgym.anatomy.stage.types import Centerline, ColonStage, ContactSurface, TissueMaterial, VisualMesh, WallMesh
 
 _FRAME = "metres, Z up; +X patient's right, +Y anterior, +Z cranial (right-handed); anal verge at the origin"
 """Units and axes, for readers of the file."""
@@ -62,6 +62,8 @@ def _author_arrays(usd: Usd.Stage, stage: ColonStage) -> None:
     _author_wall(usd, stage.wall)
     _author_visual(usd, layout.VISUAL_PATH, stage.visual, UsdGeom.Tokens.render)
     _author_visual(usd, layout.PROXY_PATH, stage.visual_proxy, UsdGeom.Tokens.proxy)
+    if stage.contact is not None:
+        _author_contact(usd, stage.contact)
     _author_centerline(usd, stage.centerline)
 
 
@@ -130,6 +132,19 @@ def _author_visual(usd: Usd.Stage, path: str, visual: VisualMesh, purpose: str) 
     _primvar(prim, layout.TINT, visual.tint)
     _primvar(prim, layout.SKIN_INDICES, visual.skin_indices)
     _primvar(prim, layout.SKIN_WEIGHTS, visual.skin_weights)
+
+
+def _author_contact(usd: Usd.Stage, contact: ContactSurface) -> None:
+    mesh = UsdGeom.Mesh.Define(usd, layout.CONTACT_PATH)
+    faces = contact.faces()
+    _points(mesh, contact.points)
+    mesh.CreateFaceVertexCountsAttr(Vt.IntArray(len(faces), 3))
+    mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(faces.ravel()))
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    mesh.CreatePurposeAttr(UsdGeom.Tokens.guide)
+    mesh.GetPrim().CreateAttribute(layout.COLUMNS, Sdf.ValueTypeNames.Int).Set(contact.columns)
+    _primvar(mesh.GetPrim(), layout.SKIN_INDICES, contact.skin_indices)
+    _primvar(mesh.GetPrim(), layout.SKIN_WEIGHTS, contact.skin_weights)
 
 
 def _author_centerline(usd: Usd.Stage, centerline: Centerline) -> None:
