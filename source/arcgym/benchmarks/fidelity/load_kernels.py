@@ -5,7 +5,7 @@
 
 import warp as wp
 
-from arcgym.sim.wall.wall_kernels import VertexBlock, WallContacts, add_contact
+from arcgym.sim.wall.wall_kernels import WallContacts, contact_force_at
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -37,7 +37,18 @@ def add_loads(
 
 @wp.kernel
 def contact_on_wall(contacts: WallContacts, x: wp.array2d(dtype=wp.vec3), force: wp.array2d(dtype=wp.vec3)):
-    """Compute the contact force on every wall vertex at the end of a step. Launch (V, W)."""
+    """Compute the contact force that every wall vertex had in the step that has just ended. Launch (V, W).
+
+    Friction is what its spring holds at the end of the step, for the slide that it began with is no longer known.
+    """
     i, w = wp.tid()
-    block = add_contact(VertexBlock(), contacts, x, i, w)
-    force[i, w] = block.force
+    records = contacts.records
+    total = wp.vec3(0.0)
+    entry = records.vertex_head[i, w]
+    while entry >= 0:
+        slot = entry // 3
+        c = contact_force_at(contacts, slot, x, w)
+        friction = (records.weight[slot] * contacts.law.friction_stiffness) * records.slide[slot]
+        total += records.bary[slot][entry - 3 * slot] * (c.normal_force * c.normal + friction + records.owed[slot])
+        entry = records.vertex_next[entry]
+    force[i, w] = total

@@ -77,10 +77,6 @@ def inertia_and_anchor(
     return block
 
 
-REPAYMENT = wp.constant(0.5)
-"""Share of a link's debt that it pays back in a step: less delays, all at once repeats every jump a step later."""
-
-
 @wp.struct
 class WallContacts:
     """Contacts of one wall step, and how the links and the wall have moved in it."""
@@ -182,9 +178,19 @@ def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: M
     measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
 
 
+@wp.func
+def depth_sum(records: ContactRecords, w: int, link: int, touch: float) -> float:
+    """Return the sum over a link's contacts of weight times depth under the distance ``touch`` from its axis [m]."""
+    total = float(0.0)
+    first = w * records.capacity
+    for k in range(records.start[w, link], records.start[w, link + 1]):
+        total += records.weight[first + k] * wp.max(touch - records.distance[first + k], 0.0)
+    return total
+
+
 @wp.kernel
 def share_debts(links: LinkShapes, law: ContactLaw, debt: wp.array2d[wp.vec3], records: ContactRecords):
-    """Have every link pay some of its debt to the wall where it touches, by depth. Launch (W, L).
+    """Have every link pay its debt to the wall, by depth where it touches, else where it is near. Launch (W, L).
 
     Args:
         links: Capsules of one world.
@@ -195,26 +201,26 @@ def share_debts(links: LinkShapes, law: ContactLaw, debt: wp.array2d[wp.vec3], r
     w, link = wp.tid()
     first = w * records.capacity
     touch = links.radius[link] + law.wall_radius
-    total = float(0.0)
+    total = depth_sum(records, w, link, touch)
+    if total == 0.0:
+        touch += law.search_gap
+        total = depth_sum(records, w, link, touch)
     for k in range(records.start[w, link], records.start[w, link + 1]):
-        total += records.weight[first + k] * wp.max(touch - records.distance[first + k], 0.0)
-    for k in range(records.start[w, link], records.start[w, link + 1]):
-        owed = wp.vec3(0.0)
-        if total > 0.0:
-            depth = records.weight[first + k] * wp.max(touch - records.distance[first + k], 0.0)
-            owed = (REPAYMENT * depth / total) * debt[w, link]
-        records.owed[first + k] = owed
+        depth = records.weight[first + k] * wp.max(touch - records.distance[first + k], 0.0)
+        records.owed[first + k] = (depth / wp.max(total, 1.0e-12)) * debt[w, link]
 
 
 @wp.kernel
 def settle_debts(
     contacts: WallContacts, x: wp.array2d[wp.vec3], link_force: wp.array[wp.vec3], debt: wp.array2d[wp.vec3]
 ):
-    """Add what each link has had from the wall in this step and not given back to its debt. Launch (W, L).
+    """Find what each link has had from the wall in this step and not given back: its debt. Launch (W, L).
 
     The links are moved first, against the wall where it was, and the wall then against the links where they are: while
-    they move, the two forces differ by a few percent. Paid back, action and reaction are the same but for a delay of
-    some steps. A link that touches nothing forgets a tenth of its debt.
+    they move, the two forces differ by some percent. What is missing is paid whole in the next step, so that action and
+    reaction are the same but for this delay. (Paid over more steps it comes later still; paid in advance, by what was
+    missing in the last step, it sets links swinging that rest in a bend.) With no wall near it a link keeps its debt,
+    less a tenth a step.
 
     Args:
         contacts: Contacts of the step.
@@ -224,15 +230,13 @@ def settle_debts(
     """
     w, link = wp.tid()
     first = w * contacts.records.capacity
-    paid = wp.vec3(0.0)
-    touching = int(0)
-    for k in range(contacts.records.start[w, link], contacts.records.start[w, link + 1]):
+    begin = contacts.records.start[w, link]
+    end = contacts.records.start[w, link + 1]
+    rest = debt[w, link] - link_force[w * debt.shape[1] + link]
+    for k in range(begin, end):
         c = contact_force_at(contacts, first + k, x, w)
-        paid += c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[first + k]
-        if c.normal_force > 0.0:
-            touching += 1
-    rest = debt[w, link] - link_force[w * debt.shape[1] + link] - paid
-    if touching == 0:
+        rest -= c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[first + k]
+    if begin == end:
         rest = 0.9 * rest
     debt[w, link] = rest
 
