@@ -18,6 +18,7 @@ from tiny_sim import TinySim
 from arcgym.anatomy import write_colon
 from arcgym.sim import Simulation, WallSolverCfg
 from arcgym.sim.contact.self_contact import SelfContact
+from arcgym.sim.patient_arrays import own_patients
 
 LIMB, WIDTH, RADIUS = 0.09, 0.04, 0.012
 """Length of each limb, their distance and the radius of the lumen [m]."""
@@ -69,7 +70,7 @@ def step_wall(sim: Simulation, steps: int) -> None:
 
 def draw_together(sim: Simulation, way: float) -> None:
     """Move the places that the limbs' anchors pull to by ``way`` [m] towards each other."""
-    rest = wp.to_torch(sim.wall.nodes.anchors.rest)
+    rest = wp.to_torch(sim.wall.nodes.anchors.rest)[:, 0]
     rest[of_rings(sim, LOWER), 1] += way
     rest[of_rings(sim, UPPER), 1] -= way
 
@@ -119,9 +120,10 @@ def two_tubes(distance: float) -> tuple[np.ndarray, np.ndarray]:
 
 def test_rings_that_overlap_at_rest_push_only_when_closer() -> None:
     points, ring = two_tubes(0.036)
-    self_contact = SelfContact(WallSolverCfg(), points, ring, np.arange(192).reshape(16, 12), 0.002, 1, "cpu")
+    members = np.arange(192).reshape(16, 12)
+    self_contact = SelfContact(WallSolverCfg(), [points], ring, members, 0.002, own_patients(1, "cpu"), "cpu")
     # 20 mm to each side, 36 mm apart, walls of 2 mm; the mean over the facing vertices of a ring is 5 % less than 20.
-    assert self_contact.rings.min_gap.numpy()[0, 15] == pytest.approx(-0.004, abs=0.0001)
+    assert self_contact.rings.min_gap.numpy()[0, 15, 0] == pytest.approx(-0.004, abs=0.0001)
     for distance, pushes in ((0.036, False), (0.035, True)):
         contact = self_contact.measure(wp.array(two_tubes(distance)[0][:, None], dtype=wp.vec3, device="cpu"))
         assert contact.stiffness.numpy().any() == pushes
@@ -133,7 +135,13 @@ def test_wall_gathered_on_the_shaft_does_not_push() -> None:
     ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
     rest = (ring + np.stack([0.0 * height, 0.0 * height, height], axis=1)[:, None]).reshape(-1, 3)
     self_contact = SelfContact(
-        WallSolverCfg(), rest, np.repeat(np.arange(24), 12), np.arange(288).reshape(24, 12), 0.0, 1, "cpu"
+        WallSolverCfg(),
+        [rest],
+        np.repeat(np.arange(24), 12),
+        np.arange(288).reshape(24, 12),
+        0.0,
+        own_patients(1, "cpu"),
+        "cpu",
     )
     gathered = rest * [1.0, 1.0, 0.2] + rest[:, [2, 2, 0]] * [0.0, 0.0, 1.0]
     contact = self_contact.measure(wp.array(gathered[:, None], dtype=wp.vec3, device="cpu"))

@@ -140,7 +140,7 @@ def elastic_force(sim: Simulation, points: np.ndarray) -> np.ndarray:
     x = wp.array(points[:, None].astype(np.float32), dtype=wp.vec3, device="cpu")
     out = sim.wall.static_force(x, sim.contact, sim.state.body_q)
     nodes = sim.wall.nodes
-    anchors = nodes.anchors.stiffness.numpy()[:, None] * (points - nodes.anchors.rest.numpy())
+    anchors = nodes.anchors.stiffness.numpy() * (points - nodes.anchors.rest.numpy()[:, 0])
     return out.numpy()[:, 0] + anchors
 
 

@@ -26,7 +26,7 @@ def readout() -> WallReadout:
     lumen = lumen_topology(WALL.points, inner_faces(WALL.tets, WALL.layer), WALL.ring, WALL.layer)
     anchor = AnchorSprings.linear(np.where(WALL.ring == 5, SPRING, 0.0))
     scale = wp.array([1.0, 0.5], dtype=float)
-    return WallReadout(lumen, WALL.points, WALL.ring, anchor, scale, "cpu")
+    return WallReadout(lumen, [WALL.points], WALL.ring, [anchor], scale, wp.zeros(2, dtype=int, device="cpu"), "cpu")
 
 
 def positions(first: np.ndarray, second: np.ndarray) -> wp.array:

@@ -108,13 +108,14 @@ class Colon:
         patient = next(patient for patient in self.patients if name not in patient.bounds)
         raise ValueError(f"Segment '{name}' is not in {patient.path}. {did_you_mean(name, patient.bounds)}")
 
-    def add_to(self, builder: newton.ModelBuilder) -> None:
-        """Load the wall into ``builder`` and apply the material overrides."""
-        if isinstance(self.wall, ShellMesh):
-            add_shell(builder, self.wall, self._value("density"), self.moduli(*self.elasticity()))
+    def add_to(self, builder: newton.ModelBuilder, patient: int = 0) -> None:
+        """Load the wall of a patient into ``builder`` and apply the material overrides."""
+        one = self.patients[patient]
+        if isinstance(one.wall, ShellMesh):
+            add_shell(builder, one.wall, self._value("density"), self.moduli(*self.elasticity()))
             return
         first_tet = len(builder.tet_indices)
-        particles = add_colon_usd(builder, self.path, self.stage)
+        particles = add_colon_usd(builder, one.path, one.stage)
         mu, lam, _ = solid_moduli(*self.elasticity())
         for tet in range(first_tet, len(builder.tet_indices)):
             builder.tet_materials[tet] = (mu, lam, builder.tet_materials[tet][2])
@@ -142,9 +143,9 @@ class Colon:
         values = [getattr(source, name) for source in (self.cfg, self.tissue, self.patients[0].material)]
         return next(value for value in values if value is not None)
 
-    def mobile(self) -> np.ndarray:
-        """Whether each wall vertex moves, shape (V,), bool."""
-        wall = self.wall
+    def mobile(self, patient: int = 0) -> np.ndarray:
+        """Whether each wall vertex of a patient moves, shape (V,), bool."""
+        wall = self.patients[patient].wall
         if self.cfg.rigid:
             return np.zeros(self.num_nodes, bool)
         free = wall.anchor != ANCHOR_FIXED
@@ -152,9 +153,10 @@ class Colon:
             free &= wall.ring_arc[wall.ring] <= self.cfg.mobile_until
         return free
 
-    def anchor_springs(self) -> AnchorSprings:
-        """Spring of each vertex to its rest position, before any factor of a world."""
-        return anchor_springs(self.wall, self.tissue, self.cfg.anchor_stiffness, self.cfg.anchor_slack)
+    def anchor_springs(self, patient: int = 0) -> AnchorSprings:
+        """Spring of each vertex of a patient to its rest position, before any factor of a world."""
+        wall, cfg = self.patients[patient].wall, self.cfg
+        return anchor_springs(wall, self.tissue, cfg.anchor_stiffness, cfg.anchor_slack)
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""

@@ -35,24 +35,29 @@ def scope_model(endoscope: Endoscope, mass_scaling: float, num_envs: int, device
     return builder.finalize(device=device)
 
 
-def wall_parameters(colon: Colon) -> WallParameters:
-    """Return the wall as Newton imports and colours it, in numpy."""
+def wall_parameters(colon: Colon, patient: int = 0) -> WallParameters:
+    """Return the wall of a patient as Newton imports and colours it, in numpy."""
     builder = empty_builder()
-    colon.add_to(builder)
-    shell = isinstance(colon.wall, ShellMesh)
-    builder.color(include_bending=shell)
+    colon.add_to(builder, patient)
+    wall = colon.patients[patient].wall
+    builder.color(include_bending=isinstance(wall, ShellMesh))
     points = np.array(builder.particle_q, dtype=np.float64).reshape(-1, 3)
     return WallParameters(
         points=points,
-        elements=_shell(colon.wall) if isinstance(colon.wall, ShellMesh) else _solid(builder, points),
+        elements=_shell(wall) if isinstance(wall, ShellMesh) else _solid(builder, points),
         moduli=colon.moduli(*colon.elasticity()),
         mass=np.array(builder.particle_mass, dtype=np.float64),
-        mobile=colon.mobile(),
-        anchor=colon.anchor_springs(),
-        ring=colon.wall.ring,
+        mobile=colon.mobile(patient),
+        anchor=colon.anchor_springs(patient),
+        ring=wall.ring,
         thickness=2.0 * colon.surface_offset,
         colors=[np.asarray(group) for group in builder.particle_color_groups],
     )
+
+
+def all_walls(colon: Colon) -> list[WallParameters]:
+    """Return the wall of every patient."""
+    return [wall_parameters(colon, patient) for patient in range(len(colon.patients))]
 
 
 def _solid(builder: newton.ModelBuilder, points: np.ndarray) -> SolidParameters:

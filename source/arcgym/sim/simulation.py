@@ -67,7 +67,9 @@ class Simulation:
         self.model = model_building.scope_model(endoscope, cfg.mass_scaling, num_envs, self.device)
         self.state, self.control = self.model.state(), self.model.control()
         newton.eval_fk(self.model, self.state.joint_q, self.state.joint_qd, self.state)
-        self.scope_readout = ScopeReadout(endoscope, colon.wall.ring_arc, num_envs, self.device)
+        self.scope_readout = ScopeReadout(
+            endoscope, [patient.wall.ring_arc for patient in colon.patients], self.patient, self.device
+        )
         self.actuation = Actuation(cfg, endoscope, self.model, num_envs, self.device)
         self._build_wall()
         self.coupling: Coupling = self._coupling()
@@ -86,8 +88,9 @@ class Simulation:
     def _build_wall(self) -> None:
         """Wall positions and velocities, contact search, wall solver and its readout."""
         cfg, colon, scope = self.cfg, self.colon, self.endoscope
-        wall, lumen = model_building.wall_parameters(colon), model_building.wall_lumen(colon.wall)
-        points = np.repeat(wall.points.astype(np.float32)[:, None], self.num_envs, axis=1)
+        walls, lumen = model_building.all_walls(colon), model_building.wall_lumen(colon.wall)
+        rest = [wall.points for wall in walls]
+        points = np.stack(rest, axis=1).astype(np.float32)[:, self.patient.numpy()]
         self.nodal_pos = wp.array(points, dtype=wp.vec3, device=self.device)
         self.nodal_vel = wp.zeros_like(self.nodal_pos)
         self.contact = ContactSearch(
@@ -100,10 +103,10 @@ class Simulation:
             self.num_envs,
             self.device,
         )
-        modes, slots = model_building.wall_modes(wall), len(self.contact.records.face)
-        self.wall = WallSolver(cfg.wall, wall, modes, cfg.dt, self.num_envs, slots, self.device)
-        anchor_scale = self.wall.tissue.anchor
-        self.wall_readout = WallReadout(lumen, wall.points, wall.ring, wall.anchor, anchor_scale, self.device)
+        modes, slots = [model_building.wall_modes(wall) for wall in walls], len(self.contact.records.face)
+        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device)
+        anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
+        self.wall_readout = WallReadout(lumen, rest, colon.wall.ring, anchors, scale, self.patient, self.device)
 
     def _coupling(self) -> Coupling:
         if self.cfg.solver == "newton":

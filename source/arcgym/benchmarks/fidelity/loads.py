@@ -47,7 +47,7 @@ def load_wall(sim: Any, force: np.ndarray) -> None:
     anchors = sim.wall.nodes.anchors
     if anchors.stiffness.numpy().any():
         raise ValueError("The wall has anchors; loads need one with anchor_stiffness=tubes.FREE.")
-    anchors.rest.assign((anchors.rest.numpy() + force / WEAK_SPRING).astype(np.float32))
+    anchors.rest.assign((anchors.rest.numpy() + force[:, None] / WEAK_SPRING).astype(np.float32))
     anchors.stiffness.fill_(WEAK_SPRING)
     anchors.loose.fill_(1.0)
 

@@ -5,11 +5,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
 
 from arcgym.sim.contact import self_contact_kernels as kernels
+from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall.wall_topology import ring_mean
 
@@ -33,44 +36,42 @@ class SelfContact:
     def __init__(
         self,
         cfg: WallSolverCfg,
-        points: np.ndarray,
+        points: Sequence[np.ndarray],
         ring: np.ndarray,
         members: np.ndarray,
         thickness: float,
-        num_envs: int,
+        patient: wp.array,
         device: str,
     ):
         """Find which rings may touch, and allocate.
 
         Args:
             cfg: Solver settings.
-            points: Rest positions of one world's wall [m], shape (V, 3).
+            points: Rest positions of each patient's wall [m], shape (V, 3).
             ring: Ring of each vertex, shape (V,).
             members: Vertices of each ring, -1 padded, shape (R, S).
             thickness: Distance between vertices of walls that touch [m].
-            num_envs: Worlds, W.
+            patient: Patient of each world, shape (W,), int32, read in every step.
             device: Warp device.
         """
-        self.device = device
+        self.device, num_envs = device, len(patient)
         self.count = count = len(members)
-        center = ring_mean(points, ring)
-        away = np.linalg.norm(points - center[ring], axis=1)
-        spacing = np.linalg.norm(np.diff(center, axis=0), axis=1)
-        half_min_arc = 0.5 * MIN_ARC_RATIO * ring_mean(away, ring)
-        may_touch = _may_touch(spacing, half_min_arc)
-        self.active = cfg.self_contact and bool(may_touch.any())
+        reaches = [_reach(rest, ring) for rest in points]
+        self.active = cfg.self_contact and any(bool(reach.may_touch.any()) for reach in reaches)
         self.rings = kernels.WallRings()
+        self.rings.patient = patient
         self.rings.members = wp.array(members, dtype=int, device=device)
-        self.rings.min_gap = wp.array(np.where(may_touch, 0.0, kernels.NO_CONTACT), dtype=float, device=device)
+        gaps = [np.where(reach.may_touch, 0.0, kernels.NO_CONTACT) for reach in reaches]
+        self.rings.min_gap = patient_array(gaps, float, device)
         self.rings.thickness, self.rings.stiffness = thickness, cfg.self_contact_stiffness
-        self.rings.half_min_arc = wp.array(half_min_arc, dtype=float, device=device)
-        self.rings.next_candidate = wp.array(_next_candidate(may_touch), dtype=int, device=device)
-        self.rings.max_radius = MAX_DILATION * float(away.max())
-        self.rings.max_spacing = MAX_STRETCH * float(spacing.max(initial=1.0e-3))
+        self.rings.half_min_arc = patient_array([reach.half_min_arc for reach in reaches], float, device)
+        self.rings.next_candidate = patient_array([_next_candidate(reach.may_touch) for reach in reaches], int, device)
+        self.rings.max_radius = wp.array([reach.max_radius for reach in reaches], dtype=float, device=device)
+        self.rings.max_spacing = wp.array([reach.max_spacing for reach in reaches], dtype=float, device=device)
         self.spheres = self._spheres(num_envs)
         self.force = kernels.SelfContactForce()
-        self.force.plane = wp.zeros((len(points), num_envs), dtype=wp.vec4, device=device)
-        self.force.stiffness = wp.zeros((len(points), num_envs), dtype=float, device=device)
+        self.force.plane = wp.zeros((len(ring), num_envs), dtype=wp.vec4, device=device)
+        self.force.stiffness = wp.zeros((len(ring), num_envs), dtype=float, device=device)
         self.force.in_contact = wp.zeros((count, num_envs), dtype=int, device=device)
         if self.active:
             self._measure_rest(points)
@@ -81,14 +82,13 @@ class SelfContact:
         spheres.near = wp.zeros((self.count, num_envs), dtype=int, device=self.device)
         return spheres
 
-    def _measure_rest(self, points: np.ndarray) -> None:
-        x, spheres = wp.array(points[:, None], dtype=wp.vec3, device=self.device), self._spheres(1)
-        wp.launch(
-            kernels.measure_spheres, (self.count, 1), inputs=[x, self.rings], outputs=[spheres], device=self.device
-        )
+    def _measure_rest(self, points: Sequence[np.ndarray]) -> None:
+        x, spheres = patient_array(points, wp.vec3, self.device), self._spheres(len(points))
+        shape = (self.count, len(points))
+        wp.launch(kernels.measure_spheres, shape, inputs=[x, self.rings], outputs=[spheres], device=self.device)
         wp.launch(
             kernels.allow_rest_overlaps,
-            (self.count, self.count),
+            (self.count, *shape),
             inputs=[x, spheres],
             outputs=[self.rings],
             device=self.device,
@@ -112,6 +112,33 @@ class SelfContact:
                 device=self.device,
             )
         return self.force
+
+
+@dataclass(frozen=True)
+class _Reach:
+    """What decides which rings of a wall may touch."""
+
+    may_touch: np.ndarray
+    """Which pairs of rings are far enough apart along the colon, shape (R, R), bool."""
+    half_min_arc: np.ndarray
+    """Half the least arc length at which two such rings may touch [m], shape (R,)."""
+    max_radius: float
+    """No ring reaches farther from its centre than this [m]."""
+    max_spacing: float
+    """No two neighbouring rings are farther apart than this [m]."""
+
+
+def _reach(points: np.ndarray, ring: np.ndarray) -> _Reach:
+    center = ring_mean(points, ring)
+    away = np.linalg.norm(points - center[ring], axis=1)
+    spacing = np.linalg.norm(np.diff(center, axis=0), axis=1)
+    half_min_arc = 0.5 * MIN_ARC_RATIO * ring_mean(away, ring)
+    return _Reach(
+        may_touch=_may_touch(spacing, half_min_arc),
+        half_min_arc=half_min_arc,
+        max_radius=MAX_DILATION * float(away.max()),
+        max_spacing=MAX_STRETCH * float(spacing.max(initial=1.0e-3)),
+    )
 
 
 def _may_touch(spacing: np.ndarray, half_min_arc: np.ndarray) -> np.ndarray:

@@ -29,17 +29,16 @@ MIN_FORCE = wp.constant(1.0e-9)
 
 @wp.struct
 class WallRings:
-    """Rings of one world's wall, shared by all worlds."""
+    """Rings of the wall of each of P patients."""
 
+    patient: wp.array[int]  # patient of each world, shape (W,)
     members: wp.array2d[int]  # vertices of each ring, -1 padded, shape (R, S)
-    half_min_arc: wp.array[float]  # half the least arc length at which two such rings may touch [m], shape (R,)
-    next_candidate: wp.array[int]  # first ring after each that may touch it, shape (R,)
-    min_gap: wp.array2d(
-        dtype=float
-    )  # gap below which a pair pushes, negative where it overlaps at rest [m], shape (R, R)
+    half_min_arc: wp.array2d[float]  # half the least arc length at which two such rings may touch [m], shape (R, P)
+    next_candidate: wp.array2d[int]  # first ring after each that may touch it, shape (R, P)
+    min_gap: wp.array3d[float]  # gap below which a pair pushes, negative where it overlaps at rest [m], shape (R, R, P)
     thickness: float  # distance between vertices of walls that touch [m]
-    max_radius: float  # no ring reaches farther from its centre than this [m]
-    max_spacing: float  # no two neighbouring rings are farther apart than this [m]
+    max_radius: wp.array[float]  # no ring reaches farther from its centre than this [m], shape (P,)
+    max_spacing: wp.array[float]  # no two neighbouring rings are farther apart than this [m], shape (P,)
     stiffness: float  # of a pair [N/m]
 
 
@@ -124,12 +123,18 @@ def pair_gap(
 
 @wp.kernel
 def allow_rest_overlaps(x: wp.array2d[wp.vec3], spheres: RingSpheres, rings: WallRings):
-    """Lower ``rings.min_gap`` of pairs that overlap at the rest positions ``x`` [m], shape (V, 1). Launch (R, R)."""
-    r, s = wp.tid()
-    if rings.min_gap[r, s] > NO_CONTACT:
-        n = wp.normalize(xyz(spheres.sphere[s, 0]) - xyz(spheres.sphere[r, 0]))
-        gap = pair_gap(rings, x, r, s, 0, spheres.sphere[r, 0], spheres.sphere[s, 0], n)
-        rings.min_gap[r, s] = wp.min(gap - REST_MARGIN, 0.0)
+    """Lower ``rings.min_gap`` of pairs that overlap at rest. Launch (R, R, P), one world with each patient.
+
+    Args:
+        x: Rest positions [m], shape (V, P).
+        spheres: Bounding spheres there.
+        rings: Rings; ``min_gap`` is changed in place.
+    """
+    r, s, p = wp.tid()
+    if rings.min_gap[r, s, p] > NO_CONTACT:
+        n = wp.normalize(xyz(spheres.sphere[s, p]) - xyz(spheres.sphere[r, p]))
+        gap = pair_gap(rings, x, r, s, p, spheres.sphere[r, p], spheres.sphere[s, p], n)
+        rings.min_gap[r, s, p] = wp.min(gap - REST_MARGIN, 0.0)
 
 
 @wp.func
@@ -148,7 +153,8 @@ def pair_stiffness(
     rings: WallRings, spheres: RingSpheres, r: int, s: int, w: int, apart: float, overlap: float
 ) -> float:
     """Return the stiffness of a pair, centres ``apart`` [m], in N/m: zero where wall is gathered on the shaft."""
-    least = rings.half_min_arc[r] + rings.half_min_arc[s]
+    p = rings.patient[w]
+    least = rings.half_min_arc[r, p] + rings.half_min_arc[s, p]
     around = arc_between(spheres, r, s, w, (1.0 + STIFFNESS_RAMP) * least) / least - 1.0
     beside = apart / (apart + overlap) - NESTED_RATIO
     return rings.stiffness * wp.clamp(wp.min(around, beside) / STIFFNESS_RAMP, 0.0, 1.0)
@@ -199,9 +205,10 @@ def finish_ring(rings: WallRings, x: wp.array2d[wp.vec3], r: int, w: int, in_con
 
 
 @wp.func
-def rings_to_skip(rings: WallRings, own: wp.vec4, distance: float) -> int:
+def rings_to_skip(rings: WallRings, own: wp.vec4, distance: float, w: int) -> int:
     """Return how many rings after one at ``distance`` [m] cannot reach ``own``, however far the tube is stretched."""
-    return int(wp.max(0.0, (distance - own[3] - rings.thickness - rings.max_radius) / rings.max_spacing))
+    p = rings.patient[w]
+    return int(wp.max(0.0, (distance - own[3] - rings.thickness - rings.max_radius[p]) / rings.max_spacing[p]))
 
 
 @wp.kernel
@@ -209,14 +216,14 @@ def find_near_rings(rings: WallRings, spheres: RingSpheres):
     """Mark the rings whose spheres meet in ``spheres.near``. Launch (R, W)."""
     r, w = wp.tid()
     own = spheres.sphere[r, w]
-    s = rings.next_candidate[r]
+    s = rings.next_candidate[r, rings.patient[w]]
     while s < rings.members.shape[0]:
         other = spheres.sphere[s, w]
         d = wp.length(xyz(other) - xyz(own))
         if d < own[3] + other[3] + rings.thickness:
             spheres.near[r, w] = 1
             spheres.near[s, w] = 1
-        s += 1 + rings_to_skip(rings, own, d)
+        s += 1 + rings_to_skip(rings, own, d, w)
 
 
 @wp.kernel
@@ -232,15 +239,16 @@ def measure_self_contact(x: wp.array2d[wp.vec3], rings: WallRings, spheres: Ring
         other = spheres.sphere[s, w]
         offset = xyz(other) - xyz(own)
         d = wp.length(offset)
-        if d < own[3] + other[3] + rings.thickness and rings.min_gap[r, s] > NO_CONTACT and d > 0.0:
+        least = rings.min_gap[r, s, rings.patient[w]]
+        if d < own[3] + other[3] + rings.thickness and least > NO_CONTACT and d > 0.0:
             n = offset / d
-            depth = rings.min_gap[r, s] - pair_gap(rings, x, r, s, w, own, other, n)
+            depth = least - pair_gap(rings, x, r, s, w, own, other, n)
             if depth > 0.0:
                 stiffness = pair_stiffness(rings, spheres, r, s, w, d, depth)
                 add_pair(
                     rings, x, r, w, own, n, stiffness * wp.min(depth, MAX_OVERLAP), stiffness, in_contact == 0, out
                 )
                 in_contact = 1
-        s += 1 + rings_to_skip(rings, own, d)
+        s += 1 + rings_to_skip(rings, own, d, w)
     finish_ring(rings, x, r, w, in_contact, out)
     out.in_contact[r, w] = in_contact

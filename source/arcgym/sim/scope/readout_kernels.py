@@ -132,7 +132,8 @@ def read_tip(
 def locate_tip(
     tip_pose: wp.array[wp.transform],
     centers: wp.array2d[wp.vec3],
-    ring_arc: wp.array[float],
+    patient: wp.array[int],
+    ring_arc: wp.array2d[float],
     link_ring: wp.array2d[int],
     span: int,
     arc: wp.array[float],
@@ -146,7 +147,8 @@ def locate_tip(
     Args:
         tip_pose: Front of the tip, shape (W,).
         centers: Ring centres [m], shape (W, R).
-        ring_arc: Arc length of the rings at rest [m], shape (R,).
+        patient: Patient of each world, shape (W,).
+        ring_arc: Arc length of the rings at rest [m], shape (R, P).
         link_ring: Ring of each link or -1, shape (W, L).
         span: Rings searched on either side.
         arc: Arc length of the point at rest [m], shape (W,); written.
@@ -172,7 +174,8 @@ def locate_tip(
             best = d
             if (r == 0 and t <= 0.0) or (r == rings - 2 and t >= 1.0):
                 t = wp.dot(p - a, b - a) / wp.max(wp.length_sq(b - a), 1.0e-12)
-            arc[w] = ring_arc[r] + t * (ring_arc[r + 1] - ring_arc[r])
+            start = ring_arc[r, patient[w]]
+            arc[w] = start + t * (ring_arc[r + 1, patient[w]] - start)
             distance[w] = wp.length(p - a - t * (b - a))
             direction[w] = wp.normalize(b - a)
 

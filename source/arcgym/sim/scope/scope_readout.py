@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import newton
 import numpy as np
 import torch
@@ -11,6 +13,7 @@ import warp as wp
 
 from arcgym.assets.endoscope import Endoscope
 from arcgym.sim.contact.contact_search import ContactSearch
+from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.scope import readout_kernels as kernels
 from arcgym.utils.worlds import fill_worlds
 
@@ -41,15 +44,16 @@ class ScopeReadout:
         penetrated: 1 where a link's axis came close to the wall or behind it, set by the coupling, shape (W,), int.
     """
 
-    def __init__(self, endoscope: Endoscope, ring_arc: np.ndarray, num_envs: int, device: str):
+    def __init__(self, endoscope: Endoscope, ring_arcs: Sequence[np.ndarray], patient: wp.array, device: str):
         """Allocate the results.
 
         Args:
             endoscope: Endoscope of every world.
-            ring_arc: Arc length of each ring of the colon at rest [m], shape (R,).
-            num_envs: Worlds, W.
+            ring_arcs: Arc length of each ring of each patient's colon at rest [m], shape (R,).
+            patient: Patient of each world, shape (W,), int32.
             device: Warp device.
         """
+        num_envs = len(patient)
         self.num_envs, self.device, self.link_count = num_envs, device, endoscope.num_bodies
         rows = num_envs * self.link_count
         self.step_force, self.link_force = (wp.zeros(rows, dtype=wp.vec3, device=device) for _ in range(2))
@@ -63,7 +67,7 @@ class ScopeReadout:
         self.tip_arc, self.tip_distance = (wp.zeros(num_envs, dtype=float, device=device) for _ in range(2))
         self.tip_direction = wp.zeros(num_envs, dtype=wp.vec3, device=device)
         self.broken, self.penetrated = (wp.zeros(num_envs, dtype=int, device=device) for _ in range(2))
-        self._ring_arc = wp.array(ring_arc, dtype=float, device=device)
+        self._patient, self._ring_arc = patient, patient_array(ring_arcs, float, device)
         self._tip_offset = wp.vec3(0.0, 0.0, endoscope.tip_offset)
         camera = endoscope.stage.camera
         self._camera_offset = wp.transform(wp.vec3(*camera.position), wp.quat(*camera.quaternion))
@@ -125,7 +129,7 @@ class ScopeReadout:
         wp.launch(
             kernels.locate_tip,
             self.num_envs,
-            inputs=[self.tip_pose, contact.centers, self._ring_arc, contact.ring, TIP_SPAN],
+            inputs=[self.tip_pose, contact.centers, self._patient, self._ring_arc, contact.ring, TIP_SPAN],
             outputs=[self.tip_arc, self.tip_distance, self.tip_direction],
             device=self.device,
         )

@@ -23,20 +23,21 @@ from arcgym.utils.math_kernels import clamp_length
 
 @wp.struct
 class RingSpace:
-    """Ring modes of one world's wall, shared by all worlds."""
+    """Ring modes of the wall of each of P patients."""
 
+    patient: wp.array[int]  # patient of each world, shape (W,)
     ring: wp.array[int]  # ring of each vertex, shape (V,)
-    basis: wp.array2d[wp.vec3]  # displacement of each vertex in each mode, zero where it is held, shape (V, M)
+    basis: wp.array3d[wp.vec3]  # displacement of each vertex in each mode, zero where it is held, shape (V, M, P)
     members: wp.array2d[int]  # vertices of each ring, -1 padded, shape (R, S)
-    frame_weights: wp.array[wp.vec2]  # in-plane coordinates (p, q) over the rms radius, shape (V,)
-    rest_frame: wp.array[wp.mat33]  # rest ring frame, columns p, q, p x q, shape (R,)
-    stiffness: wp.array3d[Unknowns]  # rows of the three elastic parts' diagonal blocks [N/m], shape (3, R, M)
-    coupling: wp.array3d[Unknowns]  # rows of their blocks to the next ring [N/m], shape (3, R, M)
-    mass: wp.array2d[Unknowns]  # rows [kg], shape (R, M)
-    anchor: wp.array2d[Unknowns]  # rows of the tight springs [N/m], shape (R, M)
-    loose: wp.array[float]  # share of them within the slack, shape (R,)
-    slack: wp.array[float]  # [m], shape (R,)
-    rest_center: wp.array[wp.vec3]  # mean rest position of the ring's vertices [m], shape (R,)
+    frame_weights: wp.array2d[wp.vec2]  # in-plane coordinates (p, q) over the rms radius, shape (V, P)
+    rest_frame: wp.array2d[wp.mat33]  # rest ring frame, columns p, q, p x q, shape (R, P)
+    stiffness: wp.array4d[Unknowns]  # rows of the three elastic parts' diagonal blocks [N/m], shape (3, R, M, P)
+    coupling: wp.array4d[Unknowns]  # rows of their blocks to the next ring [N/m], shape (3, R, M, P)
+    mass: wp.array3d[Unknowns]  # rows [kg], shape (R, M, P)
+    anchor: wp.array3d[Unknowns]  # rows of the tight springs [N/m], shape (R, M, P)
+    loose: wp.array2d[float]  # share of them within the slack, shape (R, P)
+    slack: wp.array2d[float]  # [m], shape (R, P)
+    rest_center: wp.array2d[wp.vec3]  # mean rest position of the ring's vertices [m], shape (R, P)
 
 
 @wp.kernel
@@ -50,11 +51,12 @@ def ring_rotations(
 
     Args:
         x: Wall positions [m], shape (V, W).
-        space: Ring modes of one world.
+        space: Ring modes of all patients.
         rotation: Rotation of each ring, shape (R, W); written.
         shift: Shift of each ring's centre [m], shape (R, W); written.
     """
     r, w = wp.tid()
+    patient = space.patient[w]
     total = wp.vec3(0.0)
     count = float(0.0)
     p = wp.vec3(0.0)
@@ -62,23 +64,23 @@ def ring_rotations(
     for k in range(space.members.shape[1]):
         i = space.members[r, k]
         if i >= 0:
-            p += space.frame_weights[i][0] * x[i, w]
-            q += space.frame_weights[i][1] * x[i, w]
+            p += space.frame_weights[i, patient][0] * x[i, w]
+            q += space.frame_weights[i, patient][1] * x[i, w]
             total += x[i, w]
             count += 1.0
-    shift[r, w] = total / count - space.rest_center[r]
+    shift[r, w] = total / count - space.rest_center[r, patient]
     p = wp.normalize(p)
     q = wp.normalize(q - p * wp.dot(p, q))
-    rotation[r, w] = wp.matrix_from_cols(p, q, wp.cross(p, q)) * wp.transpose(space.rest_frame[r])
+    rotation[r, w] = wp.matrix_from_cols(p, q, wp.cross(p, q)) * wp.transpose(space.rest_frame[r, patient])
 
 
 @wp.func
-def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int) -> wp.vec3:
+def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int, p: int) -> wp.vec3:
     """Return the displacement of the point ``u`` of face ``f`` in mode ``m`` of ring ``r``, in the rest frame."""
     out = wp.vec3(0.0)
     for k in range(3):
         if space.ring[f[k]] == r:
-            out += u[k] * space.basis[f[k], m]
+            out += u[k] * space.basis[f[k], m, p]
     return out
 
 
@@ -91,25 +93,25 @@ def apply_contact_stiffness(measured: MeasuredContacts, slot: int, move: wp.vec3
 
 
 @wp.func
-def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.vec3) -> Unknowns:
+def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.vec3, p: int) -> Unknowns:
     """Return how far each mode of ring ``r`` moves the point ``u`` of ``f`` along ``direction``, in the rest frame."""
     out = Unknowns()
     for k in range(3):
         if space.ring[f[k]] == r:
             for m in range(MODES):
-                out[m] = out[m] + u[k] * wp.dot(space.basis[f[k], m], direction)
+                out[m] = out[m] + u[k] * wp.dot(space.basis[f[k], m, p], direction)
     return out
 
 
 @wp.func
-def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int) -> Unknowns:
+def anchor_row(space: RingSpace, shift: wp.vec3, back: wp.mat33, r: int, a: int, p: int) -> Unknowns:
     """Return the anchor stiffness of ring ``r`` between mode ``a`` and all modes [N/m], see ``anchor_hessian``."""
     d = wp.length(shift)
-    secant = secant_share(d, space.loose[r], space.slack[r])
-    row = secant * space.anchor[r, a]
-    if a < 3 and secant < 1.0 and d > space.slack[r]:
+    secant = secant_share(d, space.loose[r, p], space.slack[r, p])
+    row = secant * space.anchor[r, a, p]
+    if a < 3 and secant < 1.0 and d > space.slack[r, p]:
         along = back * shift
-        tight = (1.0 - secant) * space.anchor[r, 0][0] * along[a] / (d * d)
+        tight = (1.0 - secant) * space.anchor[r, 0, p][0] * along[a] / (d * d)
         for c in range(3):
             row[c] = row[c] + tight * along[c]
     return row
@@ -121,6 +123,7 @@ def self_contact_row(
 ) -> Unknowns:
     """Return the self-contact stiffness of ring ``r`` between its mode ``a`` and all of its modes [N/m]."""
     out = Unknowns()
+    p = space.patient[w]
     for k in range(space.members.shape[1]):
         v = space.members[r, k]
         if v >= 0:
@@ -128,9 +131,9 @@ def self_contact_row(
             if stiffness > 0.0:
                 plane = self_contact.plane[v, w]
                 n = back * wp.vec3(plane[0], plane[1], plane[2])
-                pull = stiffness * wp.dot(space.basis[v, a], n)
+                pull = stiffness * wp.dot(space.basis[v, a, p], n)
                 for c in range(MODES):
-                    out[c] = out[c] + pull * wp.dot(space.basis[v, c], n)
+                    out[c] = out[c] + pull * wp.dot(space.basis[v, c, p], n)
     return out
 
 
@@ -154,7 +157,7 @@ def assemble(
 
     Args:
         force: Force on each vertex [N], shape (V, W).
-        space: Ring modes of one world.
+        space: Ring modes of all patients.
         rotation: Rotation of each ring, shape (R, W).
         shift: Shift of each ring's centre [m], shape (R, W).
         tissue: Values of each world.
@@ -168,14 +171,15 @@ def assemble(
         rhs: Force on each mode [N], shape (R, M, W); written.
     """
     r, a, w = wp.tid()
+    p = space.patient[w]
     rings = space.mass.shape[0]
     moduli = tissue.moduli[w]
     back = wp.transpose(rotation[r, w])
-    own_row = inv_dt2 * space.mass[r, a] + tissue.anchor[w] * anchor_row(space, shift[r, w], back, r, a)
+    own_row = inv_dt2 * space.mass[r, a, p] + tissue.anchor[w] * anchor_row(space, shift[r, w], back, r, a, p)
     next_row = Unknowns()
     for part in range(3):
-        own_row += moduli[part] * space.stiffness[part, r, a]
-        next_row += moduli[part] * space.coupling[part, r, a]
+        own_row += moduli[part] * space.stiffness[part, r, a, p]
+        next_row += moduli[part] * space.coupling[part, r, a, p]
     own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
     if self_contact.in_contact[r, w] == 1:
         own_row += self_contact_row(space, self_contact, back, r, a, w)
@@ -183,7 +187,7 @@ def assemble(
     for k in range(space.members.shape[1]):
         v = space.members[r, k]
         if v >= 0:
-            total += wp.dot(space.basis[v, a], back * force[v, w])
+            total += wp.dot(space.basis[v, a, p], back * force[v, w])
     rhs[r, a, w] = total
     for which in range(2):
         lowest = r - which
@@ -194,10 +198,10 @@ def assemble(
             if measured.stiffness[slot][0] > 0.0:
                 f = records.corners[slot]
                 u = records.bary[slot]
-                push = apply_contact_stiffness(measured, slot, rotation[r, w] * point_move(space, f, u, r, a))
-                own_row += ring_share(space, f, u, r, back * push)
+                push = apply_contact_stiffness(measured, slot, rotation[r, w] * point_move(space, f, u, r, a, p))
+                own_row += ring_share(space, f, u, r, back * push, p)
                 if which == 0 and r + 1 < rings:
-                    next_row += ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * push)
+                    next_row += ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * push, p)
             slot = records.ring_next[slot]
     for c in range(MODES):
         diagonal[r, a, c, w] = own_row[c]
@@ -215,15 +219,16 @@ def prolong(
     """Move every vertex with its ring. Launch (V, W).
 
     Args:
-        space: Ring modes of one world.
+        space: Ring modes of all patients.
         rotation: Rotation of each ring, shape (R, W).
         solution: Amplitude of each mode [m], shape (R, M, W).
         largest_move: Longest displacement of a vertex [m].
         x: Wall positions [m], shape (V, W); moved in place.
     """
     i, w = wp.tid()
+    p = space.patient[w]
     r = space.ring[i]
     d = wp.vec3(0.0)
     for m in range(MODES):
-        d += solution[r, m, w] * space.basis[i, m]
+        d += solution[r, m, w] * space.basis[i, m, p]
     x[i, w] = x[i, w] + rotation[r, w] * clamp_length(d, largest_move)

@@ -26,22 +26,23 @@ def own_hinges(geometry: ShellGeometry) -> np.ndarray:
     return hinge_of_edges(geometry.triangles, geometry.hinges, geometry.sides)
 
 
-def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) -> np.ndarray:
+def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtypes: tuple[Any, Any]) -> tuple[Any, Any]:
     """Return each corner's view of its triangle and of two of the hinges there.
 
     Args:
         geometry: Rest geometry.
         corner: Corners, 3 * triangle + corner, shape (n,).
-        dtype: Of :class:`arcgym.sim.wall.shell_kernels.VertexTriangle`, whose fields are filled.
+        dtypes: Of :class:`arcgym.sim.wall.shell_kernels.VertexTriangle` and ``VertexTriangleRest``, whose fields are
+            filled.
 
     Returns:
-        The fan, shape (n,).
+        What is connected with what, the same for all patients, and the rest shape, shape (n,) each.
     """
-    fan: Any = np.zeros(len(corner), dtype)
+    fan, shape = (np.zeros(len(corner), dtype) for dtype in dtypes)
     owner, turned = corner // 3, (corner[:, None] + np.arange(3)) % 3  # corners of the triangle, this one first
     vertex, rest, edges = geometry.triangles[owner[:, None], turned], triangle_rest(geometry), own_hinges(geometry)
     fan["first"], fan["second"], fan["index"] = vertex[:, 1], vertex[:, 2], owner
-    fan["rest"] = np.column_stack([rest[owner[:, None], turned], rest[owner, 3]])
+    shape["rest"] = np.column_stack([rest[owner[:, None], turned], rest[owner, 3]])
     for name, edge, start in (("rim", 0, 1), ("spoke", 2, 0)):
         hinge = edges[owner, turned[:, edge]]
         beyond = (geometry.sides[hinge, 0] == owner).astype(int)  # which of the hinge's sides is not this triangle
@@ -52,5 +53,5 @@ def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtype: Any) ->
         backwards = geometry.hinges[hinge, 2] != vertex[:, start]
         foot[backwards] = 1.0 - foot[backwards]
         stiffness = np.where(hinge >= 0, geometry.bound[hinge], 0.0)
-        fan[f"{name}_shape"] = np.column_stack([geometry.length[hinge], foot, stiffness])
-    return fan
+        shape[name] = np.column_stack([geometry.length[hinge], foot, stiffness])
+    return fan, shape

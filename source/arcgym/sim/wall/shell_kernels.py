@@ -38,31 +38,39 @@ class VertexTriangle:
     first: int  # the other two vertices, in the triangle's order
     second: int
     index: int  # triangle
-    rest: wp.vec4  # ``ShellElements.rest`` of the triangle, beginning with this vertex
     rim: int  # hinge
     rim_vertex: int  # vertex beyond it
     rim_triangle: int  # triangle beyond it
-    rim_shape: wp.vec4  # length [m], foot of this vertex and of that beyond from first to second, stiffness
     spoke: int
     spoke_vertex: int
     spoke_triangle: int
-    spoke_shape: wp.vec4  # length [m], feet of ``second`` and of the vertex beyond from here to ``first``, stiffness
+
+
+@wp.struct
+class VertexTriangleRest:
+    """Rest shape of a triangle and of its hinges as one of its vertices sees them, see :class:`VertexTriangle`."""
+
+    rest: wp.vec4  # ``ShellElements.rest`` of the triangle, beginning with this vertex
+    rim: wp.vec4  # length [m], foot of this vertex and of that beyond from first to second, stiffness
+    spoke: wp.vec4  # length [m], feet of ``second`` and of the vertex beyond from here to ``first``, stiffness
 
 
 @wp.struct
 class ShellElements:
-    """Triangles and hinges of one world's wall, shared by all worlds, and what is measured of them in each."""
+    """Triangles and hinges of a wall, their rest shape in each of P patients, and what is measured in each world."""
 
+    patient: wp.array[int]  # patient of each world, shape (W,)
     triangles: wp.array[wp.vec3i]  # shape (F,)
-    rest: wp.array[wp.vec4]  # cotangent of each corner over 2 A [1/m^2], area A [m^2], at rest, shape (F,)
+    rest: wp.array2d[wp.vec4]  # cotangent of each corner over 2 A [1/m^2], area A [m^2], at rest, shape (F, P)
     edges: wp.array[wp.vec3i]  # hinge opposite to each corner or -1, shape (F,)
     hinges: wp.array[wp.vec4i]  # two opposite vertices, then the edge from start to end, shape (H,)
-    rest_angle: wp.array[float]  # dihedral angle at rest [rad], shape (H,)
+    rest_angle: wp.array2d[float]  # dihedral angle at rest [rad], shape (H, P)
     coupled: wp.array2d[int]  # each hinge, then the other two of either of its triangles, shape (H, 5)
-    coupling: wp.array2d[wp.vec2]  # moment by their angles over rigidity: times 1 - nu, times nu, shape (H, 5)
-    inverse_length: wp.array[float]  # [1/m], shape (H,)
+    coupling: wp.array3d[wp.vec2]  # moment by their angles over rigidity: times 1 - nu, times nu, shape (H, 5, P)
+    inverse_length: wp.array2d[float]  # [1/m], shape (H, P)
     fan_start: wp.array[int]  # first triangle of each vertex's fan, shape (V + 1,)
     fan: wp.array[VertexTriangle]  # shape (3*F,)
+    fan_rest: wp.array2d[VertexTriangleRest]  # shape (3*F, P)
     fan_corner: wp.array[int]  # 3 * triangle + corner of each, shape (3*F,)
     scaled_normal: wp.array2d[wp.vec3]  # edge x edge over its squared length [1/m^2], shape (F, W)
     corner_force: wp.array2d[wp.vec3]  # force on each corner [N], shape (3*F, W)
@@ -143,7 +151,7 @@ def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) ->
 def measure_hinges(x: wp.array2d[wp.vec3], shell: ShellElements):
     """Write ``shell.angle_change`` at the positions ``x`` [m], shape (V, W). Launch (H, W)."""
     h, w = wp.tid()
-    shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h]
+    shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h, shell.patient[w]]
 
 
 @wp.kernel
@@ -154,7 +162,7 @@ def measure_moments(tissue: Tissue, shell: ShellElements):
     nu = moduli[1] / (moduli[1] + 2.0 * moduli[0])  # plane stress
     moment = float(0.0)
     for k in range(5):
-        c = shell.coupling[h, k]
+        c = shell.coupling[h, k, shell.patient[w]]
         moment += ((1.0 - nu) * c[0] + nu * c[1]) * shell.angle_change[shell.coupled[h, k], w]
     shell.moment[h, w] = moment
 
@@ -164,7 +172,7 @@ def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
     """Return the moment of a hinge over its length, for unit rigidity [1/m]; zero where there is none."""
     if h < 0:
         return 0.0
-    return shell.inverse_length[h] * shell.moment[h, w]
+    return shell.inverse_length[h, shell.patient[w]] * shell.moment[h, w]
 
 
 @wp.kernel
@@ -182,7 +190,7 @@ def measure_triangles(x: wp.array2d[wp.vec3], tissue: Tissue, shell: ShellElemen
     normal = wp.cross(d1, d2)
     scaled_normal = normal / wp.max(wp.length_sq(normal), 1.0e-20)
     shell.scaled_normal[t, w] = scaled_normal
-    rest = shell.rest[t]
+    rest = shell.rest[t, shell.patient[w]]
     edges = shell.edges[t]
     pull = edge_tensions(membrane_stretch(d1, d2, rest, tissue.moduli[w]), rest)
     bend = (4.0 * rest[3] * rest[3] * tissue.moduli[w][2]) * scaled_normal
@@ -252,20 +260,21 @@ def add_elements(
     here = x[i, w]
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
         triangle = shell.fan[k]
+        own = shell.fan_rest[k, shell.patient[w]]
         d1 = x[triangle.first, w] - here
         d2 = x[triangle.second, w] - here
-        out = add_stretching(out, triangle.rest, d1, d2, moduli)
+        out = add_stretching(out, own.rest, d1, d2, moduli)
         scaled_normal = shell.scaled_normal[triangle.index, w]
         rise1 = wp.dot(scaled_normal, d1)
         rise2 = wp.dot(scaled_normal, d2)
 
-        shape = triangle.rim_shape
+        shape = own.rim
         away = x[triangle.rim_vertex, w] - here - (1.0 - shape[2]) * d1 - shape[2] * d2
         lift = wp.dot(shell.scaled_normal[triangle.rim_triangle, w], away) - (1.0 - shape[1]) * rise1 - shape[1] * rise2
         moment = moduli[2] * wp.where(shape[3] > 0.0, shell.moment[triangle.rim, w], 0.0)
         out = add_hinge(out, -shape[0] * scaled_normal, moment, -shape[0] * lift, moduli[2] * shape[3])
 
-        shape = triangle.spoke_shape
+        shape = own.spoke
         other = shell.scaled_normal[triangle.spoke_triangle, w]
         lift = rise2 - shape[1] * rise1 + wp.dot(other, x[triangle.spoke_vertex, w] - here - shape[2] * d1)
         moment = moduli[2] * wp.where(shape[3] > 0.0, shell.moment[triangle.spoke, w], 0.0)

@@ -15,11 +15,12 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.struct
 class SolidElements:
-    """Tetrahedra of one world's wall, shared by all worlds."""
+    """Tetrahedra of a wall, and their rest shape in each of P patients."""
 
+    patient: wp.array[int]  # patient of each world, shape (W,)
     tets: wp.array[wp.vec4i]  # shape (T,)
-    inv_rest: wp.array[wp.mat33]  # inverse rest edge matrix [1/m], shape (T,)
-    volume: wp.array[float]  # rest volume [m^3], shape (T,)
+    inv_rest: wp.array2d[wp.mat33]  # inverse rest edge matrix [1/m], shape (T, P)
+    volume: wp.array2d[float]  # rest volume [m^3], shape (T, P)
     entry_start: wp.array[int]  # first entry of each vertex, shape (V + 1,)
     entry: wp.array[int]  # 4 * tet + corner, shape (4*T,)
 
@@ -47,7 +48,7 @@ def add_elastic(
         entry = solid.entry[k]
         tet = entry // 4
         corners = solid.tets[tet]
-        inv_rest = solid.inv_rest[tet]
+        inv_rest = solid.inv_rest[tet, solid.patient[w]]
         x0 = x[corners[0], w]
         ds = wp.matrix_from_cols(x[corners[1], w] - x0, x[corners[2], w] - x0, x[corners[3], w] - x0)
         f = ds * inv_rest
@@ -59,7 +60,7 @@ def add_elastic(
         c2 = wp.cross(f0, f1)
         m = shape_gradient(inv_rest, entry - 4 * tet)
         g = c0 * m[0] + c1 * m[1] + c2 * m[2]
-        vol = solid.volume[tet]
+        vol = solid.volume[tet, solid.patient[w]]
         pressure = la * (wp.dot(f0, c0) - 1.0) - mu
         out.force -= vol * (mu * (f0 * m[0] + f1 * m[1] + f2 * m[2]) + pressure * g)
         out.hessian += vol * (la * wp.outer(g, g) + mu * wp.dot(m, m) * wp.identity(n=3, dtype=float))

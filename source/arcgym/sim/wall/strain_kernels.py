@@ -14,12 +14,12 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.struct
 class RestRings:
-    """One world's lumen faces and anchor springs at rest, sorted by ring; shared by all worlds."""
+    """Lumen faces and anchor springs of each of P patients at rest, sorted by ring."""
 
     face: wp.array[wp.vec3i]  # vertices of each lumen face, shape (F,)
-    inverse: wp.array[wp.vec3]  # (1 / a, b / a, 1 / h) of each face at rest, see face_strain, shape (F,)
+    inverse: wp.array2d[wp.vec3]  # (1 / a, b / a, 1 / h) of each face at rest, see face_strain, shape (F, P)
     face_start: wp.array[int]  # first face of each ring, shape (R + 1,)
-    anchored: wp.array[int]  # vertices held by a spring, shape (A,)
+    anchored: wp.array[int]  # vertices held by a spring in some patient, shape (A,)
     anchors: Anchors
     anchor_start: wp.array[int]  # first anchored vertex of each ring, shape (R + 1,)
 
@@ -54,7 +54,7 @@ def measure_rings(
 
     Args:
         x: Wall positions [m], shape (V, W).
-        rings: Lumen faces and springs of one world.
+        rings: Lumen faces and springs of all patients.
         anchor_scale: Factor on the springs of each world, shape (W,).
         strain: Sum of strains, shape (R, W); added to.
         strain_peak: Largest strain, shape (R, W); raised.
@@ -62,14 +62,15 @@ def measure_rings(
         tension_peak: Largest tension [N], shape (R, W); raised.
     """
     r, w = wp.tid()
+    p = rings.anchors.patient[w]
     largest = float(0.0)
     for k in range(rings.face_start[r], rings.face_start[r + 1]):
         f = rings.face[k]
-        largest = wp.max(largest, face_strain(x[f[0], w], x[f[1], w], x[f[2], w], rings.inverse[k]))
+        largest = wp.max(largest, face_strain(x[f[0], w], x[f[1], w], x[f[2], w], rings.inverse[k, p]))
     pull = wp.vec3(0.0)
     for k in range(rings.anchor_start[r], rings.anchor_start[r + 1]):
         i = rings.anchored[k]
-        pull += anchor_pull(rings.anchors, i, x[i, w])
+        pull += anchor_pull(rings.anchors, i, w, x[i, w])
     net = anchor_scale[w] * wp.length(pull)
     strain[r, w] = strain[r, w] + largest
     strain_peak[r, w] = wp.max(strain_peak[r, w], largest)

@@ -49,8 +49,8 @@ def sweep_kernels(
 
         Args:
             color: Vertices that share no element, shape (C,).
-            nodes: Vertices of one world.
-            elements: Elements of one world.
+            nodes: Vertices of all patients.
+            elements: Elements of all patients.
             tissue: Values of each world.
             inertial: Positions that inertia pulls to [m], shape (V, W).
             contacts: Contacts of this step.
@@ -82,8 +82,8 @@ def sweep_kernels(
         """Compute the total force on every mobile vertex where elements and contacts were measured. Launch (V, W).
 
         Args:
-            nodes: Vertices of one world.
-            elements: Elements of one world, measured.
+            nodes: Vertices of all patients.
+            elements: Elements of all patients, measured.
             tissue: Values of each world.
             inertial: Positions that inertia pulls to [m], shape (V, W).
             contacts: Contacts of this step.
@@ -93,7 +93,7 @@ def sweep_kernels(
         """
         i, w = wp.tid()
         block = VertexBlock()
-        if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
+        if nodes.mobile[i, nodes.patient[w]] == 1 and tissue.rigid[w] == 0:
             block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
             block = add_forces(block, elements, x, i, w, tissue.moduli[w])
             block.force += vertex_contact_force(contacts.records, measured, i, w)

@@ -4,17 +4,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
 import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
+from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import shell_kernels, solid_kernels
 from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
-from arcgym.sim.wall.wall_parameters import ShellParameters, WallParameters
+from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
 from arcgym.sim.wall.wall_topology import vertex_entries
 
 
@@ -32,11 +34,13 @@ class WallElements(Protocol):
         """Measure the elements at positions ``x`` [m], shape (V, W), before a residual or a sweep."""
 
 
-def wall_elements(wall: WallParameters, num_envs: int, device: str) -> WallElements:
-    """Return elements of the wall's kind for ``num_envs`` worlds."""
-    if isinstance(wall.elements, ShellParameters):
-        return Shell(wall.elements.geometry, len(wall.points), num_envs, device)
-    return Solid(wall.points, wall.elements.tets, device)
+def wall_elements(walls: Sequence[WallParameters], patient: wp.array, device: str) -> WallElements:
+    """Return elements of the walls' kind; ``patient`` is that of each world, shape (W,), int32."""
+    shells = [wall.elements.geometry for wall in walls if isinstance(wall.elements, ShellParameters)]
+    if shells:
+        return Shell(shells, len(walls[0].points), patient, device)
+    tets = next(wall.elements.tets for wall in walls if isinstance(wall.elements, SolidParameters))
+    return Solid([wall.points for wall in walls], tets, patient, device)
 
 
 class Solid:
@@ -46,20 +50,22 @@ class Solid:
         solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic
     )
 
-    def __init__(self, points: np.ndarray, tets: np.ndarray, device: str):
-        """Copy the T tets of one world's V vertices to the device.
+    def __init__(self, points: Sequence[np.ndarray], tets: np.ndarray, patient: wp.array, device: str):
+        """Copy the T tets of the walls to the device.
 
         Args:
-            points: Rest positions [m], shape (V, 3).
-            tets: Vertices of each, shape (T, 4).
+            points: Rest positions of each patient [m], shape (V, 3).
+            tets: Vertices of each, the same for all patients, shape (T, 4).
+            patient: Patient of each world, shape (W,), int32.
             device: Warp device.
         """
-        edges = (points[tets[:, 1:]] - points[tets[:, :1]]).transpose(0, 2, 1)
-        start, entry = vertex_entries(tets, len(points))
+        edges = [(rest[tets[:, 1:]] - rest[tets[:, :1]]).transpose(0, 2, 1) for rest in points]
+        start, entry = vertex_entries(tets, len(points[0]))
         self.data = solid_kernels.SolidElements()
+        self.data.patient = patient
         self.data.tets = wp.array(tets, dtype=wp.vec4i, device=device)
-        self.data.inv_rest = wp.array(np.linalg.inv(edges), dtype=wp.mat33, device=device)
-        self.data.volume = wp.array(np.linalg.det(edges) / 6.0, dtype=float, device=device)
+        self.data.inv_rest = patient_array([np.linalg.inv(one) for one in edges], wp.mat33, device)
+        self.data.volume = patient_array([np.linalg.det(one) / 6.0 for one in edges], float, device)
         self.data.entry_start = wp.array(start, dtype=int, device=device)
         self.data.entry = wp.array(entry, dtype=int, device=device)
 
@@ -74,35 +80,44 @@ class Shell:
         shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
     )
 
-    def __init__(self, geometry: ShellGeometry, vertices: int, num_envs: int, device: str):
-        """Copy the elements of one world's wall to the device and allocate what is measured in all W worlds.
+    def __init__(self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str):
+        """Copy the elements of the walls to the device and allocate what is measured in all W worlds.
 
         Args:
-            geometry: Rest geometry of F triangles and H hinges.
+            geometries: Rest geometry of F triangles and H hinges, the same ones in each patient.
             vertices: Number of vertices, V.
-            num_envs: Worlds, W.
+            patient: Patient of each world, shape (W,), int32.
             device: Warp device.
         """
-        self.device, self.num_envs = device, num_envs
-        vertex_triangle: Any = shell_kernels.VertexTriangle
+        self.device, num_envs = device, len(patient)
         self.data = data = shell_kernels.ShellElements()
-        triangles, hinges = geometry.triangles, geometry.hinges
+        first = geometries[0]
+        triangles, hinges = first.triangles, first.hinges
         start, corner = vertex_entries(triangles, vertices)
-        copies = {
+        types: Any = (shell_kernels.VertexTriangle, shell_kernels.VertexTriangleRest)
+        dtypes = (types[0].numpy_dtype(), types[1].numpy_dtype())
+        fans = [vertex_triangles(geometry, corner, dtypes) for geometry in geometries]
+        shared = {
             "triangles": (triangles, wp.vec3i),
-            "rest": (triangle_rest(geometry), wp.vec4),
-            "edges": (own_hinges(geometry), wp.vec3i),
+            "edges": (own_hinges(first), wp.vec3i),
             "hinges": (hinges, wp.vec4i),
-            "rest_angle": (geometry.rest_angle, float),
-            "coupled": (geometry.coupled, int),
-            "coupling": (geometry.coupling, wp.vec2),
-            "inverse_length": (1.0 / geometry.length, float),
+            "coupled": (first.coupled, int),
             "fan_start": (start, int),
-            "fan": (vertex_triangles(geometry, corner, vertex_triangle.numpy_dtype()), vertex_triangle),
+            "fan": (fans[0][0], types[0]),
             "fan_corner": (corner, int),
         }
-        for name, (values, dtype) in copies.items():
-            setattr(data, name, wp.array(values, dtype=dtype, device=device))
+        own = {
+            "rest": ([triangle_rest(geometry) for geometry in geometries], wp.vec4),
+            "rest_angle": ([geometry.rest_angle for geometry in geometries], float),
+            "coupling": ([geometry.coupling for geometry in geometries], wp.vec2),
+            "inverse_length": ([1.0 / geometry.length for geometry in geometries], float),
+            "fan_rest": ([fan[1] for fan in fans], types[1]),
+        }
+        data.patient = patient
+        for name, (array, dtype) in shared.items():
+            setattr(data, name, wp.array(array, dtype=dtype, device=device))
+        for name, (arrays, dtype) in own.items():
+            setattr(data, name, patient_array(arrays, dtype, device))
         data.scaled_normal = wp.zeros((len(triangles), num_envs), dtype=wp.vec3, device=device)
         data.corner_force = wp.zeros((3 * len(triangles), num_envs), dtype=wp.vec3, device=device)
         data.angle_change = wp.zeros((len(hinges), num_envs), dtype=float, device=device)

@@ -25,10 +25,11 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 @wp.struct
 class WallNodes:
-    """Vertices of one world's wall, shared by all worlds."""
+    """Vertices of the wall of each of P patients."""
 
-    mass: wp.array[float]  # [kg], shape (V,)
-    mobile: wp.array[int]  # 1 where the vertex moves, shape (V,)
+    patient: wp.array[int]  # patient of each world, shape (W,)
+    mass: wp.array2d[float]  # [kg], shape (V, P)
+    mobile: wp.array2d[int]  # 1 where the vertex moves, shape (V, P)
     anchors: Anchors
 
 
@@ -69,11 +70,11 @@ def inertia_and_anchor(
     nodes: WallNodes, tissue: Tissue, inertial: wp.vec3, x: wp.vec3, i: int, w: int, inv_dt2: float
 ) -> VertexBlock:
     """Return the block of the vertex's inertia and of its spring to the rest position."""
-    inertia = nodes.mass[i] * inv_dt2
+    inertia = nodes.mass[i, nodes.patient[w]] * inv_dt2
     scale = tissue.anchor[w]
     block = VertexBlock()
-    block.force = inertia * (inertial - x) + scale * anchor_pull(nodes.anchors, i, x)
-    block.hessian = inertia * wp.identity(n=3, dtype=float) + scale * anchor_hessian(nodes.anchors, i, x)
+    block.force = inertia * (inertial - x) + scale * anchor_pull(nodes.anchors, i, w, x)
+    block.hessian = inertia * wp.identity(n=3, dtype=float) + scale * anchor_hessian(nodes.anchors, i, w, x)
     return block
 
 
@@ -295,7 +296,7 @@ def predict(
 
     Args:
         v: Velocities [m/s], shape (V, W).
-        nodes: Vertices of one world.
+        nodes: Vertices of all patients.
         tissue: Values of each world.
         decay: Factor on the velocity over the step.
         dt: Physics step [s].
@@ -306,7 +307,7 @@ def predict(
     i, w = wp.tid()
     target = x[i, w]
     x_prev[i, w] = target
-    if nodes.mobile[i] == 1 and tissue.rigid[w] == 0:
+    if nodes.mobile[i, nodes.patient[w]] == 1 and tissue.rigid[w] == 0:
         target += decay * dt * v[i, w]
     inertial[i, w] = target
     x[i, w] = target

@@ -1,9 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""One world's wall as numbers, in numpy, and as Warp structs."""
+"""Walls of patients as numbers, in numpy, and as Warp structs."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ import warp as wp
 
 from arcgym.assets.anchors import AnchorSprings
 from arcgym.assets.shell_geometry import ShellGeometry
+from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall.anchor_kernels import Anchors
 from arcgym.sim.wall.ring_modes import ElasticPart
 from arcgym.sim.wall.wall_kernels import WallNodes
@@ -38,7 +40,7 @@ class ShellParameters:
 
 @dataclass(frozen=True)
 class WallParameters:
-    """One world's wall, V vertices."""
+    """One patient's wall, V vertices."""
 
     points: np.ndarray
     """Rest positions [m], shape (V, 3)."""
@@ -60,19 +62,30 @@ class WallParameters:
     """Vertices that share no element, colour by colour."""
 
 
-def wall_nodes(wall: WallParameters, device: str) -> WallNodes:
-    """Copy the vertices to the device."""
+def wall_nodes(walls: Sequence[WallParameters], patient: wp.array, device: str) -> WallNodes:
+    """Copy the vertices of all patients to the device; ``patient`` is that of each world, shape (W,), int32."""
     nodes = WallNodes()
-    nodes.mass = wp.array(wall.mass, dtype=float, device=device)
-    nodes.mobile = wp.array(wall.mobile.astype(np.int32), dtype=int, device=device)
-    nodes.anchors = wall_anchors(wall.points, wall.anchor, device)
+    nodes.patient = patient
+    nodes.mass = patient_array([wall.mass for wall in walls], float, device)
+    nodes.mobile = patient_array([wall.mobile.astype(np.int32) for wall in walls], int, device)
+    nodes.anchors = wall_anchors([wall.points for wall in walls], [wall.anchor for wall in walls], patient, device)
     return nodes
 
 
-def wall_anchors(points: np.ndarray, springs: AnchorSprings, device: str) -> Anchors:
-    """Copy the anchor springs to ``points`` [m], shape (V, 3), to the device."""
+def wall_anchors(
+    points: Sequence[np.ndarray], springs: Sequence[AnchorSprings], patient: wp.array, device: str
+) -> Anchors:
+    """Copy the anchor springs of all patients to the device.
+
+    Args:
+        points: Rest positions of each patient [m], shape (V, 3).
+        springs: Springs of each patient.
+        patient: Patient of each world, shape (W,), int32.
+        device: Warp device.
+    """
     anchors = Anchors()
+    anchors.patient = patient
     for name in ("stiffness", "loose", "slack"):
-        setattr(anchors, name, wp.array(getattr(springs, name), dtype=float, device=device))
-    anchors.rest = wp.array(points, dtype=wp.vec3, device=device)
+        setattr(anchors, name, patient_array([getattr(spring, name) for spring in springs], float, device))
+    anchors.rest = patient_array(points, wp.vec3, device)
     return anchors

@@ -4,11 +4,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import torch
 import warp as wp
 
 from arcgym.assets.anchors import AnchorSprings
+from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall.strain_kernels import RestRings, measure_rings
 from arcgym.sim.wall.wall_parameters import wall_anchors
 from arcgym.sim.wall.wall_topology import LumenTopology
@@ -30,26 +33,28 @@ class WallReadout:
     def __init__(
         self,
         topology: LumenTopology,
-        points: np.ndarray,
+        points: Sequence[np.ndarray],
         ring: np.ndarray,
-        anchor: AnchorSprings,
+        anchors: Sequence[AnchorSprings],
         anchor_scale: wp.array,
+        patient: wp.array,
         device: str,
     ):
         """Store the rest shape.
 
         Args:
             topology: Lumen faces of one world.
-            points: Rest positions [m], shape (V, 3).
+            points: Rest positions of each patient [m], shape (V, 3).
             ring: Ring of each vertex, shape (V,).
-            anchor: Spring of each vertex to its rest position.
+            anchors: Springs of each patient's vertices to their rest positions.
             anchor_scale: Factor of all springs of each world, read at every measurement, shape (W,).
+            patient: Patient of each world, read at every measurement, shape (W,), int32.
             device: Warp device.
         """
         self._device = device
         self._shape = (len(topology.ring_start) - 1, len(anchor_scale))
         self._anchor_scale = anchor_scale
-        self._rings = _rest_rings(topology, points, ring, anchor, device)
+        self._rings = _rest_rings(topology, points, ring, anchors, patient, device)
         self.strain, self.strain_peak, self.tension, self.tension_peak = (
             wp.zeros(self._shape, dtype=float, device=device) for _ in range(4)
         )
@@ -81,17 +86,22 @@ class WallReadout:
 
 
 def _rest_rings(
-    topology: LumenTopology, points: np.ndarray, ring: np.ndarray, anchor: AnchorSprings, device: str
+    topology: LumenTopology,
+    points: Sequence[np.ndarray],
+    ring: np.ndarray,
+    springs: Sequence[AnchorSprings],
+    patient: wp.array,
+    device: str,
 ) -> RestRings:
-    held = np.flatnonzero(anchor.stiffness > 0.0)
+    held = np.flatnonzero(np.any([spring.stiffness > 0.0 for spring in springs], axis=0))
     held = held[np.argsort(ring[held], kind="stable")]
     count = len(topology.ring_start) - 1
     rings = RestRings()
     rings.face = wp.array(topology.faces, dtype=wp.vec3i, device=device)
-    rings.inverse = wp.array(inverse_rest(points[topology.faces]), dtype=wp.vec3, device=device)
+    rings.inverse = patient_array([inverse_rest(rest[topology.faces]) for rest in points], wp.vec3, device)
     rings.face_start = wp.array(topology.ring_start, dtype=int, device=device)
     rings.anchored = wp.array(held.astype(np.int32), dtype=int, device=device)
-    rings.anchors = wall_anchors(points, anchor, device)
+    rings.anchors = wall_anchors(points, springs, patient, device)
     start = np.searchsorted(ring[held], np.arange(count + 1)).astype(np.int32)
     rings.anchor_start = wp.array(start, dtype=int, device=device)
     return rings

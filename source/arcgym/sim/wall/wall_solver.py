@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import warp as wp
 
 from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
+from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall import coarse_kernels, wall_kernels
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
@@ -53,10 +55,10 @@ class WallSolver:
     def __init__(
         self,
         cfg: WallSolverCfg,
-        wall: WallParameters,
-        modes: RingModes,
+        walls: Sequence[WallParameters],
+        modes: Sequence[RingModes],
         dt: float,
-        num_envs: int,
+        patient: wp.array,
         contact_slots: int,
         device: str,
     ):
@@ -64,24 +66,24 @@ class WallSolver:
 
         Args:
             cfg: Solver settings.
-            wall: One world's wall.
+            walls: Wall of each patient.
             modes: Its ring modes.
             dt: Physics step [s].
-            num_envs: Worlds, W.
+            patient: Patient of each world, shape (W,), int32, read in every step.
             contact_slots: Number of contact records of all worlds.
             device: Warp device.
         """
+        num_envs, first = len(patient), walls[0]
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
-        self.vertex_count, self.ring_count = len(wall.points), len(modes.mass)
-        self.moves = bool(wall.mobile.any())
-        self.nodes = wall_nodes(wall, device)
-        self.elements = wall_elements(wall, num_envs, device)
-        self.space = self._space(wall, modes)
-        self.colors = [
-            wp.array(c[wall.mobile[c]], dtype=int, device=device) for c in wall.colors if wall.mobile[c].any()
-        ]
+        self.vertex_count, self.ring_count = len(first.points), len(modes[0].mass)
+        mobile = np.any([wall.mobile for wall in walls], axis=0)
+        self.moves = bool(mobile.any())
+        self.nodes = wall_nodes(walls, patient, device)
+        self.elements = wall_elements(walls, patient, device)
+        self.space = self._space(walls, modes, patient)
+        self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
-        self.tissue.moduli = wp.array(np.tile(wall.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
+        self.tissue.moduli = wp.array(np.tile(first.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
         self.tissue.anchor = wp.ones(num_envs, dtype=float, device=device)
         self.tissue.rigid = wp.zeros(num_envs, dtype=int, device=device)
         count, rings = (self.vertex_count, num_envs), (self.ring_count, num_envs)
@@ -92,7 +94,9 @@ class WallSolver:
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
         self.measured = self._measured_contacts(contact_slots)
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
-        self.self_contact = SelfContact(cfg, wall.points, wall.ring, modes.members, wall.thickness, num_envs, device)
+        self.self_contact = SelfContact(
+            cfg, [wall.points for wall in walls], first.ring, modes[0].members, first.thickness, patient, device
+        )
 
     def _measured_contacts(self, slots: int) -> wall_kernels.MeasuredContacts:
         measured = wall_kernels.MeasuredContacts()
@@ -101,18 +105,20 @@ class WallSolver:
         measured.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
         return measured
 
-    def _space(self, wall: WallParameters, modes: RingModes) -> coarse_kernels.RingSpace:
-        space = coarse_kernels.RingSpace()
-        space.ring = wp.array(wall.ring, dtype=int, device=self.device)
-        space.basis = wp.array(modes.basis, dtype=wp.vec3, device=self.device)
-        space.frame_weights = wp.array(modes.frame_weights, dtype=wp.vec2, device=self.device)
-        space.members = wp.array(modes.members, dtype=int, device=self.device)
-        space.rest_frame = wp.array(modes.rest_frame, dtype=wp.mat33, device=self.device)
-        space.loose = wp.array(ring_mean(wall.anchor.loose, wall.ring), dtype=float, device=self.device)
-        space.slack = wp.array(ring_mean(wall.anchor.slack, wall.ring), dtype=float, device=self.device)
-        space.rest_center = wp.array(ring_mean(wall.points, wall.ring), dtype=wp.vec3, device=self.device)
-        for name in ("stiffness", "coupling", "mass", "anchor"):
-            setattr(space, name, wp.array(getattr(modes, name), dtype=Unknowns, device=self.device))
+    def _space(
+        self, walls: Sequence[WallParameters], modes: Sequence[RingModes], patient: wp.array
+    ) -> coarse_kernels.RingSpace:
+        space, device, ring = coarse_kernels.RingSpace(), self.device, walls[0].ring
+        space.patient = patient
+        space.ring = wp.array(ring, dtype=int, device=device)
+        space.members = wp.array(modes[0].members, dtype=int, device=device)
+        space.loose = patient_array([ring_mean(wall.anchor.loose, ring) for wall in walls], float, device)
+        space.slack = patient_array([ring_mean(wall.anchor.slack, ring) for wall in walls], float, device)
+        space.rest_center = patient_array([ring_mean(wall.points, ring) for wall in walls], wp.vec3, device)
+        types = {"basis": wp.vec3, "frame_weights": wp.vec2, "rest_frame": wp.mat33}
+        types |= dict.fromkeys(("stiffness", "coupling", "mass", "anchor"), Unknowns)
+        for name, dtype in types.items():
+            setattr(space, name, patient_array([getattr(one, name) for one in modes], dtype, device))
         return space
 
     def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
