@@ -22,6 +22,7 @@ from arcgym.rl.agent_cfgs.sac import (
 )
 from arcgym.rl.off_policy_runner import OffPolicyRunner
 from arcgym.rl.replay import ReplayBatch
+from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
 
@@ -178,3 +179,32 @@ def test_unread_groups_are_not_stored():
     runner.env.get_observations = lambda: wide
     alg = type(runner.alg).construct_algorithm(wide, runner.env, runner.cfg, "cpu")
     assert set(alg.replay._layout) == {"policy", "critic"}
+
+
+def test_mixed_precision_keeps_losses_in_full_precision():
+    """The same batch gives nearly the same loss; what comes out of the networks is float32 again."""
+    batch, losses = make_batch([0.0, 1.0]), []
+    for mixed in (False, True):
+        alg = make_runner(algorithm={"use_mixed_precision": mixed}).alg
+        torch.manual_seed(1)
+        losses.append(alg.critic_loss(batch))
+        assert alg._sample(batch.observations)[0].dtype == losses[-1].dtype == torch.float32
+    assert losses[0] != losses[1]
+    torch.testing.assert_close(losses[1], losses[0], rtol=0.02, atol=0.02)
+
+
+def test_modes_with_cuda_graphs_are_refused():
+    with pytest.raises(UsageError, match="'reduce-overhead', which uses CUDA graphs"):
+        make_runner(torch_compile_mode="reduce-overhead")
+
+
+@pytest.mark.slow
+def test_compiled_networks_make_the_same_step():
+    batch = make_batch([0.0, 1.0])
+    algs = [make_runner(torch_compile_mode=mode).alg for mode in (None, "default")]
+    for alg in algs:
+        alg.actor.shift = 0
+        torch.manual_seed(1)
+        alg.step_on(batch)
+    for eager, compiled in zip(algs[0].critics.parameters(), algs[1].critics.parameters(), strict=True):
+        torch.testing.assert_close(compiled, eager, rtol=1e-4, atol=1e-5)

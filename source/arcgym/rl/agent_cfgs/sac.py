@@ -101,6 +101,10 @@ class RslRlSacAlgorithmCfg:
     max_grad_norm: float = 10.0
     """Gradient clipping by norm."""
 
+    use_mixed_precision: bool = False
+    """Whether the networks compute in bfloat16 in updates; losses and distributions stay in float32. Turn on where
+    ``arcgym bench learner`` shows that it pays."""
+
     def validate_config(self) -> None:
         """Check names and bounds.
 

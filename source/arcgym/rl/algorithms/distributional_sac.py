@@ -76,7 +76,7 @@ class DistributionalSAC(SAC):
         with torch.no_grad():
             actions, log_prob = self._sample(batch.next_observations)
             following = with_action(batch.next_observations, actions)
-            both = torch.stack([target(following).softmax(dim=-1) for target in self.targets])
+            both = self._outputs(self.targets, following).softmax(dim=-1)
             smaller = (both @ self.support).argmin(dim=0)
             chosen = both[smaller, torch.arange(len(smaller), device=both.device)]
             soft = self.support - (self.temperature * log_prob).unsqueeze(1)
@@ -87,8 +87,8 @@ class DistributionalSAC(SAC):
         """Return the mean cross-entropy of each critic, added up."""
         target = self.target_distribution(batch)
         obs = with_action(batch.observations, batch.actions)
-        logs = torch.stack([critic(obs).log_softmax(dim=-1) for critic in self.critics])
+        logs = self._outputs(self.critics, obs).log_softmax(dim=-1)
         return -(target * logs).sum(dim=-1).mean(dim=1).sum()
 
     def _values(self, critics: nn.ModuleList, obs: TensorDict) -> torch.Tensor:
-        return torch.stack([critic(obs).softmax(dim=-1) @ self.support for critic in critics])
+        return self._outputs(critics, obs).softmax(dim=-1) @ self.support

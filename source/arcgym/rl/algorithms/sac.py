@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import math
+from collections.abc import Callable
 from itertools import chain
 from typing import Any
 
@@ -19,6 +20,7 @@ from torch import nn
 
 from arcgym.rl.networks.q_models import with_action
 from arcgym.rl.replay import ReplayBatch, ReplayBuffer
+from arcgym.utils.errors import UsageError
 
 
 class SAC:
@@ -51,6 +53,7 @@ class SAC:
         learn_temperature: bool = True,
         target_entropy: float | None = None,
         max_grad_norm: float = 10.0,
+        use_mixed_precision: bool = False,
         device: str = "cpu",
         multi_gpu_cfg: dict | None = None,
         grad_reduce_bucket_mb: float = 25,
@@ -72,6 +75,7 @@ class SAC:
             learn_temperature: Whether the temperature keeps the entropy at ``target_entropy``.
             target_entropy: In nats; None is minus the size of the action.
             max_grad_norm: Gradient clipping by norm.
+            use_mixed_precision: Whether networks compute in bfloat16 in updates.
             device: Device of the networks.
             multi_gpu_cfg: Rank and number of processes, from the runner.
             grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
@@ -82,7 +86,7 @@ class SAC:
         self.gamma, self.batch_size, self.learning_starts = gamma, batch_size, learning_starts
         self.updates_per_transition, self.actor_interval = updates_per_transition, actor_interval
         self.target_step, self.max_grad_norm = target_step, max_grad_norm
-        self.learn_temperature = learn_temperature
+        self.learn_temperature, self.use_mixed_precision = learn_temperature, use_mixed_precision
         self.actor, self.critics = actor.to(device), nn.ModuleList(critics).to(device)
         self.targets = copy.deepcopy(self.critics).requires_grad_(False)
         num_actions = actor.distribution.output_dim
@@ -96,6 +100,7 @@ class SAC:
         self._obs: TensorDict | None = None
         self._actions = torch.empty(0)
         self._fresh: list[TensorDict] = []
+        self._compiled: dict[Any, Callable[[TensorDict], torch.Tensor]] = {}
         models = [self.actor, *self.critics]
         self._vector_groups = sorted(
             {group for model in models if model.obs_normalization for group in model.obs_groups}
@@ -107,8 +112,6 @@ class SAC:
         alg_class, alg_cfg = resolve_class(cfg["algorithm"])
         actor_class, actor_cfg = resolve_class(cfg["actor"])
         critic_class, critic_cfg = resolve_class(cfg["critic"])
-        if cfg.get("torch_compile_mode"):
-            raise ValueError("agent.torch_compile_mode is set, but SAC runs eagerly: leave it None.")
         groups = cfg["obs_groups"] = resolve_obs_groups(obs, cfg["obs_groups"], ["actor", "critic"])
         actor = actor_class(obs, groups, "actor", env.num_actions, **actor_cfg)
         with_actions = with_action(obs, torch.zeros(env.num_envs, env.num_actions, device=obs.device))
@@ -117,7 +120,28 @@ class SAC:
         size, stacks = alg_cfg.pop("replay_size"), alg_cfg.pop("frame_stacks", None)
         read = {group for groups_of_set in groups.values() for group in groups_of_set}
         replay = ReplayBuffer(obs.select(*read), env.num_actions, size, device, stacks)
-        return alg_class(actor, critics, replay, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+        alg = alg_class(actor, critics, replay, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
+        if cfg.get("torch_compile_mode"):
+            alg.compile(cfg["torch_compile_mode"])
+        return alg
+
+    def compile(self, mode: str) -> None:
+        """Compile the networks as updates use them; acting stays as it is.
+
+        Args:
+            mode: Mode of ``torch.compile``. Those with CUDA graphs are refused: a graph's next call would overwrite the
+                values of the last.
+
+        Raises:
+            UsageError: The mode uses CUDA graphs.
+        """
+        if mode in ("reduce-overhead", "max-autotune"):
+            raise UsageError(
+                f"agent.torch_compile_mode is '{mode}', which uses CUDA graphs; expected 'default' or "
+                "'max-autotune-no-cudagraphs'."
+            )
+        self._compiled = {critic: torch.compile(critic, mode=mode) for critic in (*self.critics, *self.targets)}
+        self._compiled[self.actor] = torch.compile(self._actor_output, mode=mode)
 
     @staticmethod
     def critic_outputs(alg_cfg: dict[str, Any]) -> int:
@@ -255,12 +279,28 @@ class SAC:
     def _sample(self, obs: TensorDict) -> tuple[torch.Tensor, torch.Tensor]:
         """Actions with gradients, shape (B, A), and their log-probabilities, shape (B,)."""
         distribution = self.actor.distribution
-        distribution.update(self.actor.mlp(self.actor.get_latent(obs)))
+        with self._precision():
+            output = self._compiled.get(self.actor, self._actor_output)(obs)
+        distribution.update(output.float())
         return distribution.sample_with_log_prob()
+
+    def _actor_output(self, obs: TensorDict) -> torch.Tensor:
+        """Return what the actor's distribution is made of."""
+        return self.actor.mlp(self.actor.get_latent(obs))
+
+    def _outputs(self, critics: nn.ModuleList, obs: TensorDict) -> torch.Tensor:
+        """Output of each critic, shape (2, B, outputs)."""
+        with self._precision():
+            return torch.stack([self._compiled.get(critic, critic)(obs).float() for critic in critics])
 
     def _values(self, critics: nn.ModuleList, obs: TensorDict) -> torch.Tensor:
         """Value of each critic, shape (2, B)."""
-        return torch.stack([critic(obs).squeeze(-1) for critic in critics])
+        return self._outputs(critics, obs).squeeze(-1)
+
+    def _precision(self) -> torch.autocast:
+        """Return the context that networks compute in."""
+        kind = torch.device(self.device).type
+        return torch.autocast(kind, dtype=torch.bfloat16, enabled=self.use_mixed_precision)
 
     def _descend(self, loss: torch.Tensor, optimizer: torch.optim.Optimizer, parameters: Any) -> None:
         parameters = list(parameters)
