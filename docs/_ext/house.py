@@ -13,7 +13,7 @@ Stop = tuple[int, str, int]
 
 FLOORS: tuple[tuple[tuple[str, str], ...], ...] = (
     (("cli", "the command arcgym"), ("recordings", "replay, data sets")),
-    (("rl", "rsl_rl, agents, runs"), ("arcgym_tasks", "configurations"), ("benchmarks", "arcgym bench")),
+    (("rl", "rsl_rl"), ("evaluation", "trials"), ("arcgym_tasks", "config"), ("benchmarks", "arcgym bench")),
     (("envs", "ManagerBasedRLEnv, its terms in envs.mdp"),),
     (("managers", "observation, action, reward, ..."), ("viewers", "pictures, videos")),
     (("scene", "all worlds"), ("experts", "scripted"), ("start_states", "made once, kept")),

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import reduce
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import torch
@@ -65,7 +66,7 @@ class WeightedSumManager(ManagerBase):
         values = [self._evaluate(name) if term.weight else self._zero for name, term in self._terms.items()]
         self._values = finite_rows(values) * self._scale(dt)
         self._sums += self._values
-        return self._values.sum(dim=0)
+        return reduce(torch.add, self._values.unbind())  # in the order of the terms, whatever the number of worlds
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, torch.Tensor]:
         """Return what to log, each term's mean episode sum over some worlds, and start them again from zero."""

@@ -16,7 +16,6 @@ from typing import Any
 import torch
 from tensordict import TensorDict
 
-from arcgym.rl.expert_policy import ExpertPolicy
 from arcgym.rl.first_episodes import FirstEpisodes
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
@@ -86,11 +85,7 @@ def random_policy(env: RslRlVecEnvWrapper) -> Policy:
     return lambda obs: 2.0 * torch.rand(env.num_envs, env.num_actions, device=env.device) - 1.0
 
 
-UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {
-    "zero": zero_policy,
-    "random": random_policy,
-    "expert": ExpertPolicy,
-}
+UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {"zero": zero_policy, "random": random_policy}
 """Policies that need no checkpoint, by name."""
 
 

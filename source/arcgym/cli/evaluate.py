@@ -1,0 +1,122 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Evaluate an agent on the trials of a suite.
+
+    arcgym evaluate --agent logs/rsl_rl/arc_sigmoid_magnetic/<run>/model_100.pt --suite paper --out results/mine
+    arcgym evaluate --agent random --robot Magnetic --suite paper --tasks ARC-Rectum-Magnetic --out results/random
+
+Every trial of the suite's condition file is run once. All that is random in it follows from its seed: its result is the
+same whatever the number of worlds. Rows go to trials.csv in the folder as trials end; called again, the rest is run.
+Several checkpoints, separated by commas, are training seeds: trials of group g get checkpoint g.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from arcgym.cli.arguments import add_fields, argument, positive, read_fields
+
+TAKES_OVERRIDES = True
+
+REFERENCE_AGENTS = ("zero", "random")
+
+
+@dataclass(frozen=True, kw_only=True)
+class EvaluateArguments:
+    """Arguments of ``arcgym evaluate``."""
+
+    agent: str = argument("checkpoint, or several separated by commas, or zero, or random")
+    out: str = argument("folder of the results")
+    suite: str = argument("suite of tasks (default: paper)", "paper")
+    tasks: str | None = argument("tasks of the suite, separated by commas (default: all of the robot)", None)
+    robot: str | None = argument("robot (default: the one that the checkpoint was trained with)", None)
+    conditions: str | None = argument("condition file (default: the suite's)", None)
+    num_envs: int = argument("largest number of worlds (default: 30)", 30, type=positive)
+    device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
+    overrides: list[str] = None  # type: ignore[assignment]
+    """Texts ``env.path=value``."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_fields(parser, EvaluateArguments)
+
+
+def run(namespace: argparse.Namespace) -> None:
+    """Run the trials, print the summary and write it."""
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    args = read_fields(EvaluateArguments, namespace)
+    suite = _choose(args.suite, read_suites(), "suite")
+    agents = tuple(args.agent.split(","))
+    tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
+    _check_tasks(tasks)
+    conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
+    overrides = (*suite.overrides, *(args.overrides or ()))
+
+    from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
+    from arcgym.evaluation.summary import summarize, to_markdown
+
+    options = EvaluationOptions(agents, args.suite, overrides, args.num_envs, args.device)
+    folder = evaluate(tasks, conditions, lambda task, path: _load(task, path, overrides), options, Path(args.out))
+    table = to_markdown(summarize(folder.rows))
+    (folder.path / "summary.md").write_text(table)
+    print(table)
+    print(f"rows: {folder.path / 'trials.csv'}")
+
+
+def _choose(name: str, known: dict[str, Any], kind: str) -> Any:
+    from arcgym.utils.errors import UsageError
+    from arcgym.utils.string import did_you_mean
+
+    if name not in known:
+        raise UsageError(f"No {kind} '{name}'. {did_you_mean(name, known)}")
+    return known[name]
+
+
+def _robot_of(agent: str) -> str:
+    """Return the robot that a checkpoint was trained with."""
+    from arcgym.rl.params import read_params
+    from arcgym.utils.errors import UsageError
+
+    if agent in REFERENCE_AGENTS:
+        raise UsageError(f"--agent {agent} needs --robot, such as Magnetic, or --tasks.")
+    params = read_params(_checkpoint(agent).parent)
+    if params is None:
+        raise UsageError(f"{agent} has no params/ beside it, which names its task: give --robot or --tasks.")
+    return params.task.removesuffix("-Play").split("-")[-1]
+
+
+def _checkpoint(agent: str) -> Path:
+    from arcgym.utils.errors import UsageError
+
+    path = Path(agent)
+    if not path.is_file():
+        raise UsageError(f"No checkpoint {agent}; expected a file, or one of {', '.join(REFERENCE_AGENTS)}.")
+    return path
+
+
+def _check_tasks(tasks: list[str]) -> None:
+    """Raise if a task is not registered."""
+    from arcgym.utils.registry import list_tasks
+
+    known = {name: None for name in list_tasks(prefix="")}
+    for task in tasks:
+        _choose(task, known, "task")
+
+
+def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
+    """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top."""
+    from arcgym.cli.arguments import RunArguments, TaskArguments
+    from arcgym.cli.task import load_cfgs, load_run_cfgs
+
+    if checkpoint is None:
+        return load_cfgs(TaskArguments(task=task, overrides=list(overrides)))
+    env_cfg, agent_cfg, _ = load_run_cfgs(
+        RunArguments(task=task, checkpoint=str(_checkpoint(str(checkpoint)).resolve()), overrides=list(overrides))
+    )
+    return env_cfg, agent_cfg

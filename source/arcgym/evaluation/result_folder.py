@@ -1,0 +1,125 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Folder of an evaluation: what was run in ``run.json``, a row a trial in ``trials.csv``.
+
+Importing this loads neither torch nor Warp.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from arcgym.utils.errors import UsageError
+
+TRIALS_FILE = "trials.csv"
+"""A row a trial; rows are added as trials end."""
+RUN_FILE = "run.json"
+"""Agent, checkpoint, suite, conditions, versions."""
+IDENTITY = ("agent", "checkpoint_sha256", "suite", "conditions_sha256", "overrides")
+"""Entries of the run that must agree for rows to belong together."""
+
+Row = dict[str, Any]
+"""One trial's results by column."""
+
+
+class ResultFolder:
+    """Rows of one evaluation, written as they come; a run that was cut off goes on where it stopped."""
+
+    def __init__(self, path: Path, run: dict[str, Any]) -> None:
+        """Make the folder, or open that of the same evaluation.
+
+        Args:
+            path: The folder.
+            run: What is run; the entries in :data:`IDENTITY` must be those of the folder.
+
+        Raises:
+            UsageError: The folder holds another evaluation.
+        """
+        self.path = path
+        path.mkdir(parents=True, exist_ok=True)
+        file = path / RUN_FILE
+        if file.is_file():
+            _check_same(file, json.loads(file.read_text()), run)
+        else:
+            temporary = file.with_suffix(".tmp")
+            temporary.write_text(json.dumps(run, indent=1, sort_keys=True) + "\n")
+            os.replace(temporary, file)
+        _cut_torn_line(path / TRIALS_FILE)
+        self.rows = read_trial_rows(path)
+        """Rows so far."""
+
+    def done(self, task: str) -> set[int]:
+        """Return the numbers of the trials of a task that have a row."""
+        return {row["trial"] for row in self.rows if row["task"] == task}
+
+    def add(self, row: Row) -> None:
+        """Write a row to the disk.
+
+        Raises:
+            ValueError: If it has other columns than the rows before.
+        """
+        file = self.path / TRIALS_FILE
+        if self.rows and list(row) != list(self.rows[0]):
+            extra = sorted(set(row) ^ set(self.rows[0]))
+            raise ValueError(f"A row of {file} has other columns than those before: {', '.join(extra) or 'order'}.")
+        with file.open("a", newline="") as out:
+            writer = csv.DictWriter(out, list(row), lineterminator="\n")
+            if not self.rows:
+                writer.writeheader()
+            writer.writerow(row)
+            out.flush()
+            os.fsync(out.fileno())
+        self.rows.append(row)
+
+
+def read_trial_rows(path: Path) -> list[Row]:
+    """Return the rows of a result folder, numbers as numbers; none if it has none."""
+    file = path / TRIALS_FILE
+    if not file.is_file():
+        return []
+    with file.open(newline="") as text:
+        return [{name: _value(name, cell) for name, cell in row.items()} for row in csv.DictReader(text)]
+
+
+def read_run(path: Path) -> dict[str, Any]:
+    """Return what a result folder says of its run.
+
+    Raises:
+        UsageError: It is no result folder.
+    """
+    try:
+        return json.loads((path / RUN_FILE).read_text())
+    except (OSError, json.JSONDecodeError) as error:
+        raise UsageError(
+            f"{path} is no folder of an evaluation: {RUN_FILE} is missing or damaged ({error})."
+        ) from error
+
+
+def _value(name: str, cell: str) -> Any:
+    if name in ("trial", "seed", "group", "success"):
+        return int(cell)
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
+
+
+def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
+    for name in IDENTITY:
+        if old.get(name) != new.get(name):
+            raise UsageError(
+                f"{file} is of another evaluation: {name} is {old.get(name)!r} there and {new.get(name)!r} now. "
+                "Give another --out."
+            )
+
+
+def _cut_torn_line(file: Path) -> None:
+    """Remove a last line that was not written whole."""
+    if file.is_file():
+        content = file.read_bytes()
+        if content and not content.endswith(b"\n"):
+            file.write_bytes(content[: content.rfind(b"\n") + 1])

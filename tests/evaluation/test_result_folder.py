@@ -1,0 +1,62 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from pathlib import Path
+
+import pytest
+
+from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.summary import summarize, to_markdown
+from arcgym.utils.errors import UsageError
+
+RUN = {"agent": "zero", "checkpoint_sha256": [], "suite": "paper", "conditions_sha256": "abc", "overrides": []}
+
+
+def row(trial: int, success: int, task: str = "ARC-A", progress: float = 0.5) -> dict:
+    return {"task": task, "trial": trial, "group": 0, "success": success, "end": "success", "progress": progress}
+
+
+def test_rows_are_on_the_disk_as_they_come(tmp_path: Path) -> None:
+    folder = ResultFolder(tmp_path, RUN)
+    folder.add(row(0, 1))
+    assert read_trial_rows(tmp_path) == [row(0, 1)]
+
+
+def test_a_run_goes_on_after_a_torn_line(tmp_path: Path) -> None:
+    ResultFolder(tmp_path, RUN).add(row(0, 1))
+    with (tmp_path / "trials.csv").open("a") as file:
+        file.write("ARC-A,1,0,")
+    again = ResultFolder(tmp_path, RUN)
+    again.add(row(1, 0))
+    assert again.done("ARC-A") == {0, 1} and read_trial_rows(tmp_path) == [row(0, 1), row(1, 0)]
+
+
+def test_another_evaluation_does_not_go_on(tmp_path: Path) -> None:
+    ResultFolder(tmp_path, RUN)
+    with pytest.raises(UsageError, match="agent is 'zero' there and 'random' now"):
+        ResultFolder(tmp_path, {**RUN, "agent": "random"})
+
+
+def test_rows_with_other_columns_are_refused(tmp_path: Path) -> None:
+    folder = ResultFolder(tmp_path, RUN)
+    folder.add(row(0, 1))
+    with pytest.raises(ValueError, match="extra"):
+        folder.add({**row(1, 1), "extra": 1.0})
+
+
+def test_a_folder_without_a_run_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no folder of an evaluation"):
+        read_run(tmp_path)
+
+
+def test_no_finished_trial_is_an_error() -> None:
+    with pytest.raises(UsageError, match="No trial was finished"):
+        summarize([])
+
+
+def test_summary_counts_each_task() -> None:
+    rows = [row(0, 1), row(1, 1), row(2, 0), row(0, 0, task="ARC-B", progress=0.25)]
+    summaries = summarize(rows)
+    assert summaries["ARC-A"]["success"].value == pytest.approx(2 / 3)
+    assert (summaries["ARC-B"]["trials"], summaries["ARC-B"]["progress"].value) == (1, 0.25)
+    assert "| `ARC-A` | 3 | 67 (21–94) | 0.50 (0.50–0.50) |" in to_markdown(summaries)

@@ -1,0 +1,55 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trials in the tiny colon give the same rows in one world and in four."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arcgym.cli.main import main
+from arcgym.evaluation.result_folder import read_trial_rows
+from arcgym.evaluation.trials import Trial, write_conditions
+
+
+def evaluate(folder: Path, conditions: Path, *more: str) -> list[dict]:
+    """Rows of a rectum in which episodes last four control steps."""
+    words = f"evaluate --agent random --tasks ARC-Rectum-Capsule --device cpu --out {folder} --conditions {conditions}"
+    overrides = [
+        "env.start=rest",
+        "env.episode_length_s=0.4",
+        "env.scene.camera.width=16",
+        "env.scene.camera.height=16",
+    ]
+    main([*words.split(), *more, *overrides])
+    return sorted(read_trial_rows(folder), key=lambda row: row["trial"])
+
+
+@pytest.fixture
+def conditions(tmp_path: Path, tiny_colon_path: Path) -> Path:
+    path = tmp_path / "five_v1.csv"
+    write_conditions(path, [Trial(k, str(tiny_colon_path), 100 + k) for k in range(5)], "Five trials.")
+    return path
+
+
+def test_rows_do_not_depend_on_the_number_of_worlds(tmp_path: Path, conditions: Path) -> None:
+    one = evaluate(tmp_path / "one", conditions, "--num_envs", "1")
+    assert [row["trial"] for row in one] == [0, 1, 2, 3, 4]
+    assert len({row["reward"] for row in one}) == 5
+    assert evaluate(tmp_path / "four", conditions, "--num_envs", "4") == one
+
+
+def test_an_evaluation_that_was_cut_off_goes_on(tmp_path: Path, conditions: Path) -> None:
+    whole = evaluate(tmp_path / "run", conditions)
+    file = tmp_path / "run" / "trials.csv"
+    file.write_bytes(b"".join(file.read_bytes().splitlines(keepends=True)[:3]))
+    assert evaluate(tmp_path / "run", conditions) == whole
+
+
+def test_the_shipped_conditions_are_whole() -> None:
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    sizes = {name: len(read_conditions(suite.conditions_path).trials) for name, suite in read_suites().items()}
+    assert sizes == {"paper": 30, "five_colons": 50}

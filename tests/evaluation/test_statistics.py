@@ -1,0 +1,48 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+import numpy as np
+import pytest
+
+from arcgym.evaluation.statistics import bootstrap, interquartile_mean, paired_difference, wilson
+
+
+def test_wilson_interval_of_newcombe() -> None:
+    """Newcombe, Statistics in Medicine 17 (1998), table I, method 3: 81 of 263 and 0 of 20."""
+    many, none = wilson(81, 263), wilson(0, 20)
+    assert (many.low, many.high) == pytest.approx((0.2553, 0.3662), abs=1e-4)
+    assert (none.value, none.low, none.high) == pytest.approx((0.0, 0.0, 0.1611), abs=1e-4)
+
+
+def test_a_rate_without_trials_is_refused() -> None:
+    with pytest.raises(ValueError, match="got 0 of 0"):
+        wilson(0, 0)
+
+
+@pytest.mark.parametrize(
+    ("values", "mean"),
+    [([1, 2, 3, 100], 2.5), ([5, 5, 5, 5, 5], 5.0), ([0, 1, 2, 3, 4, 5], (0.5 * 1 + 2 + 3 + 0.5 * 4) / 3)],
+)
+def test_interquartile_mean_is_of_the_middle_half(values: list[float], mean: float) -> None:
+    assert interquartile_mean(np.array(values[::-1])) == pytest.approx(mean)
+
+
+def test_bootstrap_interval_of_a_mean_is_that_of_theory() -> None:
+    """400 values of deviation 1: 1.96 / sqrt(400) = 0.098 on either side."""
+    values = np.random.default_rng(1).normal(size=400)
+    values = (values - values.mean()) / values.std()
+    interval = bootstrap(values, np.zeros(400), lambda sample: float(sample.mean()))
+    assert (interval.value, interval.low, interval.high) == pytest.approx((0.0, -0.098, 0.098), abs=0.008)
+
+
+def test_groups_do_not_mix() -> None:
+    """Two training seeds, one always 0 and one always 1: drawn anew within each, the mean stays one half."""
+    values = np.repeat([0.0, 1.0], 10)
+    interval = bootstrap(values, values, lambda sample: float(sample.mean()))
+    assert (interval.low, interval.high) == (0.5, 0.5)
+
+
+def test_paired_difference_removes_what_trials_have_in_common() -> None:
+    hard = np.linspace(0.0, 100.0, 50)
+    interval = paired_difference(hard, hard + 1.0, np.zeros(50))
+    assert (interval.value, interval.low, interval.high) == pytest.approx((1.0, 1.0, 1.0))

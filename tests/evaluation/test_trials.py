@@ -1,0 +1,58 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from arcgym.evaluation.trial_queue import TrialQueue
+from arcgym.evaluation.trials import Trial, read_conditions, write_conditions
+from arcgym.utils.errors import UsageError
+
+TRIALS = (Trial(0, "colon_1", 11), Trial(1, "colon_2", 12, group=1))
+
+
+def test_a_file_gives_back_its_trials(tmp_path: Path) -> None:
+    write_conditions(tmp_path / "two_v1.csv", TRIALS, "Two trials.\nFor a test.")
+    read = read_conditions(tmp_path / "two_v1.csv")
+    assert (read.name, read.trials) == ("two_v1", TRIALS)
+
+
+def test_a_changed_file_has_another_hash(tmp_path: Path) -> None:
+    hashes = set()
+    for trials in (TRIALS, TRIALS[:1]):
+        write_conditions(tmp_path / "a.csv", trials, "")
+        hashes.add(read_conditions(tmp_path / "a.csv").sha256)
+    assert len(hashes) == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "has no trial"),
+        ("trial,patient,seed\n0,colon_1,1\n", "expected trial, patient, seed, group"),
+        ("trial,patient,seed,group\n0,colon_1,x,0\n", "is no trial"),
+        ("trial,patient,seed,group\n0,colon_1,-1,0\n", "expected 0 to 2\\^31"),
+        ("trial,patient,seed,group\n0,colon_1,1,0\n0,colon_1,2,0\n", "twice"),
+    ],
+)
+def test_a_wrong_file_is_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "bad.csv").write_text(text)
+    with pytest.raises(UsageError, match=message) as refusal:
+        read_conditions(tmp_path / "bad.csv")
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_missing_file_names_its_neighbours(tmp_path: Path) -> None:
+    write_conditions(tmp_path / "two_v1.csv", TRIALS, "")
+    with pytest.raises(UsageError, match="two_v1"):
+        read_conditions(tmp_path / "two_v2.csv")
+
+
+def test_worlds_take_the_next_trial_until_none_is_left() -> None:
+    queue = TrialQueue(TRIALS, num_envs=3)
+    assert queue(torch.tensor([0, 2])).tolist() == [11, 12]
+    assert queue.running == [TRIALS[0], None, TRIALS[1]] and queue.left == 2
+    queue(torch.tensor([0]))
+    assert queue.running == [None, None, TRIALS[1]] and queue.left == 1
