@@ -17,7 +17,11 @@ from arcgym.utils.threads import one_thread
 CONTROL_STEP = 0.1
 """Time between two decisions of the expert [s]."""
 SETTLING = 1.0
-"""Time without commands before a state is kept [s]."""
+"""Time without commands before a state is kept, at least, and between two looks at its forces [s]."""
+LONGEST_SETTLING = 10.0
+"""Time after which it is kept though its forces still change [s]."""
+STEADY = 0.01, 0.01
+"""Change of forces between two looks that counts as none: as a share, and in newtons."""
 GAIN = 0.005
 """Way within the patience below that counts as progress [m]."""
 
@@ -25,8 +29,8 @@ GAIN = 0.005
 class Drive:
     """Drives all worlds of a scene; the first world that enters a segment gives its start state.
 
-    The first segment starts from the rest pose. Whenever a tip enters another one, the complete state is kept once it
-    has settled for a second without commands, with velocities of zero; the drive then goes on from before.
+    The first segment starts from the rest pose. Whenever a tip enters another one, the complete state is kept once its
+    forces have settled without commands, with velocities of zero; the drive then goes on from before.
     """
 
     def __init__(self, scene: InteractiveScene, speed: float = 0.04, patience: float = 20.0, max_time: float = 180.0):
@@ -111,7 +115,24 @@ class Drive:
         now = tuple(sim.read_snapshot(index) for index in range(sim.num_envs))
         sim.load_snapshots(SnapshotSet(tuple(map(str, range(sim.num_envs))), now, fingerprint(sim)))
         sim.write_snapshot(worlds)
-        sim.step(round(SETTLING / sim.physics_dt))
+        self._settle(world)
         self.states[segment] = sim.read_snapshot(world).at_rest()
         sim.write_snapshot(worlds)
         sim.forward()
+
+    def _settle(self, world: int) -> None:
+        """Wait until the largest force on a window of scope and the push on the base of a world stay the same."""
+        sim, share, least = self.scene.sim, *STEADY
+        steps, before = round((SETTLING - CONTROL_STEP) / sim.physics_dt), self._forces(world)
+        for _ in range(round(LONGEST_SETTLING / SETTLING)):
+            sim.step(steps)
+            sim.step(self._steps)
+            now = self._forces(world)
+            if bool(((now - before).abs() <= share * now + least).all()):
+                return
+            before = now
+
+    def _forces(self, world: int) -> torch.Tensor:
+        """Largest force on a window and push on the base, means over a control step [N], shape (2,)."""
+        data = self.scene["endoscope"].data
+        return torch.stack([data.window_force_norm[world].amax(), data.base_force[world].abs()])

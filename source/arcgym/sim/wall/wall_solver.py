@@ -92,6 +92,7 @@ class WallSolver:
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
         self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
+        self.distortion = wp.zeros(rings, dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.self_contact = SelfContact(
@@ -222,10 +223,11 @@ class WallSolver:
             coarse_kernels.ring_rotations,
             rings,
             inputs=[x, self.space],
-            outputs=[self.rotation, self.shift],
+            outputs=[self.rotation, self.shift, self.distortion],
             device=self.device,
         )
-        inputs = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
+        inputs = [self.force, self.space, self.rotation, self.shift, self.distortion, self.tissue]
+        inputs += [1.0 / self.dt**2, REGULARISATION]
         wp.launch(
             coarse_kernels.assemble,
             (self.ring_count, MODES, self.num_envs),
