@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import statistics
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,7 @@ from rsl_rl.runners import OnPolicyRunner as RslRlOnPolicyRunner
 from rsl_rl.utils.log_writer import LogWriter
 
 from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
+from arcgym.rl.device import join_processes
 from arcgym.rl.divergence import check_finite
 from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
 from arcgym.rl.learning_rate import linear_rate, set_learning_rate
@@ -161,6 +163,15 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             done = self.completed_iterations / max(self.cfg["max_iterations"] - 1, 1)
             set_learning_rate(self.alg, linear_rate(start, end, max(done, self.clock.fraction)))
 
+    def _configure_multi_gpu(self) -> None:
+        """Join the processes of ``torchrun``; rsl_rl knows GPUs alone."""
+        if self.device != "cpu" or int(os.environ.get("WORLD_SIZE", "1")) == 1:
+            super()._configure_multi_gpu()
+            return
+        about = self.cfg["multi_gpu"] = join_processes()
+        self.is_distributed, self.gpu_world_size = True, about["world_size"]
+        self.gpu_local_rank, self.gpu_global_rank = about["local_rank"], about["global_rank"]
+
     def _models(self) -> dict[str, torch.nn.Module]:
         """Return the algorithm's networks by name."""
         found = {name: value for name, value in vars(self.alg).items() if isinstance(value, torch.nn.Module)}
@@ -174,7 +185,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
 
     def _log(self, log: Callable[..., None], **values: Any) -> None:
         """Write the curves of an iteration with what the run has taken so far; end the run when its time is over."""
-        worlds = self.env.num_envs * getattr(self, "gpu_world_size", 1)
+        worlds = self.env.num_envs * self.gpu_world_size
         self.clock.transitions += self.cfg["num_steps_per_env"] * worlds
         if self.logger.writer is not None:
             self.logger.writer.add_scalar("Perf/transitions", self.clock.transitions, values["it"])  # type: ignore

@@ -15,7 +15,7 @@ from typing import Any
 from rsl_rl.utils import resolve_callable
 
 import arcgym
-from arcgym.rl.device import check_launcher, is_main_process, place
+from arcgym.rl.device import check_launcher, is_main_process, leave_processes, place
 from arcgym.rl.divergence import TrainingDiverged
 from arcgym.rl.evaluation import evaluate
 from arcgym.rl.interrupt import TrainingInterrupted
@@ -61,7 +61,7 @@ def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = Train
     Raises:
         UsageError: Something is wrong that can be known before the run; no folder has been made.
     """
-    check_launcher(options.distributed)
+    check_launcher(options.distributed, options.device)
     output = options.folder or LOG_ROOT / agent_cfg.experiment_name
     check_run(env_cfg, agent_cfg, options.device, [output], trains=True)
     device = place(env_cfg, agent_cfg, options.device, options.distributed)
@@ -117,6 +117,7 @@ def _learn(
     status = 0
     try:
         runner.learn(agent_cfg.max_iterations, agent_cfg.init_at_random_ep_len)
+        leave_processes()
         if evaluation_device is not None and is_main_process():
             evaluate(runner, env, evaluation_device, folder)
     except TrainingInterrupted as interrupt:

@@ -9,6 +9,7 @@ _AGENTS = "arcgym_tasks.navigation.agents"
 
 AGENTS: dict[str, str] = {
     "rsl_rl_cfg_entry_point": f"{_AGENTS}.rsl_rl_cfg:NavigationPPORunnerCfg",
+    "rsl_rl_ppo_small_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationSmallPPORunnerCfg",
     "rsl_rl_ppo_recurrent_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationRecurrentPPORunnerCfg",
     "rsl_rl_ppo_masked_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationMaskedPPORunnerCfg",
     "rsl_rl_ppo_lagrangian_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationLagrangianPPORunnerCfg",

@@ -1,11 +1,17 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Relatives of the navigation tasks' PPO: with memory, with rules on actions, with limits on costs, and A2C."""
+"""Relatives of the navigation tasks' PPO: small, with memory, with rules on actions, with limits on costs, and A2C."""
 
 from __future__ import annotations
 
-from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlMlpModelCfg, RslRlPpoAlgorithmCfg
+from arcgym.rl import (
+    CnnCfg,
+    GaussianDistributionCfg,
+    RslRlCnnModelCfg,
+    RslRlMlpModelCfg,
+    RslRlPpoAlgorithmCfg,
+)
 from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
 from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
 from arcgym.rl.agent_cfgs.ppo_lagrangian import RslRlPpoLagrangianAlgorithmCfg, RslRlPpoLagrangianRunnerCfg
@@ -24,6 +30,33 @@ class NavigationRecurrentPPORunnerCfg(NavigationPPORunnerCfg):
 
     actor: RslRlMlpModelCfg = RecurrentCnnModelCfg(
         hidden_dims=[256], cnn_cfg=CnnCfg(), distribution_cfg=GaussianDistributionCfg(init_std=0.6)
+    )
+
+
+@configclass
+class NavigationSmallPPORunnerCfg(NavigationPPORunnerCfg):
+    """PPO with a small network for images of 40 to 48 px and a dozen worlds: learns on a CPU (docs/quickstart.md)."""
+
+    num_steps_per_env: int = 32
+    max_iterations: int = 4000
+    save_interval: int = 50
+    final_learning_rate: float | None = 5.0e-5
+    actor: RslRlMlpModelCfg = RslRlCnnModelCfg(
+        hidden_dims=[128],
+        cnn_cfg=CnnCfg(output_channels=[16, 32], kernel_size=[5, 3], stride=[3, 2]),
+        distribution_cfg=GaussianDistributionCfg(init_std=0.6),
+    )
+    critic: RslRlMlpModelCfg = RslRlMlpModelCfg(hidden_dims=[128, 64], obs_normalization=True)
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoAlgorithmCfg(
+        num_learning_epochs=4,
+        num_mini_batches=4,
+        learning_rate=5.0e-4,
+        schedule="fixed",
+        gamma=0.97,
+        lam=0.95,
+        clip_param=0.2,
+        entropy_coef=0.003,
+        max_grad_norm=0.5,
     )
 
 
