@@ -277,6 +277,21 @@ def test_the_end_of_an_episode_can_be_taken_back(recording, cfg, tmp_path, kept)
     np.testing.assert_allclose(episode.data["actions"][:, 0], [0.01] * kept + [0.02] * 12, rtol=1e-5)
 
 
+def test_worlds_can_be_ignored_for_a_while(recording, cfg, tmp_path) -> None:
+    long_episode(cfg)
+    env = recording()
+    run(env, 12, (0.01, 0.02))
+    env.recorder_manager.ignore([1])
+    assert [path.name for path in tmp_path.iterdir()] == ["episode_000000.partial.hdf5"]
+    run(env, 12, (0.01, 0.02))
+    env.recorder_manager.ignore([])
+    env.reset()
+    run(env, 3, (0.01, 0.02))
+    env.close()
+    found = [(episode.info["env_id"], episode.info["length"]) for episode in load_episodes(tmp_path)]
+    assert found == [(0, 24), (0, 3), (1, 3)]
+
+
 def test_files_that_are_no_recordings_are_named(tmp_path) -> None:
     with pytest.raises(RecordingError, match="There is no recording"):
         Episode.load(tmp_path / "none.hdf5")

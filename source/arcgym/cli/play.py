@@ -7,8 +7,8 @@
 
 Uses the -Play variant of the task with the run's own configurations; the command line's changes come on top and are
 printed. It ends when each world's first episode has ended: these are the episodes that the success rate counts. The
-video goes to videos/play of the run, the policy to exported. --policy zero and
---policy random need no checkpoint. --record writes every episode's trajectory to a file.
+video goes to videos/play of the run, the policy to exported. --policy zero, random and expert need no checkpoint; the
+scripted expert sees the centerline. --record writes every episode's trajectory to a file.
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ TAKES_OVERRIDES = True
 class PlayArguments(RunArguments):
     """Arguments of ``arcgym play``."""
 
-    policy: str = argument("source of the actions (default: trained)", "trained", choices=("trained", "zero", "random"))
+    policy: str = argument(
+        "source of the actions (default: trained)", "trained", choices=("trained", "zero", "random", "expert")
+    )
     steps: int | None = argument(
         "control steps (default: until each world's first episode has ended)", None, type=positive
     )

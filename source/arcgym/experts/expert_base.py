@@ -7,6 +7,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
+import torch
+
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.string import resolve_callable
 
@@ -26,6 +28,9 @@ class ExpertBase(ABC):
     @abstractmethod
     def act(self) -> None:
         """Look at the scene and set the commands of every world; called once a control step of 0.1 s."""
+
+    def reset(self, env_ids: torch.Tensor) -> None:
+        """Forget the past of the worlds ``env_ids``, int64, shape (n,), which start anew; nothing by default."""
 
 
 def make_expert(scene: InteractiveScene, **settings: Any) -> ExpertBase:

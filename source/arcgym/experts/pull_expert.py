@@ -48,6 +48,12 @@ class PullExpert(ExpertBase):
         velocity = torch.where(self._retreat[:, None] > 0, back, pace * direction)
         self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
 
+    def reset(self, env_ids: torch.Tensor) -> None:
+        """Forget how far some worlds came."""
+        self._furthest[env_ids] = -1.0
+        self._waited[env_ids] = 0
+        self._retreat[env_ids] = 0
+
     def _watch_progress(self) -> None:
         arc = self.scene["endoscope"].data.tip_arc_length
         gained = arc > self._furthest + 0.004

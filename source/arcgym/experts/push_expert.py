@@ -47,3 +47,8 @@ class PushExpert(ExpertBase):
         endoscope = self.scene["endoscope"]
         endoscope.set_bending_command(self.bending[:, 0], self.bending[:, 1])
         endoscope.set_insertion_command(self.velocity, torch.zeros_like(self.velocity))
+
+    def reset(self, env_ids: torch.Tensor) -> None:
+        """Take up the bending that some worlds start with, and stand still there."""
+        self.bending[env_ids] = self.scene["endoscope"].data.bending[env_ids]
+        self.velocity[env_ids] = 0.0

@@ -58,6 +58,16 @@ class ActionTerm(ManagerTermBase, ABC):
     def apply_actions(self) -> None:
         """Hand the commands to the asset, after every :meth:`process_actions`."""
 
+    def commanded_actions(self) -> torch.Tensor:
+        """Return the raw actions that come closest to what the asset is commanded now, shape (N, action_dim).
+
+        Scripted experts command the asset itself; this is how their commands become actions.
+
+        Raises:
+            NotImplementedError: If the term does not know them.
+        """
+        raise NotImplementedError(f"{type(self).__name__} cannot tell actions from commands: define commanded_actions.")
+
 
 class ActionManager(ManagerBase):
     """Splits the action vector among its terms."""
@@ -115,6 +125,10 @@ class ActionManager(ManagerBase):
         """Hand the commands of every term to its asset."""
         for term in self._terms.values():
             term.apply_actions()
+
+    def commanded_actions(self) -> torch.Tensor:
+        """Return the raw actions that come closest to what the assets are commanded now, shape (N, A)."""
+        return torch.cat([term.commanded_actions() for term in self._terms.values()], dim=1)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
         """Set the actions of some worlds to zero and reset the terms."""

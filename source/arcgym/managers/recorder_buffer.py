@@ -64,10 +64,10 @@ class EpisodeBuffer:
         """Return the steps of a world that wait to be taken."""
         return self._first + len(self._rows) - self._start[world]
 
-    def take(self, world: int, keep: int = 0) -> Values:
-        """Return and forget the steps of a world, shape (T, ...), but for the last ``keep`` of them."""
+    def take(self, world: int) -> Values:
+        """Return and forget the steps of a world, shape (T, ...)."""
         start = self._start[world] - self._first
-        rows = [self._rows[k] for k in range(start, len(self._rows) - keep)]
+        rows = [self._rows[k] for k in range(start, len(self._rows))]
         steps = {name: np.stack([row[name][world] for row in rows]) for name in (rows[0] if rows else ())}
         self._start[world] += len(rows)
         self._forget()

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +58,7 @@ class RecorderManager(ManagerBase):
         self._chunk = max(1, round(1.0 / env.step_dt))
         if self.active:
             allow_files(len(self._worlds))
+        self._ignored: frozenset[int] = frozenset()
         self.paths: list[Path] = []
         """Episodes written by this manager."""
 
@@ -87,6 +88,15 @@ class RecorderManager(ManagerBase):
         if world in self._writers:
             self._writers[world].shorten(length)
 
+    def ignore(self, worlds: Iterable[int]) -> None:
+        """Record nothing of some worlds until the next call, and drop what they have under way."""
+        self._ignored = frozenset(worlds) & self._place.keys()
+        for world in self._ignored:
+            self._buffer.take(self._place[world])
+            self._buffer.take_once(self._place[world])
+            if world in self._writers:
+                self._writers.pop(world).discard()
+
     def record_pre_step(self) -> None:
         """Open a step: the action is known, nothing has moved yet."""
         if self.active:
@@ -98,6 +108,8 @@ class RecorderManager(ManagerBase):
         if self.active:
             self._record_step(lambda term: term.record_post_step())
             self._buffer.end_step()
+            for world in self._ignored:
+                self._buffer.take(self._place[world])
             for world in self._worlds:
                 if self._buffer.length(self._place[world]) >= self._chunk:
                     self._write(world)
@@ -153,7 +165,7 @@ class RecorderManager(ManagerBase):
         self, env_ids: torch.Tensor, ask: Callable[[RecorderTerm, torch.Tensor], tuple[str | None, Any]]
     ) -> list[int]:
         """Store answers about some worlds, and return those of them that are recorded."""
-        worlds = [world for world in env_ids.tolist() if world in self._place]
+        worlds = [world for world in env_ids.tolist() if world in self._place and world not in self._ignored]
         if worlds:
             ids = torch.tensor(worlds, device=self.device)
             for term in self._terms.values():

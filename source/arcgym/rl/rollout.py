@@ -16,6 +16,7 @@ from typing import Any
 import torch
 from tensordict import TensorDict
 
+from arcgym.rl.expert_policy import ExpertPolicy
 from arcgym.rl.first_episodes import FirstEpisodes
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
@@ -85,7 +86,11 @@ def random_policy(env: RslRlVecEnvWrapper) -> Policy:
     return lambda obs: 2.0 * torch.rand(env.num_envs, env.num_actions, device=env.device) - 1.0
 
 
-UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {"zero": zero_policy, "random": random_policy}
+UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {
+    "zero": zero_policy,
+    "random": random_policy,
+    "expert": ExpertPolicy,
+}
 """Policies that need no checkpoint, by name."""
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import torch
+import warp as wp
 
 from arcgym.managers import ActionTerm, ActionTermCfg
 from arcgym.utils.configclass import configclass
@@ -83,6 +84,10 @@ class VelocityAction(ActionTerm):
         self._processed.copy_(self._rest.expand_as(self._processed))
         self._processed[:, self._axes] = self._raw.clamp(-1.0, 1.0) * self._scale
 
+    def _as_actions(self, values: torch.Tensor) -> torch.Tensor:
+        """Return the raw actions, within [-1, 1], of physical values of every axis, shape (N, D)."""
+        return (values[:, self._axes] / self._scale).clamp(-1.0, 1.0)
+
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Set the actions of the given worlds to zero."""
         fill_worlds(self._raw, env_ids, 0.0)
@@ -105,6 +110,10 @@ class TipVelocityAction(VelocityAction):
     def apply_actions(self) -> None:
         """Command the actuator."""
         self._pull.set_command(self._processed[:, :3], self._processed[:, 3:])
+
+    def commanded_actions(self) -> torch.Tensor:
+        """Return the raw actions of the velocities that the tip is to follow, shape (N, A)."""
+        return self._as_actions(torch.cat([wp.to_torch(self._pull.linear), wp.to_torch(self._pull.angular)], dim=1))
 
 
 class InsertionAction(VelocityAction):
@@ -140,6 +149,12 @@ class InsertionAction(VelocityAction):
         """Command the actuators."""
         self._base_drive.set_command(self._processed[:, 0], self._processed[:, 1])
         self._bending_drive.set_command(self._bending[:, 0], self._bending[:, 1])
+
+    def commanded_actions(self) -> torch.Tensor:
+        """Return the raw actions of the base's commands and of the way left to the bending command, shape (N, A)."""
+        base = torch.stack([wp.to_torch(self._base_drive.velocity), wp.to_torch(self._base_drive.roll_rate)], dim=1)
+        left = wp.to_torch(self._bending_drive.command) - self._asset.data.bending
+        return self._as_actions(torch.cat([base, left / self._env.step_dt], dim=1))
 
 
 @configclass
