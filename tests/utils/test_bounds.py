@@ -106,7 +106,7 @@ def everything() -> dict[str, Any]:
     """Return a task's configurations with all that the command line may switch on, and those of other robots."""
     cfgs = configurations()
     env = cfgs["env"]
-    env.recorders = mdp.TrajectoryRecorderCfg()
+    env.recorders = mdp.TrajectoryRecorderCfg(images=mdp.PostStepImagesRecorderCfg())
     env.curriculum = {"aim": CurriculumTermCfg(func=mdp.move_param, params={"num_steps": 10})}
     env.events.interval = EventTermCfg(func=mdp.perturb_tip, mode="interval", interval_range_s=(1.0, 2.0))
     noises = (ConstantNoiseCfg(), GaussianNoiseCfg(), UniformNoiseCfg())

@@ -29,7 +29,7 @@ class ExpertBase(ABC):
     def act(self) -> None:
         """Look at the scene and set the commands of every world; called once a control step of 0.1 s."""
 
-    def reset(self, env_ids: torch.Tensor) -> None:
+    def reset(self, env_ids: torch.Tensor) -> None:  # noqa: B027 - an expert without memory needs none
         """Forget the past of the worlds ``env_ids``, int64, shape (n,), which start anew; nothing by default."""
 
 

@@ -32,11 +32,15 @@ class ExpertPolicy:
         self._env = env.unwrapped
         self.expert = make_expert(self._env.scene, **settings)
 
+    @torch.inference_mode(False)
+    @torch.no_grad()
     def __call__(self, obs: Any = None) -> torch.Tensor:
         """Return raw actions, shape (N, A), for the scene as it is now."""
         self.expert.act()
         return self._env.action_manager.commanded_actions()
 
+    @torch.inference_mode(False)
+    @torch.no_grad()
     def reset(self, dones: torch.Tensor) -> None:
         """Let the expert forget the past of the worlds that are done, bool or int, shape (N,)."""
         env_ids = dones.nonzero().flatten()

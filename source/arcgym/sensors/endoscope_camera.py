@@ -70,6 +70,7 @@ class EndoscopeCamera(SensorBase):
         images = [(patient.albedo_texture, patient.detail_texture) for patient in patients]
         textures = load_textures(images, self._device)
         size = (self.cfg.width, self.cfg.height)
+        self._visuals = visuals
         self._renderer = SurfaceRenderer(surface, visuals, textures, self._optics(), size, self.cfg.samples)
         self._fine_patient: Patient | None = None
         self._snapshots: dict[tuple[int, int], SurfaceRenderer] = {}
@@ -143,6 +144,15 @@ class EndoscopeCamera(SensorBase):
     def write_texture_offset(self, offset: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
         """Shift the mucosa texture by fractions of its size along u and v, shape (n, 2)."""
         wp.to_torch(self._looks.texture_offset)[slice(None) if env_ids is None else env_ids] = offset
+
+    def another_renderer(self, size: tuple[int, int], samples: int = 1) -> SurfaceRenderer:
+        """Return a renderer of the same surface for pictures of another size (width, height) [px]."""
+        return SurfaceRenderer(self.surface, self._visuals, self._renderer.textures, self._optics(), size, samples)
+
+    @property
+    def looks(self) -> WorldLooks:
+        """What events made different between the worlds' pictures."""
+        return self._looks
 
     def snapshot_view(self, env_id: int = 0, size: int = 512, samples: int = 2) -> tuple[np.ndarray, np.ndarray]:
         """Draw one world large, from the fine surface, for people to look at.

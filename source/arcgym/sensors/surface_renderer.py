@@ -98,7 +98,7 @@ class SurfaceRenderer:
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
-        self._view = _surface_view(surface, visuals, textures)
+        self.view = _surface_view(surface, visuals, textures)
         self._lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
 
     def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
@@ -106,7 +106,7 @@ class SurfaceRenderer:
         wp.launch(
             find_covered,
             self.shape[0],
-            inputs=[self._view, drawn, poses, self.optics.far],
+            inputs=[self.view, drawn, poses, self.optics.far],
             outputs=[self.covered],
             device=self.device,
         )
@@ -114,7 +114,7 @@ class SurfaceRenderer:
             cast_rays,
             self.shape,
             inputs=[
-                self._view,
+                self.view,
                 self._lighting,
                 drawn,
                 poses,

@@ -7,6 +7,7 @@ from arcgym.envs.mdp.actions import *  # noqa: F403
 from arcgym.envs.mdp.costs import *  # noqa: F403
 from arcgym.envs.mdp.curriculums import *  # noqa: F403
 from arcgym.envs.mdp.events import *  # noqa: F403
+from arcgym.envs.mdp.image_recorders import *  # noqa: F403
 from arcgym.envs.mdp.load_metrics import *  # noqa: F403
 from arcgym.envs.mdp.loads import *  # noqa: F403
 from arcgym.envs.mdp.lumen import *  # noqa: F403

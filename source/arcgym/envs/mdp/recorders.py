@@ -9,6 +9,7 @@ from typing import Any
 
 import torch
 
+from arcgym.envs.mdp.image_recorders import PostStepImagesRecorderCfg
 from arcgym.managers import RecorderManagerBaseCfg, RecorderTerm, RecorderTermCfg
 from arcgym.managers.recorder_term import Record
 from arcgym.utils.configclass import configclass
@@ -228,3 +229,5 @@ class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
     poses = RecorderTermCfg(class_type=PostStepPosesRecorder)
     metrics: PostStepMetricsRecorderCfg | None = PostStepMetricsRecorderCfg()
     """Progress, view of the lumen and looping ratio of every step."""
+    images: PostStepImagesRecorderCfg | None = None
+    """Off: ``PostStepImagesRecorderCfg()`` records pictures with depth, normals and labels."""

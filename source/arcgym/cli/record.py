@@ -1,0 +1,105 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Make a data set: episodes of an agent in one or more patients, with pictures and their truth if wanted.
+
+    arcgym record --agent expert --task ARC-Sigmoid-Magnetic --episodes 20 --patients colon_1,colon_2 --images
+
+--agent is expert (sees the centerline), zero, random, or a trained one: policy (PPO) or the key of another (sac, ...),
+whose run --load_run and --checkpoint choose. Each patient has a folder below --out; what is there already is kept, so
+that the same command goes on after an interruption. README.md there tells what the data set is.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.task import load_cfgs, load_run_cfgs
+from arcgym.utils.errors import UsageError
+
+TAKES_OVERRIDES = True
+SCRIPTED = ("expert", "zero", "random")
+"""Agents without a checkpoint."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordArguments(RunArguments):
+    """Arguments of ``arcgym record``."""
+
+    agent: str = argument("expert (default), zero, random, policy, or the key of a trained agent", "expert")
+    episodes: int = argument("episodes of each patient (default: 10)", 10, type=positive)
+    out: str | None = argument("folder of the data set (default: logs/datasets/<task>_<agent>)", None)
+    patients: str | None = argument("colons, separated by commas: colon_1 or stage files (default: the task's)", None)
+    images: bool = argument("record color, depth, normals, labels and the camera's pose", False, group="pictures")
+    size: int = argument("width and height of the pictures [px] (default: 256)", 256, type=positive, group="pictures")
+    samples: int = argument("rays a pixel of the color (default: 2)", 2, type=positive, group="pictures")
+    observations: bool = argument("record what the policy observes too, for imitation", False)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_fields(parser, RecordArguments)
+
+
+def run(namespace: argparse.Namespace) -> int:
+    """Record; return 1 if a patient had to be left out.
+
+    Raises:
+        UsageError: The task, a patient, the agent or an override is wrong.
+    """
+    args = read_fields(RecordArguments, namespace)
+    scripted = args.agent in SCRIPTED
+    key = "rsl_rl_cfg_entry_point" if scripted or args.agent == "policy" else args.agent
+    asked = replace(args, agent=key)
+    env_cfg, agent_cfg, checkpoint = (*load_cfgs(asked), None) if scripted else load_run_cfgs(asked)
+    if args.num_envs is None:
+        env_cfg.scene.num_envs = 1
+    patients = [env_cfg.scene.colon.usd_path] if args.patients is None else args.patients.split(",")
+    stages = tuple(_stage(name) for name in patients)
+    out = Path(args.out or f"logs/datasets/{args.task}_{args.agent}")
+    return _record(args, env_cfg, agent_cfg, checkpoint, stages, out)
+
+
+def _stage(name: str) -> str:
+    """Return the stage file that a patient's name means."""
+    from arcgym.utils.paths import assets_dir, resolve_asset
+    from arcgym.utils.string import did_you_mean
+
+    for path in (name, f"{name}/colon.usda"):
+        if resolve_asset(path).is_file():
+            return path
+    known = sorted(path.parent.name for path in assets_dir().glob("*/colon.usda"))
+    raise UsageError(f"--patients names '{name}', which is no stage file. {did_you_mean(name, known)}")
+
+
+def _record(
+    args: RecordArguments, env_cfg: Any, agent_cfg: Any, checkpoint: Path | None, stages: tuple[str, ...], out: Path
+) -> int:
+    from arcgym.envs import mdp
+    from arcgym.recordings.data_card import write_card
+    from arcgym.recordings.generating import GenerationPlan, generate
+    from arcgym.rl.device import place
+    from arcgym.rl.playing import load_policy
+    from arcgym.rl.preflight import check_environment
+
+    for stage in stages:
+        env_cfg.scene.colon.usd_path = stage
+        check_environment(env_cfg, args.device, [out])
+    images = mdp.PostStepImagesRecorderCfg(width=args.size, height=args.size, samples=args.samples)
+    device = place(env_cfg, agent_cfg, args.device)
+    plan = GenerationPlan(
+        args.task, args.episodes, out, stages, args.agent, images if args.images else None, args.observations
+    )
+    load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint, device)
+    report = generate(plan, env_cfg, agent_cfg, load)
+    print(f"recorded: {report}")
+    for line in report.skipped:
+        print(f"left out: {line}")
+    if out.is_dir():
+        agent = f"the checkpoint {checkpoint.name} of {checkpoint.parent.name}" if checkpoint else args.agent
+        print(f"data card: {write_card(out, agent)}")
+    return 1 if report.skipped else 0
