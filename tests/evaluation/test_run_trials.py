@@ -52,4 +52,4 @@ def test_the_shipped_conditions_are_whole() -> None:
     from arcgym.evaluation.trials import read_conditions
 
     sizes = {name: len(read_conditions(suite.conditions_path).trials) for name, suite in read_suites().items()}
-    assert sizes == {"paper": 30, "five_colons": 50}
+    assert sizes == {"paper": 30, "five_colons": 50, "left_colon": 50, "cecum": 50}

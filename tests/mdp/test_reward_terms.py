@@ -91,3 +91,12 @@ def test_a_task_without_the_setting_is_told_what_to_add(env) -> None:
     with pytest.raises(ValueError, match="needs 'segment', but SimpleNamespace has no such field"):
         mdp.success(env)
     assert mdp.success(env, segment="rectum").tolist() == [0.0, 0.0]
+
+
+def test_the_way_begins_at_the_anus_where_the_episode_does(env) -> None:
+    """From rest through the sigmoid, which ends at 0.5 m: a tip at 0.2 m has two fifths behind it, not a quarter."""
+    env.scope.tip_arc_length[:] = 0.2
+    assert mdp.segment_progress(env).tolist() == pytest.approx([0.25, 0.25])
+    env.cfg.start = "rest"
+    assert mdp.segment_progress(env).tolist() == pytest.approx([0.4, 0.4])
+    assert mdp.segment_progress(env, segment="sigmoid").tolist() == pytest.approx([0.25, 0.25])

@@ -102,7 +102,11 @@ def test_one_call_registers_a_robot_of_ones_own() -> None:
 
     tasks = register_robot("Slow", SlowEnvCfg, segments=("sigmoid", "transverse"))
     try:
-        assert tasks[:2] == ["ARC-Sigmoid-Slow", "ARC-Sigmoid-Slow-Play"] and len(tasks) == 4
+        assert (
+            tasks[:2] == ["ARC-Sigmoid-Slow", "ARC-Sigmoid-Slow-Play"]
+            and "ARC-LeftColon-Slow" in tasks
+            and len(tasks) == 8
+        )
         cfg = load_cfg_from_registry("ARC-Sigmoid-Slow-Play", "env_cfg_entry_point")
         assert (cfg.segment, cfg.decimation, cfg.scene.num_envs) == ("sigmoid", 96, 4)
         agent = load_cfg_from_registry("ARC-Sigmoid-Slow", "rsl_rl_cfg_entry_point")
@@ -170,4 +174,29 @@ def test_unknown_names_are_refused() -> None:
     cfg = ProximalEnvCfg(segment="splenic")
     cfg.lumen = "papper"
     with pytest.raises(ValueError, match="papper.*metric.*paper"):
+        validate(cfg)
+
+
+@pytest.mark.parametrize(
+    ("way", "segment", "seconds"), [("LeftColon", "splenic", 10 + 45 + 16 + 27), ("Cecum", "cecum", 240)]
+)
+@pytest.mark.parametrize("robot", ["Capsule", "Magnetic", "Proximal"])
+def test_journeys_begin_at_rest_in_the_anus(way: str, segment: str, seconds: float, robot: str) -> None:
+    cfg = load_cfg_from_registry(f"ARC-{way}-{robot}", "env_cfg_entry_point")
+    validate(cfg)
+    assert (cfg.segment, cfg.start, cfg.max_episode_length_s) == (segment, "rest", seconds)
+
+
+def test_the_papers_reward_is_the_view_of_the_lumen_alone() -> None:
+    cfg = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
+    apply_overrides({"env": cfg}, ["env.reward=paper"])
+    validate(cfg)
+    cfg.resolve()
+    assert [name for name, term in vars(cfg.rewards).items() if term is not None] == ["lumen"]
+
+
+def test_an_unknown_reward_is_refused() -> None:
+    cfg = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
+    cfg.reward = "papers"
+    with pytest.raises(TypeError, match="reward.*'shaped', 'paper'"):
         validate(cfg)

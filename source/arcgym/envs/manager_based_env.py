@@ -77,6 +77,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         check_render_mode(render_mode, self.metadata["render_modes"])
         cfg = choose_cfg(cfg, env_cfg_entry_point, num_envs=num_envs, device=device, seed=seed)
         validate(cfg)
+        cfg.resolve()
         check_device(cfg.sim.device)
         self.cfg = cfg
         self.render_mode = render_mode

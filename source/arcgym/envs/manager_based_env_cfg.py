@@ -63,3 +63,6 @@ class ManagerBasedEnvCfg:
         if self.viewer.env_id >= self.scene.num_envs:
             text = f"is {self.viewer.env_id}, but scene.num_envs is {self.scene.num_envs}: worlds count from 0."
             raise FieldError(self, "viewer.env_id", text)
+
+    def resolve(self) -> None:
+        """Write what follows from other fields; called once, when an environment is built of the checked fields."""

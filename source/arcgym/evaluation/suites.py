@@ -18,7 +18,7 @@ class Suite:
     """Tasks that are evaluated together."""
 
     segments: tuple[str, ...]
-    """Tasks without their robot: ``Sigmoid`` stands for ``ARC-Sigmoid-<robot>``."""
+    """Tasks without their robot, segments or journeys: ``Sigmoid`` stands for ``ARC-Sigmoid-<robot>``."""
 
     conditions: str
     """Condition file of each of them, without its ending."""

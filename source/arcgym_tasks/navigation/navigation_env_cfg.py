@@ -8,7 +8,7 @@ A robot's configuration adds its endoscope and its actions (``config/<robot>.py`
 
 from __future__ import annotations
 
-from typing import get_args
+from typing import Literal, get_args
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets import ColonCfg, EndoscopeCfg
@@ -213,6 +213,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's. A name and changes to it may
     follow each other: ``env.lumen=metric env.lumen.far=0.2``."""
 
+    reward: Literal["shaped", "paper"] = "shaped"
+    """``shaped``: all terms of ``rewards``. ``paper``: the paper's lumen reward alone, whatever ``rewards`` has. Its
+    magnetic and capsule tasks move forward at a constant speed, ``env.actions.tip.forward_velocity`` [m/s]."""
+
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
 
@@ -252,6 +256,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """
         require(self, "segment", SEGMENTS)
         require(self, "start", get_args(Start))
+        require(self, "reward", ("shaped", "paper"))
         super().validate_config()
         mdp.resolve_lumen(self.lumen)
         if self.sim.solver == "newton":
@@ -267,6 +272,12 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         used = [f"{name}=null" for name, term in terms.items() if term is not None]
         if used:
             raise FieldError(self, "sim.solver", f"is 'newton', which needs {' '.join(used)}; or choose 'two_level'.")
+
+    def resolve(self) -> None:
+        """Leave the paper's reward alone, if it is asked for."""
+        if self.reward == "paper":
+            for name in vars(self.rewards):
+                setattr(self.rewards, name, self.rewards.lumen if name == "lumen" else None)
 
     @property
     def max_episode_length_s(self) -> float:

@@ -1,7 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Registers the tasks of a robot: each segment, with a ``-Play`` variant. Imports neither torch nor Newton."""
+"""Registers the tasks of a robot: each segment and the longer ways, with a ``-Play`` variant.
+
+Imports neither torch nor Newton.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from typing import Any
 from arcgym.utils.registry import register_task
 from arcgym.utils.string import resolve_callable
 from arcgym_tasks.navigation.agents import AGENTS
-from arcgym_tasks.navigation.segments import TIME_LIMIT_S
+from arcgym_tasks.navigation.segments import JOURNEYS, TIME_LIMIT_S
 
 
 @dataclass(frozen=True)
@@ -47,9 +50,10 @@ def register_robot(
     env_cfg: str | Callable[[], Any],
     *,
     segments: Sequence[str] = tuple(TIME_LIMIT_S),
+    journeys: Mapping[str, Mapping[str, Any]] = JOURNEYS,
     agents: Mapping[str, str | Callable[[], Any]] | None = None,
 ) -> list[str]:
-    """Register ``ARC-<Segment>-<Robot>`` and ``ARC-<Segment>-<Robot>-Play`` for every segment.
+    """Register ``ARC-<Segment>-<Robot>`` and ``ARC-<Segment>-<Robot>-Play`` for every segment and every journey.
 
     Segment, time limit and experiment name follow from the names.
 
@@ -58,6 +62,7 @@ def register_robot(
         env_cfg: Subclass of :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg` with the robot and its
             actions, or its name ``"module:Class"``.
         segments: Segments to pass, lower case.
+        journeys: Longer ways by their name in the task, with the fields of the configuration that they set.
         agents: Agent configurations by registry key, added to
             :data:`arcgym_tasks.navigation.agents.AGENTS` or in their place.
 
@@ -68,14 +73,15 @@ def register_robot(
         ValueError: If a task is registered already.
     """
     tasks = []
-    for segment in segments:
-        task = f"ARC-{segment.capitalize()}-{robot}"
+    ways = {**{name.capitalize(): {"segment": name} for name in segments}, **journeys}
+    for name, fields in ways.items():
+        task = f"ARC-{name}-{robot}"
         entries: dict[str, Any] = {
             key: CfgEntry(cfg, (("experiment_name", _experiment(task, key)),))
             for key, cfg in {**AGENTS, **(agents or {})}.items()
         }
         for variant, play in (("", False), ("-Play", True)):
-            entry: Any = CfgEntry(env_cfg, (("segment", segment),), play)
+            entry: Any = CfgEntry(env_cfg, tuple(fields.items()), play)
             register_task(task + variant, env_cfg_entry_point=entry, **entries)
             tasks.append(task + variant)
     return tasks

@@ -1,11 +1,11 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""The segments that have tasks, and their time limits; imports neither torch nor Newton."""
+"""The ways that have tasks, segments and longer ones, and their time limits; imports neither torch nor Newton."""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 Start = Literal["segment", "rest"]
 """Where an episode begins: at the start of its segment, or at rest in the anus."""
@@ -14,6 +14,13 @@ TIME_LIMIT_S: dict[str, float] = {"rectum": 10.0, "sigmoid": 45.0, "descending":
 """Time limit of each segment [s], anus first: three times what a scripted expert needs that advances at 40 mm/s and
 steers by the deformed centerline (2.1 to 3.4, 11 to 15, 4.5 to 5.5 and 3.6 to 9 s). A line here makes a segment's tasks
 for every robot."""
+
+JOURNEYS: dict[str, dict[str, Any]] = {
+    "LeftColon": {"segment": "splenic", "start": "rest"},
+    "Cecum": {"segment": "cecum", "start": "rest", "episode_length_s": 240.0},
+}
+"""Tasks of one continuous insertion from the anus: name in the task, and the fields of its configuration. ``LeftColon``
+ends past the splenic flexure, ``Cecum`` at the end of the colon. A line here makes a task for every robot."""
 
 
 def time_limit_s(segment: str, start: Start = "segment") -> float:

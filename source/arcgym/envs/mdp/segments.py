@@ -26,7 +26,8 @@ def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[torc
 
     Args:
         env: The environment; its scene holds ``colon``.
-        segment: A name of :data:`arcgym.anatomy.segments.SEGMENTS`. None takes the task's, ``env.cfg.segment``.
+        segment: A name of :data:`arcgym.anatomy.segments.SEGMENTS`. None takes the task's, ``env.cfg.segment``, which
+            begins at the anus where the episode does (``env.cfg.start`` is ``rest``).
 
     Raises:
         ValueError: If a patient does not have the segment, with those it has.
@@ -35,7 +36,8 @@ def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[torc
     colon = env.scene["colon"]
     colon.require_segment(name)
     start, end = colon.data.segment_spans[:, SEGMENTS.index(name)].unbind(dim=1)
-    return start, end
+    begins_at_anus = segment is None and getattr(env.cfg, "start", None) == "rest"
+    return torch.zeros_like(start) if begins_at_anus else start, end
 
 
 @expects(segment=SEGMENTS)
