@@ -19,6 +19,7 @@ COMMANDS = {
     "play": ("arcgym.cli.play", "run a trained policy, record it and export it"),
     "evaluate": ("arcgym.cli.evaluate", "evaluate an agent on the trials of a suite"),
     "record": ("arcgym.cli.record", "make a data set of episodes, with pictures if wanted"),
+    "convert": ("arcgym.cli.convert", "turn recordings into LeRobot's or robomimic's layout"),
     "replay": ("arcgym.cli.replay", "make a recorded episode again and compare it bit for bit"),
     "study": ("arcgym.cli.study", "train a grid of algorithms, tasks, robots and seeds"),
     "study report": ("arcgym.cli.study_report", "make table and pictures of a study's folder"),

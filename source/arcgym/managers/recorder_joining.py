@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import h5py
@@ -13,11 +14,17 @@ from arcgym.managers.recorder_files import FORMAT, PARTIAL, episode_paths, open_
 
 
 def export_hdf5(folder: str | Path, path: str | Path) -> int:
-    """Copy the finished episodes in a folder into one file: episode k is the group ``data/demo_<k>``.
+    """Copy the finished episodes in a folder into one file, as :func:`join` does, and return their number."""
+    return join(episode_paths(folder), path)
+
+
+def join(sources: Sequence[Path], path: str | Path, only_successes: bool = False) -> int:
+    """Copy the episodes of several files into one: episode k is the group ``data/demo_<k>``.
 
     Args:
-        folder: Where the episodes are.
+        sources: The files.
         path: File to write; appears when it is complete.
+        only_successes: Whether episodes that did not reach their goal are left out.
 
     Returns:
         Number of episodes.
@@ -28,7 +35,7 @@ def export_hdf5(folder: str | Path, path: str | Path) -> int:
     with h5py.File(partial, "w", libver="latest") as file:
         file.attrs["arcgym_recording"] = FORMAT
         group = file.create_group("data")
-        for one in episode_paths(folder):
+        for one in sources:
             with open_recording(one) as source:
                 for name, settings in source.get("settings", {}).items():
                     if f"settings/{name}" not in file:
@@ -36,6 +43,8 @@ def export_hdf5(folder: str | Path, path: str | Path) -> int:
                 for name, value in source["data"].attrs.items():
                     group.attrs[name] = value
                 for demo in source["data"].values():
+                    if only_successes and not demo.attrs["success"]:
+                        continue
                     source.copy(demo, group, f"demo_{count}")
                     total += int(demo.attrs["num_samples"])
                     count += 1
