@@ -89,6 +89,12 @@ def test_difference_names_the_worlds_and_takes_nan_as_equal():
     assert different(one, other).tolist() == [False, False, True]
 
 
+def test_contacts_that_were_missed_or_found_no_room_are_violations():
+    total = Tally(contact_samples=1, touching_pairs=5)
+    total.add(Tally(contact_samples=1, touching_pairs=4, missed_contacts=1, dropped_contacts=2))
+    assert total.violations(growth_mib=1.0) == ["2 contacts found no room", "1 of 9 pairs that touch were missed"]
+
+
 class LeakySim:
     """Two numbers a world; a reset of any world can also move the last one."""
 

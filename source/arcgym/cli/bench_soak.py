@@ -3,12 +3,14 @@
 """Drive the robots with random, extreme and adversarial actions for a long time and look for what must not happen.
 
 No number may stop being finite, no world may have to be recovered, none may be changed by another world's reset, no
-link may leave the lumen, and memory may not grow. Ends with status 1 if any of it happened. Findings are written as
-JSON lines as they come; ``--resume`` goes on from such a file. Run for example::
+link may leave the lumen, no contact may find no room or be missed (in samples of single worlds, whose links are
+compared with all faces of the wall), and memory may not grow. Ends with status 1 if any of it happened. Findings are
+written as JSON lines as they come; ``--resume`` goes on from such a file. Run for example::
 
     arcgym bench soak --device cuda:0 --minutes 9 --out soak.jsonl --json
     arcgym bench soak --device cuda:0 --minutes 9 --resume soak.jsonl --json
     arcgym bench soak --device cpu --minutes 60
+    arcgym bench soak --device cpu --robots Proximal --num_envs 8 --steps 320 --json env.scene.colon.material=in_situ
 """
 
 from __future__ import annotations

@@ -137,6 +137,14 @@ class Simulation:
         return wp.to_torch(self.scope_readout.penetrated) > 0
 
     @property
+    def dropped_contacts(self) -> torch.Tensor:
+        """Contacts of each world that found no room since the simulation was built, shape (N,), int.
+
+        See :attr:`arcgym.sim.ContactCfg.capacity`.
+        """
+        return wp.to_torch(self.contact.records.dropped)
+
+    @property
     def snapshots(self) -> SnapshotSet | None:
         """The loaded snapshots."""
         return self._library.snapshots

@@ -7,44 +7,69 @@ P pairs of a segment and a triangle.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import warp as wp
 
 from arcgym.benchmarks.lumen import lumen_triangles
 
 
-def missed_contacts(sim: Any) -> np.ndarray:
-    """Return pairs of link and face that touch without a record, in the present state of the first world, (M, 2).
+@dataclass(frozen=True)
+class ContactSample:
+    """Pairs of a link and a face that touch in a world, found by looking at all pairs; K of them."""
+
+    touching: np.ndarray
+    """Link and face of each pair, shape (K, 2)."""
+    missed: np.ndarray
+    """Whether the simulation has no record of it, bool, shape (K,)."""
+
+
+def sample_contacts(sim: Any, worlds: Iterable[int] = (0,)) -> list[ContactSample]:
+    """Compare the contacts of some worlds, in their present state, with those of all pairs of a link and a face.
 
     A link touches a face if its surface is nearer than the wall's skin, with the nearest point of its axis on the
     lumen's side of the face. Links whose center is outside the anus are left out: the wall has no outer surface.
 
     Args:
-        sim: The simulation; its contacts are detected anew.
+        sim: The simulation; its contacts are detected anew, which does not change what follows.
+        worlds: The worlds.
     """
-    contact = sim.contact
-    contact.detect(sim.nodal_pos, sim.state.body_q)
-    records = contact.records
-    count = int(records.start.numpy()[0, -1])
-    corners = np.sort(records.corners.numpy()[:count], axis=1)
-    known = {(int(link), *map(int, face)) for link, face in zip(records.link.numpy()[:count], corners, strict=True)}
+    sim.contact.detect(sim.nodal_pos, sim.state.body_q)
     faces = lumen_triangles(sim.colon.wall)
-    pairs = [pair for pair in touching(sim, faces) if (pair[0], *sorted(map(int, faces[pair[1]]))) not in known]
-    return np.array(pairs, dtype=int).reshape(-1, 2)
+    samples = []
+    for world in worlds:
+        known = recorded(sim, world)
+        pairs = touching(sim, faces, world)
+        missed = [(link, *sorted(map(int, faces[face]))) not in known for link, face in pairs]
+        samples.append(ContactSample(np.array(pairs, dtype=int).reshape(-1, 2), np.array(missed, dtype=bool)))
+    return samples
 
 
-def touching(sim: Any, faces: np.ndarray) -> list[tuple[int, int]]:
-    """Return (link, face) of all that touch in the first world.
+def recorded(sim: Any, world: int) -> set[tuple[int, ...]]:
+    """Return link and sorted vertices of each contact that the simulation has recorded in a world."""
+    records = sim.contact.records
+    first, count = world * records.capacity, int(wp.to_torch(records.start)[world, -1])
+    link, corners = (
+        wp.to_torch(array)[first : first + count].cpu().numpy() for array in (records.link, records.corners)
+    )
+    return {(int(a), *map(int, face)) for a, face in zip(link, np.sort(corners, axis=1), strict=True)}
+
+
+def touching(sim: Any, faces: np.ndarray, world: int) -> list[tuple[int, int]]:
+    """Return (link, face) of all that touch in a world.
 
     Args:
         sim: The simulation.
         faces: Faces of the lumen, normals into the wall, shape (F, 3).
+        world: The world.
     """
-    start, end = link_axes(sim)
+    start, end = link_axes(sim, world)
     reach = sim.endoscope.stage.link_radius + sim.contact.law.wall_radius
-    inside = np.flatnonzero(sim.contact.ring_distance.numpy()[0] < 1.0e9)
-    corners = sim.colon.data.nodal_pos_w[0].cpu().numpy().astype(float)[faces]
+    inside = np.flatnonzero(wp.to_torch(sim.contact.ring_distance)[world].cpu().numpy() < 1.0e9)
+    corners = sim.colon.data.nodal_pos_w[world].cpu().numpy().astype(float)[faces]
     middle = corners.mean(axis=1)
     size = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
     found = []
@@ -56,14 +81,15 @@ def touching(sim: Any, faces: np.ndarray) -> list[tuple[int, int]]:
     return found
 
 
-def link_axes(sim: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return both ends of the links' axes in the first world [m], each of shape (L, 3)."""
+def link_axes(sim: Any, world: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return both ends of the links' axes in a world [m], each of shape (L, 3)."""
     from arcgym.utils.math import quat_apply
 
     data = sim.endoscope.data
     half = data.body_pos_w.new_zeros(sim.endoscope.num_bodies, 3)
     half[:, 2] = half.new_tensor(sim.endoscope.half_length)
-    center, axis = (t.cpu().numpy().astype(float) for t in (data.body_pos_w[0], quat_apply(data.body_quat_w[0], half)))
+    turned = quat_apply(data.body_quat_w[world], half)
+    center, axis = (t.cpu().numpy().astype(float) for t in (data.body_pos_w[world], turned))
     return center - axis, center + axis
 
 

@@ -9,6 +9,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+SUMS = (
+    *("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds", "pierced"),
+    *("outside_links", "examined_links", "dropped_contacts", "missed_contacts", "touching_pairs", "contact_samples"),
+)
+"""Findings that add up over the parts of a soak."""
+
 
 @dataclass
 class Tally:
@@ -30,6 +36,14 @@ class Tally:
     """Links found outside the lumen."""
     examined_links: int = 0
     """Links examined for that."""
+    dropped_contacts: int = 0
+    """Contacts that found no room."""
+    missed_contacts: int = 0
+    """Pairs of a link and a face of the wall that touched without a contact, in samples of single worlds."""
+    touching_pairs: int = 0
+    """Pairs that touched in these samples, found by looking at all pairs."""
+    contact_samples: int = 0
+    """Number of these samples."""
     not_finite: dict[str, int] = field(default_factory=dict)
     """Worlds with a number that is not finite, by observation, reward, state or force."""
     largest: dict[str, dict[str, float]] = field(default_factory=dict)
@@ -43,10 +57,8 @@ class Tally:
 
     def add(self, other: Tally) -> None:
         """Take in what a later part of the soak found."""
-        for name in ("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds", "pierced"):
+        for name in SUMS:
             setattr(self, name, getattr(self, name) + getattr(other, name))
-        self.outside_links += other.outside_links
-        self.examined_links += other.examined_links
         for name, count in other.not_finite.items():
             self.not_finite[name] = self.not_finite.get(name, 0) + count
         for quantity, by_kind in other.largest.items():
@@ -69,6 +81,8 @@ class Tally:
             "worlds had to be recovered": self.recovered_worlds,
             "worlds were changed by another world's reset": self.disturbed_worlds,
             f"of {self.examined_links} links were outside the lumen": self.outside_links,
+            "contacts found no room": self.dropped_contacts,
+            f"of {self.touching_pairs} pairs that touch were missed": self.missed_contacts,
         }
         found += [f"{count} {what}" for what, count in counts.items() if count]
         growth = {"host": self.host_growth_mib, "device": self.device_growth_mib}

@@ -111,6 +111,7 @@ def progress(task: str, total: Tally, part: Tally, memory: tuple[float, float]) 
     print(
         f"{task:24s}{total.env_steps:>10d} steps {part.env_steps / part.seconds:>8.1f}/s  {total.resets} resets  "
         f"{total.recovered_worlds} recovered  {total.pierced} pierced  {total.outside_links} links outside  "
+        f"{total.missed_contacts} missed and {total.dropped_contacts} dropped contacts  "
         f"{sum(total.not_finite.values())} not finite  up to {forces:.1f} N  "
         f"host {memory[0]:.0f} MiB  device {memory[1]:.0f} MiB",
         flush=True,

@@ -7,7 +7,9 @@ from __future__ import annotations
 from typing import Any
 
 import torch
+import warp as wp
 
+from arcgym.benchmarks.fidelity.brute_force import ContactSample, sample_contacts
 from arcgym.benchmarks.lumen import LumenCheck
 from arcgym.benchmarks.soak.adversaries import KINDS
 from arcgym.benchmarks.soak.isolation import ResetGuard, leaves
@@ -15,6 +17,8 @@ from arcgym.benchmarks.soak.journal import Tally
 
 LUMEN_EVERY = 10
 """Control steps between two searches for links outside the lumen."""
+CONTACTS_EVERY = 10
+"""Control steps between two comparisons of contacts with all pairs of a link and a face."""
 FORCES = ("link_force_w", "link_force_peak", "window_force_w", "window_force_peak", "base_force", "tip_pull_force_w")
 """Forces in the endoscope's data."""
 LOADS = ("wall_strain_peak", "anchor_tension_peak")
@@ -37,6 +41,7 @@ class Watch:
         self._lumen = LumenCheck(env.sim)
         self._step = 0
         self._failures_read = env.world_failures
+        self._dropped_read = int(env.sim.dropped_contacts.sum())
         self._clear()
 
     def _clear(self) -> None:
@@ -47,6 +52,7 @@ class Watch:
         self._not_finite: dict[str, torch.Tensor] = {}
         self._largest: dict[str, torch.Tensor] = {}
         self._outside, self._examined, self._pierced = zero(), zero(), zero()
+        self._samples = list[ContactSample]()
         never = torch.full((self._env.num_envs,), -1, dtype=torch.long, device=self._env.device)
         self._last = {what: never.clone() for what in ("recovered", "outside")}
         self.guard.resets, self.guard.disturbed = zero(), zero()
@@ -64,6 +70,13 @@ class Watch:
             self._last["outside"][outside.any(dim=1)] = self._step
             self._outside += outside.sum()
             self._examined += examined.sum()
+        if self._step % CONTACTS_EVERY == 0:
+            self._samples += sample_contacts(self._env.sim, self._worlds_to_sample())
+
+    def _worlds_to_sample(self) -> set[int]:
+        """Return the world with the most contacts, and one after the other of all."""
+        counts = wp.to_torch(self._env.sim.contact.records.start)[:, -1]
+        return {int(counts.argmax()), self._step // CONTACTS_EVERY % self._env.num_envs}
 
     def _count_not_finite(self, obs: Any, reward: torch.Tensor, extras: dict[str, Any]) -> None:
         data, colon = self._env.scene["endoscope"].data, self._env.scene["colon"].data
@@ -97,6 +110,7 @@ class Watch:
             seconds: Time that the steps took [s].
         """
         failures = self._env.world_failures
+        dropped = int(self._env.sim.dropped_contacts.sum())
         tally = Tally(
             env_steps=(self._step - self._since) * self._env.num_envs,
             seconds=seconds,
@@ -106,6 +120,10 @@ class Watch:
             pierced=int(self._pierced),
             outside_links=int(self._outside),
             examined_links=int(self._examined),
+            dropped_contacts=dropped - self._dropped_read,
+            missed_contacts=sum(int(sample.missed.sum()) for sample in self._samples),
+            touching_pairs=sum(len(sample.missed) for sample in self._samples),
+            contact_samples=len(self._samples),
             not_finite={name: int(count) for name, count in self._not_finite.items() if int(count)},
             largest={
                 name: dict(zip(KINDS[: self._env.num_envs], values.tolist(), strict=False))
@@ -113,7 +131,7 @@ class Watch:
             },
         )
         events = self._events()
-        self._failures_read = failures
+        self._failures_read, self._dropped_read = failures, dropped
         self._clear()
         return tally, events
 

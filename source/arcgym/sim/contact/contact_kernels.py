@@ -36,21 +36,21 @@ class ContactRecords:
 
     capacity: int  # slots of a world, S
     start: wp.array2d[int]  # first slot of each link among its world's, and of none after the last, shape (W, L + 1)
-    link: wp.array[int]  # link of each slot, -1 where it is free, shape (W*S,)
-    face: wp.array[int]  # shape (W*S,)
+    link: wp.array[int]  # link of each slot, shape (W*S,)
+    face: wp.array[int]  # in ascending order for each link, shape (W*S,)
+    ring: wp.array[int]  # lowest ring of the face's vertices
     corners: wp.array[wp.vec3i]  # the face's three wall vertices
     bary: wp.array[wp.vec3]
     distance: wp.array[float]  # of the link's axis from the face [m]
     weight: wp.array[float]  # share of the contact stiffness
-    direction: wp.array[wp.vec3]  # unit vector there from the link's axis
-    normal: wp.array[wp.vec3]  # outward normal of the wall there at detection
+    normal: wp.array[wp.vec3]  # outward normal of the wall there at detection, or direction from a link clear of it
     slide: wp.array[wp.vec3]  # elastic displacement of the link along the wall, which friction bounds [m]
     owed: wp.array[wp.vec3]  # part of the force on the wall that is still owed from earlier steps [N]
     vertex_head: wp.array2d[int]  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
     vertex_next: wp.array[int]  # shape (3*W*S,)
     ring_head: wp.array2d[int]  # first record whose lowest ring is this one, shape (R, W)
     ring_next: wp.array[int]  # shape (W*S,)
-    dropped: wp.array[int]  # contacts that found no slot since the last reset, shape (W,)
+    dropped: wp.array[int]  # contacts that found no slot since the start, shape (W,)
 
 
 @wp.struct

@@ -9,7 +9,7 @@ W worlds, L links a world, S contact slots a world, V wall vertices.
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactRecords, LinkShapes
-from arcgym.sim.contact.contact_search_kernels import FAR, Candidates, LumenSurface
+from arcgym.sim.contact.contact_search_kernels import FAR, Candidates, LumenSurface, sum_before
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -23,19 +23,15 @@ EDGE_WEIGHT = wp.constant(0.45)
 
 @wp.kernel
 def allot_slots(candidates: Candidates, records: ContactRecords):
-    """Give every link as many slots as it has candidates. Launch (W,)."""
-    w = wp.tid()
-    links = candidates.count.shape[1]
-    slot = int(0)
-    dropped = int(0)
-    for link in range(links):
-        records.start[w, link] = slot
-        wanted = candidates.count[w, link]
-        given = wp.min(wanted, records.capacity - slot)
-        dropped += wanted - given
-        slot += given
-    records.start[w, links] = slot
-    records.dropped[w] = records.dropped[w] + dropped
+    """Give every link as many slots as it has candidates, link after link. Launch (W, L)."""
+    w, link = wp.tid()
+    before = sum_before(candidates.count, w, link)
+    records.start[w, link] = wp.min(before, records.capacity)
+    if link == candidates.count.shape[1] - 1:
+        wanted = before + candidates.count[w, link]
+        given = wp.min(wanted, records.capacity)
+        records.start[w, link + 1] = given
+        records.dropped[w] = records.dropped[w] + wanted - given
 
 
 @wp.func
@@ -116,41 +112,47 @@ class PastContacts:
 
 @wp.func
 def past_slide(past: PastContacts, face: int, link: int, w: int, capacity: int) -> wp.vec3:
-    """Return the displacement that friction held between a link and a face, zero where they did not touch [m]."""
-    for k in range(past.start[w, link], past.start[w, link + 1]):
-        if past.face[w * capacity + k] == face:
-            return past.slide[w * capacity + k]
+    """Return the displacement that friction held between a link and a face, zero where they did not touch [m].
+
+    The faces of a link are in ascending order.
+    """
+    low = past.start[w, link]
+    high = past.start[w, link + 1]
+    while low < high:
+        middle = (low + high) // 2
+        if past.face[w * capacity + middle] < face:
+            low = middle + 1
+        else:
+            high = middle
+    if low < past.start[w, link + 1] and past.face[w * capacity + low] == face:
+        return past.slide[w * capacity + low]
     return wp.vec3(0.0)
 
 
 @wp.kernel
-def fill_slots(surface: LumenSurface, candidates: Candidates, past: PastContacts, records: ContactRecords):
-    """Copy the candidates into the slots of their links. Launch (W, L + 1); the last frees what is left over.
+def fill_slots(surface: LumenSurface, candidates: Candidates, stride: int, records: ContactRecords):
+    """Copy the candidates into the slots of their links. Launch (W, ``stride``).
 
     Args:
         surface: Inner faces of one world.
         candidates: Faces near each link.
-        past: Contacts of the last step, from which friction goes on.
-        records: Contacts; ``link``, ``face``, ``distance`` and ``slide`` are written.
+        stride: Threads a world, each of which takes every ``stride``-th pair.
+        records: Contacts; ``link``, ``face`` and ``distance`` are written.
     """
-    w, link = wp.tid()
-    first = w * records.capacity
-    if link == candidates.count.shape[1]:
-        for k in range(records.start[w, link], records.capacity):
-            records.link[first + k] = -1
-        return
-    slot = first + records.start[w, link]
-    end = first + records.start[w, link + 1]
-    for m in range(candidates.patches[w, link] * candidates.patch_faces):
-        d = candidates.distance[w, link, m]
-        if d < FAR and slot < end:
-            patch = m // candidates.patch_faces
-            face = surface.patch_start[candidates.patch[w, link, patch] // 2] + m - patch * candidates.patch_faces
-            records.link[slot] = link
-            records.face[slot] = face
-            records.distance[slot] = d
-            records.slide[slot] = past_slide(past, face, link, w, records.capacity)
-            slot += 1
+    w, thread = wp.tid()
+    k = int(thread)
+    while k < candidates.start[w, candidates.count.shape[1]]:
+        link = candidates.link[w, k]
+        slot = records.start[w, link] + candidates.faces[w, k]
+        for m in range(candidates.patch_faces):
+            d = candidates.distance[w, k, m]
+            if d < FAR and slot < records.start[w, link + 1]:
+                at = w * records.capacity + slot
+                records.link[at] = link
+                records.face[at] = surface.patch_start[candidates.patch[w, k] // 2] + m
+                records.distance[at] = d
+                slot += 1
+        k += stride
 
 
 @wp.kernel
@@ -159,61 +161,83 @@ def locate_contacts(
     body_q: wp.array[wp.transform],
     links: LinkShapes,
     surface: LumenSurface,
+    nearest: wp.array2d[float],
+    past: PastContacts,
     records: ContactRecords,
 ):
-    """Find where every recorded face comes closest to its link. Launch (W, S).
+    """Find point, weight and normal of each record, and what friction holds there. Launch (W, S).
+
+    A link whose axis is clear of the wall has not gone through and will not in this step. Its contacts push along the
+    directions to them, so that the far side of a fold, whose normal points away from the link, pushes it back, too.
 
     Args:
         x: Wall positions [m], shape (V, W).
         body_q: Link poses, shape (W*L,).
         links: Capsules of one world.
         surface: Inner faces of one world.
-        records: Contacts; ``corners``, ``bary``, ``weight``, ``normal`` and ``direction`` are written.
+        nearest: Distance of each link's axis from the wall [m], shape (W, L).
+        past: Contacts of the last step, from which friction goes on.
+        records: Contacts; all but ``start``, ``link``, ``face`` and ``distance`` is written.
+            The lists by vertex, emptied before, get entries in any order.
     """
     w, k = wp.tid()
     slot = w * records.capacity + k
-    link = records.link[slot]
-    if link < 0:
+    count = links.radius.shape[0]
+    if k >= records.start[w, count]:
         return
-    pose = body_q[w * links.radius.shape[0] + link]
+    link = records.link[slot]
+    pose = body_q[w * count + link]
     center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     face = records.face[slot]
     point = closest_point(surface, face, x, w, center, axis, records.distance[slot])
     u = point.bary
-    records.corners[slot] = face_corners(surface, face)
+    corners = face_corners(surface, face)
+    records.corners[slot] = corners
+    for c in range(3):
+        records.vertex_next[3 * slot + c] = wp.atomic_exch(records.vertex_head, corners[c], w, 3 * slot + c)
+    records.ring[slot] = surface.ring[face]
     records.bary[slot] = u
     records.weight[slot] = wp.pow(EDGE_WEIGHT, edge_proximity(u[0]) + edge_proximity(u[1]) + edge_proximity(u[2]))
     records.normal[slot] = point.normal
-    records.direction[slot] = point.direction
+    if nearest[w, link] > CLEARANCE * links.radius[link]:
+        records.normal[slot] = point.direction
+    records.slide[slot] = past_slide(past, face, link, w, records.capacity)
 
 
 @wp.kernel
-def use_directions_as_normals(links: LinkShapes, records: ContactRecords):
-    """Replace the normals of a link that is clear of the wall by the directions to the contacts. Launch (W, L).
+def sort_vertex_lists(records: ContactRecords):
+    """Put the entries of each vertex's list in ascending order. Launch (V, W).
 
-    A link whose axis is clear of the wall has not gone through and will not in this step. The far side of a fold, whose
-    normal points away from the link, pushes it back then, too.
+    Threads append entries as they come. Sorted, every sum over contacts is the same on CPU and GPU, and in every run.
     """
-    w, link = wp.tid()
-    first = w * records.capacity
-    nearest = float(FAR)
-    for k in range(records.start[w, link], records.start[w, link + 1]):
-        nearest = wp.min(nearest, records.distance[first + k])
-    if nearest > CLEARANCE * links.radius[link]:
-        for k in range(records.start[w, link], records.start[w, link + 1]):
-            records.normal[first + k] = records.direction[first + k]
+    v, w = wp.tid()
+    entry = records.vertex_head[v, w]
+    if entry < 0:
+        return
+    head = int(-1)
+    while entry >= 0:
+        rest = records.vertex_next[entry]
+        if head < 0 or entry < head:
+            records.vertex_next[entry] = head
+            head = entry
+        else:
+            at = head
+            while records.vertex_next[at] >= 0 and records.vertex_next[at] < entry:
+                at = records.vertex_next[at]
+            records.vertex_next[entry] = records.vertex_next[at]
+            records.vertex_next[at] = entry
+        entry = rest
+    records.vertex_head[v, w] = head
 
 
 @wp.kernel
-def build_contact_lists(vertex_ring: wp.array[int], parts: int, records: ContactRecords):
-    """Link each world's records into lists by vertex and by ring, in ascending order. Launch (W, ``parts``).
+def list_rings(parts: int, records: ContactRecords):
+    """Link each world's records into lists by ring, in ascending order. Launch (W, ``parts``).
 
-    Each thread goes through all records of its world, and sees to the lists of every ``parts``-th vertex and ring. That
-    keeps the order, and with it every sum over contacts, the same on CPU and GPU.
+    Each thread goes through all records of its world, and sees to the list of every ``parts``-th ring.
 
     Args:
-        vertex_ring: Ring of each wall vertex, shape (V,).
         parts: Threads a world.
         records: Contacts; the lists, emptied before, are written.
     """
@@ -222,15 +246,7 @@ def build_contact_lists(vertex_ring: wp.array[int], parts: int, records: Contact
     count = records.start[w, records.start.shape[1] - 1]
     for back in range(count):
         slot = first + count - 1 - back
-        face = records.corners[slot]
-        lowest = records.ring_head.shape[0]
-        for k in range(3):
-            v = face[k]
-            lowest = wp.min(lowest, vertex_ring[v])
-            if v % parts == part:
-                entry = 3 * slot + k
-                records.vertex_next[entry] = records.vertex_head[v, w]
-                records.vertex_head[v, w] = entry
-        if lowest % parts == part:
-            records.ring_next[slot] = records.ring_head[lowest, w]
-            records.ring_head[lowest, w] = slot
+        ring = records.ring[slot]
+        if ring % parts == part:
+            records.ring_next[slot] = records.ring_head[ring, w]
+            records.ring_head[ring, w] = slot

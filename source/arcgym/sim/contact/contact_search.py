@@ -8,7 +8,7 @@ import numpy as np
 import torch
 import warp as wp
 
-from arcgym.sim.contact import contact_record_kernels
+from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
@@ -16,8 +16,10 @@ from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
 
 FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
-GPU_LIST_PARTS = 12
-"""Threads a world that list the contacts by vertex on a GPU, where a list waits for memory at every entry."""
+GPU_LIST_PARTS = 32
+"""Threads a world that list the contacts by ring on a GPU, where a list waits for memory at every entry."""
+PAIR_THREADS = 256
+"""Threads a world that go through the pairs of a link and a patch near it."""
 MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
@@ -62,19 +64,18 @@ class ContactSearch:
         self.law = self._law(cfg)
         self.law.wall_radius += surface_offset
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
-        self.vertex_ring = wp.array(vertex_ring, dtype=int, device=device)
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         self.bounds = kernels.Bounds()
         self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
         self.bounds.patch = wp.zeros((len(topology.patch_start) - 1, num_envs), dtype=wp.vec4, device=device)
-        self.candidates = self._candidates(cfg.patch_capacity)
+        self.candidates = self._candidates(cfg.patch_capacity * (self.link_count + FURTHER_LINKS))
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
         self.records = self._records(cfg.capacity * (self.link_count + FURTHER_LINKS))
         self.list_parts = 1 if device == "cpu" else GPU_LIST_PARTS
-        self.past = contact_record_kernels.PastContacts()
+        self.past = record_kernels.PastContacts()
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
 
@@ -82,6 +83,8 @@ class ContactSearch:
         surface = kernels.LumenSurface()
         for name in ("rings", "faces", "neighbors", "patch_start", "ring_patch"):
             setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
+        ring = np.repeat(np.arange(self.ring_count), np.diff(topology.ring_start))
+        surface.ring = wp.array(ring, dtype=int, device=self.device)
         surface.reach = reach
         return surface
 
@@ -92,14 +95,18 @@ class ContactSearch:
             setattr(law, name, getattr(cfg, name))
         return law
 
-    def _candidates(self, patches: int) -> kernels.Candidates:
-        shape = (self.num_envs, self.link_count)
+    def _candidates(self, capacity: int) -> kernels.Candidates:
+        worlds, links = self.num_envs, self.link_count
         candidates = kernels.Candidates()
-        candidates.patch_faces = PATCH_FACES
-        candidates.patch = wp.zeros((*shape, patches), dtype=int, device=self.device)
-        candidates.patches = wp.zeros(shape, dtype=int, device=self.device)
-        candidates.distance = wp.zeros((*shape, patches * PATCH_FACES), dtype=float, device=self.device)
-        candidates.count = wp.zeros(shape, dtype=int, device=self.device)
+        candidates.capacity, candidates.patch_faces = capacity, PATCH_FACES
+        candidates.rings = wp.zeros((worlds, links), dtype=wp.vec2i, device=self.device)
+        candidates.start = wp.zeros((worlds, links + 1), dtype=int, device=self.device)
+        candidates.distance = wp.zeros((worlds, capacity, PATCH_FACES), dtype=float, device=self.device)
+        candidates.nearest = wp.zeros((worlds, links), dtype=float, device=self.device)
+        for name in ("patches", "count"):
+            setattr(candidates, name, wp.zeros((worlds, links), dtype=int, device=self.device))
+        for name in ("link", "patch", "faces"):
+            setattr(candidates, name, wp.zeros((worlds, capacity), dtype=int, device=self.device))
         return candidates
 
     def _records(self, capacity: int) -> ContactRecords:
@@ -108,12 +115,12 @@ class ContactSearch:
         records.capacity = capacity
         records.start = wp.zeros((self.num_envs, self.link_count + 1), dtype=int, device=self.device)
         records.dropped = wp.zeros(self.num_envs, dtype=int, device=self.device)
-        records.link = wp.full(slots, -1, dtype=int, device=self.device)
-        records.face = wp.zeros(slots, dtype=int, device=self.device)
+        for name in ("link", "face", "ring"):
+            setattr(records, name, wp.zeros(slots, dtype=int, device=self.device))
         records.corners = wp.zeros(slots, dtype=wp.vec3i, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(slots, dtype=float, device=self.device))
-        for name in ("bary", "direction", "normal", "slide", "owed"):
+        for name in ("bary", "normal", "slide", "owed"):
             setattr(records, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
         records.vertex_next = wp.full(3 * slots, -1, dtype=int, device=self.device)
@@ -165,80 +172,41 @@ class ContactSearch:
         """
         self.update_centers(x)
         self.track(body_q)
-        self._select(x, body_q)
-        self._locate(x, body_q)
-        self._list()
+        self._find(x, body_q)
+        self._record(x, body_q)
 
-    def _select(self, x: wp.array, body_q: wp.array) -> None:
-        """Record the faces near each link, and what friction held where it touched the same face before."""
-        for name in ("start", "face", "slide"):
-            wp.copy(getattr(self.past, name), getattr(self.records, name))
-        worlds, links = self.num_envs, self.link_count
-        wp.launch(
-            kernels.bound_faces,
-            (self.ring_count, worlds),
-            inputs=[x, self.surface],
-            outputs=[self.bounds],
-            device=self.device,
-        )
-        links_of = (self.links, self.surface)
-        wp.launch(
-            kernels.find_patches,
-            (worlds, links),
-            inputs=[body_q, *links_of, self.bounds, self.law, self.ring, self.ring_distance],
-            outputs=[self.candidates],
-            device=self.device,
-        )
-        wp.launch(
-            kernels.face_distances,
-            self.candidates.distance.shape,
-            inputs=[x, body_q, *links_of, self.law],
-            outputs=[self.candidates],
-            device=self.device,
-        )
+    def _find(self, x: wp.array, body_q: wp.array) -> None:
+        """Find the patches near each link, and the distances of their faces."""
+        links, stride = (self.num_envs, self.link_count), self._stride
+        of_links = [body_q, self.links, self.surface, self.bounds, self.law]
+        self._launch(kernels.bound_faces, (self.ring_count, self.num_envs), [x, self.surface], [self.bounds])
+        self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
-        wp.launch(kernels.count_candidates, (worlds, links), inputs=[], outputs=outputs, device=self.device)
-        wp.launch(
-            contact_record_kernels.allot_slots,
-            worlds,
-            inputs=[self.candidates],
-            outputs=[self.records],
-            device=self.device,
-        )
-        wp.launch(
-            contact_record_kernels.fill_slots,
-            (worlds, links + 1),
-            inputs=[self.surface, self.candidates, self.past],
-            outputs=[self.records],
-            device=self.device,
-        )
+        self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
+        inputs = [x, body_q, self.links, self.surface, self.law, stride]
+        self._launch(kernels.face_distances, (self.num_envs, stride), inputs, [self.candidates])
+        self._launch(kernels.count_candidates, links, [], [self.candidates])
 
-    def _locate(self, x: wp.array, body_q: wp.array) -> None:
-        """Find point and normal of each record."""
-        links = (self.num_envs, self.link_count)
-        wp.launch(
-            contact_record_kernels.locate_contacts,
-            (self.num_envs, self.records.capacity),
-            inputs=[x, body_q, self.links, self.surface],
-            outputs=[self.records],
-            device=self.device,
-        )
-        wp.launch(
-            contact_record_kernels.use_directions_as_normals,
-            links,
-            inputs=[self.links],
-            outputs=[self.records],
-            device=self.device,
-        )
+    def _record(self, x: wp.array, body_q: wp.array) -> None:
+        """Record the faces near each link, and what friction held where it touched the same face before."""
+        records, stride = self.records, self._stride
+        for name in ("start", "face", "slide"):
+            wp.copy(getattr(self.past, name), getattr(records, name))
+        records.vertex_head.fill_(-1)
+        records.ring_head.fill_(-1)
+        links, slots = (self.num_envs, self.link_count), (self.num_envs, records.capacity)
+        self._launch(record_kernels.allot_slots, links, [self.candidates], [records])
+        inputs = [self.surface, self.candidates, stride]
+        self._launch(record_kernels.fill_slots, (self.num_envs, stride), inputs, [records])
+        inputs = [x, body_q, self.links, self.surface, self.candidates.nearest, self.past]
+        self._launch(record_kernels.locate_contacts, slots, inputs, [records])
+        self._launch(record_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
+        self._launch(record_kernels.list_rings, (self.num_envs, self.list_parts), [self.list_parts], [records])
 
-    def _list(self) -> None:
-        """List the records of each vertex and of each ring."""
-        self.records.vertex_head.fill_(-1)
-        self.records.ring_head.fill_(-1)
-        wp.launch(
-            contact_record_kernels.build_contact_lists,
-            (self.num_envs, self.list_parts),
-            inputs=[self.vertex_ring, self.list_parts],
-            outputs=[self.records],
-            device=self.device,
-        )
+    @property
+    def _stride(self) -> int:
+        """Threads a world that go through its pairs."""
+        return min(PAIR_THREADS, self.candidates.capacity)
+
+    def _launch(self, kernel: wp.Kernel, shape: tuple[int, int], inputs: list[object], outputs: list[object]) -> None:
+        wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device)

@@ -3,14 +3,14 @@
 # mypy: ignore-errors
 """Contact search between capsule links and the inner wall, by distance: rings, then patches, then faces.
 
-W worlds, L links a world, R rings (centreline bins), P patches of faces, C candidate faces a link, S contact slots a
-world, V wall vertices.
+W worlds, L links a world, R rings (centreline bins), P patches of faces, Q pairs of a link and a patch a world, F faces
+a patch, V wall vertices.
 """
 
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactLaw, LinkShapes
-from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle
+from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
@@ -22,6 +22,7 @@ class LumenSurface:
 
     rings: wp.array2d[int]  # inner vertices of each ring, padded with the first, shape (R, S)
     faces: wp.array2d[int]  # shape (F, 3)
+    ring: wp.array[int]  # lowest ring of each face's vertices, shape (F,)
     neighbors: wp.array2d[int]  # face across the edge opposite to each corner or -1, shape (F, 3)
     patch_start: wp.array[int]  # first face of each patch, shape (P + 1,)
     ring_patch: wp.array[int]  # first patch of each ring, shape (R + 1,)
@@ -38,13 +39,19 @@ class Bounds:
 
 @wp.struct
 class Candidates:
-    """Patches near each link, up to Q of them, and the distances of their faces, up to F each."""
+    """Pairs of a link and a patch near it, by link, up to Q a world, and the distances of the patches' faces."""
 
-    patch: wp.array3d[int]  # twice the patch, and 1 more where its faces count from either side, shape (W, L, Q)
-    patches: wp.array2d[int]  # number of them, also beyond Q, shape (W, L)
-    distance: wp.array3d[float]  # of each patch's faces from the link's axis, FAR for none [m], shape (W, L, Q*F)
-    count: wp.array2d[int]  # faces that are near, shape (W, L)
-    patch_faces: int  # F
+    capacity: int  # pairs of a world, Q
+    patch_faces: int  # faces of a patch, F
+    rings: wp.array2d[wp.vec2i]  # first ring that comes near each link, and the one after the last, shape (W, L)
+    patches: wp.array2d[int]  # patches near each link, also those that found no room, shape (W, L)
+    start: wp.array2d[int]  # first pair of each link, and of none after the last, shape (W, L + 1)
+    link: wp.array2d[int]  # shape (W, Q)
+    patch: wp.array2d[int]  # twice the patch, and 1 more where its faces count from either side, shape (W, Q)
+    distance: wp.array3d[float]  # of the patch's faces from the link's axis, FAR for none [m], shape (W, Q, F)
+    faces: wp.array2d[int]  # faces of each pair that are near; then those of the link's pairs before it, shape (W, Q)
+    count: wp.array2d[int]  # faces near each link, shape (W, L)
+    nearest: wp.array2d[float]  # least distance of them, FAR for none [m], shape (W, L)
 
 
 @wp.kernel
@@ -151,6 +158,35 @@ def sphere_reached(sphere: wp.vec4, center: wp.vec3, axis: wp.vec3, limit: float
 
 
 @wp.func
+def inside_triangle(p: wp.vec3, a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3) -> bool:
+    """Return whether a point in the plane of triangle ``abc`` lies inside it."""
+    return (
+        wp.dot(wp.cross(b - a, p - a), normal) >= 0.0
+        and wp.dot(wp.cross(c - b, p - b), normal) >= 0.0
+        and wp.dot(wp.cross(a - c, p - c), normal) >= 0.0
+    )
+
+
+@wp.func
+def on_lumen_side(a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3, near: wp.vec3, axis: wp.vec3) -> bool:
+    """Return whether triangle ``abc`` has the segment from ``-axis`` to ``axis`` on its lumen's side.
+
+    The point of the segment that is nearest to ``near``, the nearest point of the triangle, decides; where the segment
+    goes through the triangle, its middle does.
+    """
+    one = wp.dot(normal, a + axis)
+    other = wp.dot(normal, a - axis)
+    if one > 0.0 and other > 0.0:
+        return True
+    if one * other < 0.0:
+        crossing = ((one + other) / (one - other)) * axis
+        if inside_triangle(crossing, a, b, c, normal):
+            return wp.dot(normal, a) > 0.0
+    t = segment_parameter(near, -axis, axis)
+    return wp.dot(normal, a - (2.0 * t - 1.0) * axis) > 0.0
+
+
+@wp.func
 def face_distance(
     surface: LumenSurface,
     face: int,
@@ -163,16 +199,19 @@ def face_distance(
 ) -> float:
     """Return the distance of a face from the segment from ``center`` - ``axis`` to ``center`` + ``axis`` [m].
 
-    FAR beyond ``limit``, and where the middle of the segment is not on the lumen's side unless ``both_sides``.
+    FAR beyond ``limit``, and where the segment is not on the lumen's side unless ``both_sides``.
     """
     a = x[surface.faces[face, 0], w] - center
     b = x[surface.faces[face, 1], w] - center
     c = x[surface.faces[face, 2], w] - center
     normal = wp.cross(b - a, c - a)
-    if (both_sides or wp.dot(normal, a) > 0.0) and plane_reached(a, normal, axis, limit):
-        d = segment_triangle(-axis, axis, a, b, c)[3]
-        if d < limit:
-            return d
+    behind = wp.dot(normal, a) + wp.abs(wp.dot(normal, axis)) <= 0.0
+    if (both_sides or not behind) and plane_reached(a, normal, axis, limit):
+        u = segment_triangle(-axis, axis, a, b, c)
+        if u[3] < limit:
+            near = triangle_point(a, b, c, wp.vec3(u[0], u[1], u[2]))
+            if both_sides or on_lumen_side(a, b, c, normal, near, axis):
+                return u[3]
     return FAR
 
 
@@ -182,18 +221,69 @@ def link_axis(body_q: wp.array[wp.transform], row: int, half_length: float) -> w
     return wp.transform_vector(body_q[row], wp.vec3(0.0, 0.0, half_length))
 
 
+@wp.func
+def sum_before(counts: wp.array2d[int], w: int, link: int) -> int:
+    """Return the sum of a world's ``counts``, shape (W, L), over the links before ``link``."""
+    total = int(0)
+    for k in range(link):
+        total += counts[w, k]
+    return total
+
+
 @wp.kernel
-def find_patches(
+def count_patches(
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    surface: LumenSurface,
+    bounds: Bounds,
+    law: ContactLaw,
+    ring_distance: wp.array2d[float],
+    candidates: Candidates,
+):
+    """Count the patches near each link, wherever along the colon they are. Launch (W, L).
+
+    Args:
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        bounds: Spheres around rings and patches.
+        law: Contact law.
+        ring_distance: Distance from the center of the link's ring, FAR for links outside the anus [m], shape (W, L).
+        candidates: ``patches`` and ``rings`` are written.
+    """
+    w, link = wp.tid()
+    n = int(0)
+    first = int(0)
+    last = int(0)
+    if ring_distance[w, link] < FAR:
+        row = w * ring_distance.shape[1] + link
+        center = wp.transform_get_translation(body_q[row])
+        axis = link_axis(body_q, row, links.half_length[link])
+        limit = links.radius[link] + law.wall_radius + law.search_gap
+        for r in range(bounds.ring.shape[0]):
+            if sphere_reached(bounds.ring[r, w], center, axis, limit):
+                if last == 0:
+                    first = r
+                last = r + 1
+                for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
+                    if sphere_reached(bounds.patch[p, w], center, axis, limit):
+                        n += 1
+    candidates.rings[w, link] = wp.vec2i(first, last)
+    candidates.patches[w, link] = n
+
+
+@wp.kernel
+def list_patches(
     body_q: wp.array[wp.transform],
     links: LinkShapes,
     surface: LumenSurface,
     bounds: Bounds,
     law: ContactLaw,
     ring: wp.array2d[int],
-    ring_distance: wp.array2d[float],
     candidates: Candidates,
+    dropped: wp.array[int],
 ):
-    """Find the patches near each link, wherever along the colon they are. Launch (W, L).
+    """List the patches near each link, in ascending order. Launch (W, L).
 
     Args:
         body_q: Link poses, shape (W*L,).
@@ -202,25 +292,33 @@ def find_patches(
         bounds: Spheres around rings and patches.
         law: Contact law.
         ring: Ring of each link, shape (W, L).
-        ring_distance: Distance from its center, FAR for links outside the anus [m], shape (W, L).
-        candidates: ``patch`` and ``patches`` are written.
+        candidates: ``start``, ``link`` and ``patch`` are written.
+        dropped: Contacts that found no room, shape (W,); the faces of patches that found none are added to it.
     """
     w, link = wp.tid()
-    n = int(0)
-    if ring_distance[w, link] < FAR:
+    wanted = candidates.patches[w, link]
+    before = sum_before(candidates.patches, w, link)
+    k = wp.min(before, candidates.capacity)
+    end = wp.min(before + wanted, candidates.capacity)
+    candidates.start[w, link] = k
+    if link == ring.shape[1] - 1:
+        candidates.start[w, link + 1] = end
+        if before + wanted > end:
+            wp.atomic_add(dropped, w, (before + wanted - end) * candidates.patch_faces)
+    if k < end:
         row = w * ring.shape[1] + link
         center = wp.transform_get_translation(body_q[row])
         axis = link_axis(body_q, row, links.half_length[link])
         limit = links.radius[link] + law.wall_radius + law.search_gap
-        for r in range(bounds.ring.shape[0]):
+        rings = candidates.rings[w, link]
+        for r in range(rings[0], rings[1]):
             if sphere_reached(bounds.ring[r, w], center, axis, limit):
                 both_sides = int(wp.abs(r - ring[w, link]) <= surface.reach)
                 for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if sphere_reached(bounds.patch[p, w], center, axis, limit):
-                        if n < candidates.patch.shape[2]:
-                            candidates.patch[w, link, n] = 2 * p + both_sides
-                        n += 1
-    candidates.patches[w, link] = n
+                    if k < end and sphere_reached(bounds.patch[p, w], center, axis, limit):
+                        candidates.link[w, k] = link
+                        candidates.patch[w, k] = 2 * p + both_sides
+                        k += 1
 
 
 @wp.kernel
@@ -230,9 +328,10 @@ def face_distances(
     links: LinkShapes,
     surface: LumenSurface,
     law: ContactLaw,
+    stride: int,
     candidates: Candidates,
 ):
-    """Measure the distance of the faces of the patches near each link. Launch (W, L, Q*F).
+    """Measure the distance of the faces of the patches near each link. Launch (W, ``stride``).
 
     Far along the colon from the link's own ring, faces count that have the link on their lumen's side: the wall
     gathered around the link, but not the outside of a neighboring loop.
@@ -243,41 +342,49 @@ def face_distances(
         links: Capsules of one world.
         surface: Inner faces of one world.
         law: Contact law.
-        candidates: Patches near each link; ``distance`` is written.
+        stride: Threads a world, each of which takes every ``stride``-th pair.
+        candidates: Patches near each link; ``distance`` and ``faces`` are written.
     """
-    w, link, m = wp.tid()
-    k = m // candidates.patch_faces
-    if k >= candidates.patches[w, link]:
-        return
-    code = candidates.patch[w, link, k]
-    face = surface.patch_start[code // 2] + m - k * candidates.patch_faces
-    d = float(FAR)
-    if face < surface.patch_start[code // 2 + 1]:
-        row = w * candidates.patches.shape[1] + link
+    w, thread = wp.tid()
+    count = links.radius.shape[0]
+    k = int(thread)
+    while k < candidates.start[w, count]:
+        link = candidates.link[w, k]
+        code = candidates.patch[w, k]
+        row = w * count + link
         center = wp.transform_get_translation(body_q[row])
         axis = link_axis(body_q, row, links.half_length[link])
         limit = links.radius[link] + law.wall_radius + law.search_gap
-        d = face_distance(surface, face, x, w, center, axis, limit, code % 2 == 1)
-    candidates.distance[w, link, m] = d
+        first = surface.patch_start[code // 2]
+        size = surface.patch_start[code // 2 + 1] - first
+        n = int(0)
+        for m in range(candidates.patch_faces):
+            d = float(FAR)
+            if m < size:
+                d = face_distance(surface, first + m, x, w, center, axis, limit, code % 2 == 1)
+            candidates.distance[w, k, m] = d
+            n += int(d < FAR)
+        candidates.faces[w, k] = n
+        k += stride
 
 
 @wp.kernel
-def count_candidates(candidates: Candidates, dropped: wp.array[int]):
-    """Count the faces near each link. Launch (W, L).
+def count_candidates(candidates: Candidates):
+    """Count the faces near each link, and find the nearest. Launch (W, L).
 
     Args:
-        candidates: Distances of the faces of the patches near each link; ``count`` is written.
-        dropped: Contacts that found no room, shape (W,); the faces of patches beyond Q are added to it.
+        candidates: Distances of the faces of the patches near each link; ``count`` and ``nearest`` are written, and
+            ``faces`` becomes the number of the link's faces in the pairs before.
     """
     w, link = wp.tid()
-    patches = candidates.patches[w, link]
-    room = candidates.patch.shape[2]
-    if patches > room:
-        wp.atomic_add(dropped, w, (patches - room) * candidates.patch_faces)
-        candidates.patches[w, link] = room
-        patches = room
     n = int(0)
-    for m in range(patches * candidates.patch_faces):
-        if candidates.distance[w, link, m] < FAR:
-            n += 1
+    nearest = float(FAR)
+    for k in range(candidates.start[w, link], candidates.start[w, link + 1]):
+        faces = candidates.faces[w, k]
+        candidates.faces[w, k] = n
+        n += faces
+        if faces > 0:
+            for m in range(candidates.patch_faces):
+                nearest = wp.min(nearest, candidates.distance[w, k, m])
     candidates.count[w, link] = n
+    candidates.nearest[w, link] = nearest

@@ -168,11 +168,11 @@ class MeasuredContacts:
 
 @wp.kernel
 def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: MeasuredContacts):
-    """Measure every contact at wall positions ``x``. Launch (S, W)."""
-    k, w = wp.tid()
-    slot = w * contacts.records.capacity + k
-    if contacts.records.link[slot] < 0:
+    """Measure every contact at wall positions ``x``. Launch (W, S)."""
+    w, k = wp.tid()
+    if k >= contacts.records.start[w, contacts.links.radius.shape[0]]:
         return
+    slot = w * contacts.records.capacity + k
     c = contact_force_at(contacts, slot, x, w)
     measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[slot]
     measured.normal[slot] = c.normal
@@ -244,11 +244,11 @@ def settle_debts(
 
 @wp.kernel
 def advance_slides(contacts: WallContacts, x: wp.array2d[wp.vec3]):
-    """Keep of every contact's displacement along the wall what friction holds. Launch (S, W)."""
-    k, w = wp.tid()
-    slot = w * contacts.records.capacity + k
-    if contacts.records.link[slot] < 0:
+    """Keep of every contact's displacement along the wall what friction holds. Launch (W, S)."""
+    w, k = wp.tid()
+    if k >= contacts.records.start[w, contacts.links.radius.shape[0]]:
         return
+    slot = w * contacts.records.capacity + k
     c = contact_force_at(contacts, slot, x, w)
     slide = wp.vec3(0.0)
     if c.normal_force > 0.0:

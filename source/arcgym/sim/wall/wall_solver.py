@@ -175,7 +175,7 @@ class WallSolver:
                 outputs=[contact.debt],
                 device=self.device,
             )
-        slots = (contacts.records.capacity, self.num_envs)
+        slots = (self.num_envs, contacts.records.capacity)
         wp.launch(wall_kernels.advance_slides, slots, inputs=[contacts, x], device=self.device)
 
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
@@ -205,7 +205,7 @@ class WallSolver:
         """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
         self.elements.measure(x, self.tissue)
         contacts.self_contact = self.self_contact.measure(contacts.x_prev)
-        slots = (contacts.records.capacity, self.num_envs)
+        slots = (self.num_envs, contacts.records.capacity)
         measured = self.measured
         wp.launch(wall_kernels.measure_contacts, slots, inputs=[contacts, x], outputs=[measured], device=self.device)
         wp.launch(
