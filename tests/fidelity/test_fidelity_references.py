@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 
+from arcgym.anatomy import ANCHOR_FIXED
 from arcgym.assets import PROXIMAL_CFG
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
@@ -19,7 +20,9 @@ from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.placement import follow
 from arcgym.benchmarks.fidelity.pushes import BEND, DEPTH
 from arcgym.benchmarks.fidelity.rows import Run
+from arcgym.benchmarks.fidelity.smooth_colon import smooth_stage
 from arcgym.benchmarks.fidelity.tube_model import TubeModel
+from arcgym.benchmarks.fidelity.tubes import shipped_stage
 from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
 from arcgym.sim import ContactCfg
 
@@ -93,6 +96,17 @@ def test_a_halved_scope_is_the_same_shaft(spec: EndoscopeSpec) -> None:
     assert fine.hinge_limit[-2 * bent :].sum() == pytest.approx(spec.hinge_limit[-bent:].sum(), rel=0.01)
     tip = 0.5 * spec.link_length[-1] - spec.camera.position[2]
     assert 0.5 * fine.link_length[-1] - fine.camera.position[2] == pytest.approx(tip)
+
+
+def test_a_finer_colon_has_the_shipped_vertices_among_its_own() -> None:
+    shipped, fine = shipped_stage().wall, smooth_stage(2).wall
+    rings = len(shipped.ring_arc)
+    every_second = fine.points.reshape(2, 2 * rings - 1, -1, 3)[:, ::2, ::2].reshape(-1, 3)
+    np.testing.assert_allclose(every_second, shipped.points, atol=1e-6)
+    still = fine.ring_arc[fine.ring[fine.anchor == ANCHOR_FIXED]]
+    held = shipped.ring_arc[shipped.ring[shipped.anchor == ANCHOR_FIXED]]
+    np.testing.assert_allclose(np.unique(still)[[0, -1]], np.unique(held)[[0, -1]], atol=1e-6)
+    assert np.isin(np.unique(held), np.unique(still)).all() and len(np.unique(still)) == 8  # 5 and 3 for 3 and 2
 
 
 def test_figures_of_an_insertion() -> None:

@@ -18,6 +18,7 @@ import numpy as np
 
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.rows import Run
+from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 
 SPEED = 0.04
 """Speed of the experts [m/s]."""
@@ -41,7 +42,7 @@ SETTINGS = {
     "dt_half": "time step over 2",
     "damping_fifth": "hinge damping times 0.2",
     "links_half": "links half as long",
-    "wall_half": "rings and sectors of the wall half as far apart",
+    "wall_half": "rings and sectors of the wall half as far apart, on the smooth surface through its vertices",
     "noise": "speed times 1.0025",
 }
 """Settings changed, one at a time."""
@@ -71,7 +72,7 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
     missing = [case for case in cases if ("insertion", case) not in run.shared]
     if missing:
         if any(case.setting == "wall_half" for case in missing):
-            finer_colon(run.folder)
+            write_smooth(run.folder, refine=2)
         workers = min(len(missing), len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1)
         with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
             tasks = [pool.submit(insert, case, run.device, run.folder) for case in missing]
@@ -157,7 +158,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     _, end = read_colon(resolve_asset(colon.usd_path)).segment_bounds()["sigmoid"]
     colon.mobile_until = end + MARGIN
     if setting == "wall_half":
-        colon.usd_path = str(finer_colon(folder))
+        colon.usd_path = str(write_smooth(folder, refine=2))
     sim = SimulationCfg(device=device)
     sim.dt *= 0.5 if setting == "dt_half" else 1.0
     factor = {"contact_double": 2.0, "contact_half": 0.5}.get(setting, 1.0)
@@ -195,25 +196,3 @@ def _split_hinges(value: np.ndarray) -> np.ndarray:
     """
     after = np.concatenate([value[1:], value[-1:]])
     return np.stack([value, 2.0 / (1.0 / value + 1.0 / after)], axis=1).reshape(-1, *value.shape[1:])
-
-
-def finer_colon(folder: Path) -> Path:
-    """Write colon 1 with twice its rings and sectors, the same surface sampled more finely, and return its path."""
-    from arcgym.anatomy import write_colon
-    from arcgym.anatomy.generator.generate import draw_surface
-    from arcgym.anatomy.generator.patients import colon_1
-    from arcgym.anatomy.generator.quantize import quantize
-    from arcgym.anatomy.generator.visual import sample_visual
-    from arcgym.anatomy.generator.wall import sample_wall
-    from arcgym.benchmarks.fidelity.tubes import shipped_stage
-
-    path = folder / "finer" / "colon.usda"
-    if not path.exists():
-        shipped = shipped_stage()
-        seed, spec = int(shipped.metadata["seed"]), colon_1()
-        surface, lesions = draw_surface(spec, seed)
-        surface.spec = replace(spec, ring_spacing=0.5 * spec.ring_spacing, sectors=2 * spec.sectors)
-        wall = sample_wall(surface, lesions)
-        visual = quantize(sample_visual(surface, wall, lesions, spec.proxy_rows, spec.proxy_columns, 1))
-        write_colon(replace(shipped, wall=wall, visual=visual, visual_proxy=visual), path)
-    return path

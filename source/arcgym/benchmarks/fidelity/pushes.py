@@ -14,6 +14,7 @@ import torch
 from arcgym.assets import PROXIMAL_CFG
 from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.rows import Run
+from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 from arcgym.benchmarks.fidelity.tubes import Tube
 from arcgym.benchmarks.fidelity.volumes import volume_ratios
 from arcgym.sim import WallSolverCfg
@@ -76,12 +77,18 @@ def push(
     rest: float = 0.0,
     wall_model: str = "shell",
     rigid: bool = False,
+    refine: int = 0,
     **cfg: Any,
 ) -> Trace:
-    """Push to a depth [m] and wait [s]. The same push is made only once a run; ``tube`` None is the shipped colon."""
-    key = ("push", tube, depth, material, rest, wall_model, rigid, str(cfg))
+    """Push to a depth [m] and wait [s]. The same push is made only once a run; ``tube`` None is the shipped colon.
+
+    With ``refine``, the colon's wall is sampled so much more finely from the smooth surface through its vertices.
+    """
+    key = ("push", tube, depth, material, rest, wall_model, rigid, refine, str(cfg))
     if key not in run.shared:
-        colon = {"material": material, "wall_model": wall_model, "rigid": rigid}
+        colon: dict[str, Any] = {"material": material, "wall_model": wall_model, "rigid": rigid}
+        if refine:
+            colon["usd_path"] = str(write_smooth(run.folder, refine, SIGMOID_MOBILE))
         run.shared[key] = _push(run, tube, depth, colon, rest, **cfg)
     return run.shared[key]
 

@@ -10,7 +10,7 @@ from arcgym.assets.endoscope_spec import proximal_spec
 from arcgym.benchmarks.fidelity.rod import Rod
 from arcgym.benchmarks.fidelity.rod_push import Path, PushSettings, RodPush
 from arcgym.benchmarks.fidelity.rod_surface import GridSurface
-from arcgym.benchmarks.fidelity.tubes import Tube, shipped_stage, wall_measures
+from arcgym.benchmarks.fidelity.tubes import Tube, wall_measures
 from arcgym.sim.simulation_cfg import ContactCfg
 
 SPACING = 0.005
@@ -46,13 +46,6 @@ def tube_surface(tube: Tube) -> GridSurface:
     """Return the smooth inside of a tube."""
     arc = np.linspace(0.0, tube.length, round(tube.length / ALONG) + 1)
     return GridSurface(tube.surface(arc, 2.0 * np.pi * np.arange(ROUND) / ROUND, wall_measures().radius))
-
-
-def colon_surface(until: float) -> GridSurface:
-    """Return a smooth surface through the inner vertices of the shipped colon, up to an arc length [m]."""
-    wall = shipped_stage().wall
-    inner = wall.points.reshape(2, len(wall.ring_arc), -1, 3)[0].astype(float)
-    return GridSurface(inner[wall.ring_arc < until])
 
 
 def push_rod(surface: GridSurface, depth: float, friction: float, spacing: float = SPACING) -> Path:

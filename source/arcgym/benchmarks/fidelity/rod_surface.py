@@ -59,6 +59,15 @@ class GridSurface:
         """Return points, or derivatives, at grid coordinates along and around, shape (n, 3)."""
         return np.stack([spline.ev(s, a, dx=ds, dy=da) for spline in self._splines], axis=1)
 
+    def rows(self, refine: int) -> np.ndarray:
+        """Return grid coordinates along, ``refine`` from ring to ring, shape ((S - 1) * refine + 1,)."""
+        return np.linspace(0.0, self._rings - 1.0, (self._rings - 1) * refine + 1)
+
+    def sample(self, refine: int) -> np.ndarray:
+        """Return points of the surface, ``refine`` times as many along and around [m], shape (S', A * refine, 3)."""
+        s, a = np.meshgrid(self.rows(refine), np.arange(self._sectors * refine) / refine, indexing="ij")
+        return self.at(s.ravel(), a.ravel()).reshape(*s.shape, 3)
+
     def project(self, points: np.ndarray, reach: float) -> Distance:
         """Return the distance of those points that are within ``reach`` [m] of the surface.
 

@@ -114,11 +114,11 @@ def tube_stage(tube: Tube) -> ColonStage:
     layers = np.stack([tube.surface(arc, theta, r) for r in radii])
     codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
     shipped = shipped_stage()
-    visual = _visual(tube, arc, sectors, radius)
+    visual = grid_visual(tube.surface(arc, theta, radius), arc)
     held = (HELD_SPACINGS[0] * measures.spacing, tube.length - HELD_SPACINGS[1] * measures.spacing)
     return ColonStage(
         name="tube",
-        wall=_hold(build_wall(layers, codes, arc, capped=False), *held),
+        wall=hold(build_wall(layers, codes, arc, capped=False), *held),
         visual=visual,
         visual_proxy=visual,
         centerline=Centerline(
@@ -135,21 +135,26 @@ def tube_stage(tube: Tube) -> ColonStage:
     )
 
 
-def _hold(wall: WallMesh, start: float, end: float) -> WallMesh:
-    """Hold the wall before one arc length and beyond another [m], however fine its rings are."""
+def hold(wall: WallMesh, start: float, end: float) -> WallMesh:
+    """Return the wall held up to one arc length and from another on [m], however fine its rings are."""
     arc = wall.ring_arc[wall.ring]
     still = (arc < start + 1.0e-4) | (arc > end - 1.0e-4)
     loose = np.where(wall.anchor == ANCHOR_FIXED, ANCHOR_FREE, wall.anchor)
     return replace(wall, anchor=np.where(still, ANCHOR_FIXED, loose).astype(np.int32))
 
 
-def _visual(tube: Tube, ring_arc: np.ndarray, sectors: int, radius: float) -> VisualMesh:
-    """Return the inner surface, which a stage must have."""
-    rows, columns = len(ring_arc), sectors + 1
-    arc, theta = np.linspace(0.0, tube.length, rows), np.linspace(0.0, 2.0 * np.pi, columns)
-    points = tube.surface(arc, theta, radius).reshape(-1, 3).astype(np.float32)
-    s, angle = (grid.ravel() for grid in np.meshgrid(arc, theta, indexing="ij"))
-    faces = grid_triangles(rows, columns)
+def grid_visual(points: np.ndarray, ring_arc: np.ndarray) -> VisualMesh:
+    """Return the inner surface as a visual mesh, which a stage must have.
+
+    Args:
+        points: Inner vertices of the wall by ring and sector [m], shape (R, S, 3).
+        ring_arc: Arc length of each ring [m], shape (R,).
+    """
+    rings, sectors, _ = points.shape
+    closed = np.concatenate([points, points[:, :1]], axis=1).reshape(-1, 3).astype(np.float32)
+    theta = np.linspace(0.0, 2.0 * np.pi, sectors + 1)
+    s, angle = (grid.ravel() for grid in np.meshgrid(ring_arc, theta, indexing="ij"))
+    faces = grid_triangles(rings, sectors + 1)
     uv = np.stack([angle / (2.0 * np.pi), s / TEXTURE_LENGTH], axis=1).astype(np.float32)
     skin = skin_to_rings(s, angle, ring_arc, sectors)
-    return VisualMesh(points, faces, smooth_normals(points, faces), uv, np.zeros(len(points), np.float32), *skin)
+    return VisualMesh(closed, faces, smooth_normals(closed, faces), uv, np.zeros(len(closed), np.float32), *skin)
