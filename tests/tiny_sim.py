@@ -28,7 +28,7 @@ class TinySim:
         self.colon_path = write_tiny_colon(folder, **tube)
 
     def colon_cfg(self, **changes: Any) -> ColonCfg:
-        return ColonCfg(usd_path=str(self.colon_path), **changes)
+        return ColonCfg(**{"usd_path": str(self.colon_path), **changes})
 
     def scope_cfg(
         self, kind: str = "proximal", links: int = 6, drives: dict[str, dict[str, Any]] | None = None, **changes: Any

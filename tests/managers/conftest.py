@@ -8,6 +8,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 import torch
 
@@ -26,8 +27,8 @@ class Scene(dict):
 def env() -> Any:
     """Two worlds with ``value`` (2,), a scope with five joints and a colon with four wall nodes."""
     scope = SimpleNamespace(joint_names=JOINTS, body_names=["link_0", "link_1", "tip"])
-    wall = SimpleNamespace(segment=[0, 1, 1, 2])
-    colon = SimpleNamespace(stage=SimpleNamespace(wall=wall))
+    wall = SimpleNamespace(segment=np.array([0, 1, 1, 2]))
+    colon = SimpleNamespace(patients=[SimpleNamespace(wall=wall)])
     return SimpleNamespace(
         num_envs=2,
         device="cpu",

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from arcgym.managers import SceneEntityCfg
@@ -38,6 +41,12 @@ def test_segments_select_wall_nodes(env) -> None:
     # Nodes 0..3 lie in rectum, sigmoid, sigmoid, descending.
     assert resolved(env, "colon", segments=["sigmoid"]).node_ids.tolist() == [1, 2]
     assert resolved(env, "colon", segments=["rectum", "descending"]).node_ids.tolist() == [0, 3]
+
+
+def test_segments_at_different_nodes_in_other_patients_are_refused(env) -> None:
+    env.scene["colon"].patients.append(SimpleNamespace(wall=SimpleNamespace(segment=np.array([0, 0, 1, 2]))))
+    with pytest.raises(ValueError, match="patients of 'colon' have .*sigmoid.* at different nodes"):
+        resolved(env, "colon", segments=["sigmoid"])
 
 
 @pytest.mark.parametrize(

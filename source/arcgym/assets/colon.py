@@ -22,9 +22,10 @@ from arcgym.assets.colon_cfg import ColonCfg
 from arcgym.assets.colon_data import ColonData
 from arcgym.assets.materials import Value, anchor_scale, shell_moduli, solid_moduli, tissue_preset
 from arcgym.assets.patient import Patient, read_patient
+from arcgym.assets.patient_checks import check_patients
+from arcgym.assets.patient_files import find_stages
 from arcgym.assets.shell_loading import add_shell
 from arcgym.assets.usd_loading import add_colon_usd
-from arcgym.utils.paths import resolve_asset
 from arcgym.utils.string import did_you_mean
 
 if TYPE_CHECKING:
@@ -39,11 +40,12 @@ class Colon:
     """
 
     def __init__(self, cfg: ColonCfg):
-        """Read and check the stage; nothing is allocated on the device yet.
+        """Read and check the stages; nothing is allocated on the device yet.
 
         Raises:
-            StageError: If the stage cannot be used.
-            ValueError: If material, anchors or kind of wall are unknown, or a segment has no such name.
+            StageError: If a stage cannot be used.
+            ValueError: If material, anchors or kind of wall are unknown, a segment has no such name, no stages are
+                found, or patients do not have the same grid.
         """
         self.cfg = cfg
         self.tissue = tissue_preset(cfg.material)
@@ -59,8 +61,12 @@ class Colon:
         shell = cfg.wall_model == "shell"
         chosen = (cfg.wall_thickness, self.tissue.thickness if shell else None)
         thickness = next((value for value in chosen if value is not None), None)
-        self.patients: tuple[Patient, ...] = (read_patient(resolve_asset(cfg.usd_path), thickness, shell),)
+        paths = find_stages(cfg.usd_path, cfg.num_patients)
+        self.patients: tuple[Patient, ...] = tuple(read_patient(path, thickness, shell) for path in paths)
         """Colons, of which each world has one."""
+        tissue = ("youngs_modulus", "poissons_ratio", "density")
+        own = [name for name in tissue if getattr(cfg, name) is None and getattr(self.tissue, name) is None]
+        check_patients(self.patients, own)
 
     @property
     def path(self) -> Path:
@@ -221,6 +227,22 @@ class Colon:
         """
         self._sim.require_two_level("has one mobility of the wall for all worlds")
         self._sim.rigid[self._worlds(env_ids)] = rigid.to(self._sim.rigid)
+
+    def write_patient_to_sim(self, patient: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+        """Give the worlds ``env_ids`` (all by default) other patients, indices into :attr:`patients`, shape (n,).
+
+        Their walls are put at rest. The scope stays where it is, in the middle of the new wall or behind it: write a
+        start state next, as the event :func:`arcgym.envs.mdp.reset_to_segment_start` does.
+
+        Raises:
+            IndexError: If there is no such patient; indices on a GPU are not checked, for that would wait for it.
+        """
+        if not patient.is_cuda and ((patient < 0) | (patient >= len(self.patients))).any():
+            raise IndexError(f"Patients {patient.tolist()}: there are {len(self.patients)}, from 0.")
+        worlds = self._worlds(env_ids)
+        self.data.exchange(patient, worlds)
+        self.data.nodal_pos_w[worlds] = self.data.rest_of(self.data.patient[worlds])
+        self.data.nodal_vel_w[worlds] = 0.0
 
     @staticmethod
     def _worlds(env_ids: Sequence[int] | torch.Tensor | None) -> slice | torch.Tensor | Sequence[int]:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.utils.configclass import configclass
 from arcgym.utils.string import did_you_mean
-from arcgym.utils.validation import FieldError, Range, require, require_non_negative, require_positive
+from arcgym.utils.validation import FieldError, Range, require, require_at_least, require_non_negative, require_positive
 
 
 @configclass
@@ -18,8 +18,16 @@ class ColonCfg:
 
     class_type: Any = "arcgym.assets.colon:Colon"
     """Class built from this configuration; change it to add behaviour to the asset."""
-    usd_path: str = "colon_1/colon.usda"
-    """Stage of the colon: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`)."""
+    usd_path: str | list[str] = "colon_1/colon.usda"
+    """Stage of the colon: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`).
+
+    Several patients in one batch: a list of stages, a folder of folders with a ``colon.usda`` each, such as the
+    importer's output, or ``population:train``, a split of a population
+    (:func:`arcgym.assets.patient_files.register_population`). All need walls of the same grid. World ``w`` begins with
+    patient ``w`` modulo their number."""
+    num_patients: int | None = None
+    """How many patients to take, from the first; ``None`` takes all. Set it for a split that has more than are wanted:
+    a patient takes some MiB on the device."""
     material: str = "paper"
     """Tissue preset: ``paper`` (5 MPa), ``in_situ`` (0.5 MPa, 1.5 mm, a mesentery with slack: the sigmoid colon loops)
     or one of six for sensitivity tables, ``soft_nu045`` to ``stiff_nu049``, see :mod:`arcgym.assets.materials`."""
@@ -60,6 +68,7 @@ class ColonCfg:
         from arcgym.assets.materials import TISSUE_PRESETS
 
         require(self, "material", TISSUE_PRESETS)
+        require_at_least(self, 1, "num_patients")
         require_positive(self, "wall_thickness", "mobile_until", unit="m")
         require_positive(self, "youngs_modulus", unit="Pa")
         require(self, "poissons_ratio", Range(0.0, 0.5, below=True))

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -60,9 +61,17 @@ class ColonData:
     @property
     def default_nodal_pos_w(self) -> torch.Tensor:
         """Rest positions of the wall vertices [m], shape (N, V, 3)."""
-        if len(self._rest) == 1:
-            return self._rest.expand(len(self.patient), -1, -1)
-        return self._rest[self.patient]
+        return self.rest_of(self.patient)
+
+    def rest_of(self, patient: torch.Tensor) -> torch.Tensor:
+        """Rest positions of the wall vertices of patients, shape (n,), in [m], shape (n, V, 3)."""
+        return self._rest.expand(len(patient), -1, -1) if len(self._rest) == 1 else self._rest[patient]
+
+    def exchange(self, patient: torch.Tensor, worlds: torch.Tensor | slice | Sequence[int]) -> None:
+        """Set the patients of some worlds, and what follows from them but for the state of the wall."""
+        self.patient[worlds] = patient.to(self.patient)
+        self.centerline_arc[worlds] = self._ring_arc[self.patient[worlds]]
+        self.segment_spans[worlds] = self._spans[self.patient[worlds]]
 
     @property
     def nodal_state_w(self) -> torch.Tensor:

@@ -15,6 +15,9 @@ from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
 from arcgym.anatomy.stage import Centerline, ColonStage, TissueMaterial, VisualMesh, WallMesh, read_colon
 
+THICKNESS_DIGITS = 6
+"""Decimals to which the thickness of a stage's wall [m] counts: the rest is noise of single precision."""
+
 Bounds = dict[str, tuple[float, float]]
 """Arc length at start and end [m] of each segment that a colon has."""
 
@@ -71,7 +74,8 @@ def patient_of_stage(
     stage: ColonStage, path: Path = Path("colon.usda"), thickness: float | None = None, shell: bool = True
 ) -> Patient:
     """Return the patient of a stage in memory; arguments as of :func:`read_patient`."""
-    thickness = wall_thickness(stage.wall) if thickness is None else thickness
+    if thickness is None:
+        thickness = float(np.float32(round(wall_thickness(stage.wall), THICKNESS_DIGITS)))
     patient = Patient(
         path=path,
         wall=mid_surface(stage.wall, thickness) if shell else stage.wall,

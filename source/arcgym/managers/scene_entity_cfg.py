@@ -84,14 +84,16 @@ class SceneEntityCfg:
         return slice(None) if ids == list(range(len(names))) else torch.tensor(ids, device=device)
 
     def _find_nodes(self, entity: Any, device: str) -> torch.Tensor:
-        wall = getattr(getattr(entity, "stage", None), "wall", None)
-        if wall is None:
+        walls = [patient.wall for patient in getattr(entity, "patients", ())]
+        if not walls:
             raise ValueError(f"The entity '{self.name}' ({type(entity).__name__}) has no wall: segments need a colon.")
         try:
             ids, names = resolve_matching_names(self.segments or [], SEGMENTS)
         except ValueError as error:
             raise ValueError(f"segments of the entity '{self.name}': {error}") from error
-        node_segment = torch.as_tensor(wall.segment)
+        if any((wall.segment != walls[0].segment).any() for wall in walls):
+            raise ValueError(f"The patients of '{self.name}' have {names} at different nodes: choose nodes by world.")
+        node_segment = torch.as_tensor(walls[0].segment)
         nodes = torch.isin(node_segment, torch.tensor(ids)).nonzero().flatten()
         if len(nodes) == 0:
             raise ValueError(f"The wall of '{self.name}' has no nodes in the segments {names}.")

@@ -103,11 +103,13 @@ def put_in_state(
         UsageError: If the state does not fit this colon and robot.
     """
     ids = torch.tensor(list(env_ids), device=env.device)
+    if "patient" in settings and len(env.scene["colon"].patients) > 1:
+        env.scene["colon"].write_patient_to_sim(torch.full((len(ids),), int(settings["patient"])), ids)
     known = dict(env.sim.world_settings())
     for name, sensor in env.scene.sensors.items():
         known |= {f"{name}/{key}": value for key, value in sensor.world_settings().items()}
     for name, value in settings.items():
-        if name in known:
+        if name in known and name != "patient":
             known[name][ids] = torch.as_tensor(value).to(known[name])
     repeat = {name: np.repeat(np.asarray(value)[None], len(ids), axis=0) for name, value in state.items()}
     try:

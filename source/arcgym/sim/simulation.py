@@ -62,7 +62,8 @@ class Simulation:
             raise ValueError(f"num_envs is {num_envs}; at least one world is needed.")
         self.cfg, self.colon, self.endoscope, self.num_envs = cfg, colon, endoscope, num_envs
         self.device = cfg.device
-        self.patient = wp.zeros(num_envs, dtype=int, device=self.device)
+        patients = np.arange(num_envs, dtype=np.int32) % len(colon.patients)
+        self.patient = wp.array(patients, dtype=int, device=self.device)
         """Patient of each world, index into ``colon.patients``, shape (N,)."""
         self.model = model_building.scope_model(endoscope, cfg.mass_scaling, num_envs, self.device)
         self.state, self.control = self.model.state(), self.model.control()
@@ -83,7 +84,7 @@ class Simulation:
         colon.bind(self)
         endoscope.bind(self)
         self.forward()
-        self._library = SnapshotLibrary(self.read_snapshot(0), self.device)
+        self._library = SnapshotLibrary(self._rests(), self.device)
 
     def _build_wall(self) -> None:
         """Wall positions and velocities, contact search, wall solver and its readout."""
@@ -110,6 +111,9 @@ class Simulation:
 
     def _coupling(self) -> Coupling:
         if self.cfg.solver == "newton":
+            if len(self.colon.patients) > 1:
+                remedy = "choose solver='two_level', or one stage in env.scene.colon.usd_path"
+                self.require_two_level("has one patient in all worlds", remedy)
             from arcgym.sim.coupling.newton_coupling import NewtonCoupling
 
             return NewtonCoupling(self)
@@ -224,12 +228,16 @@ class Simulation:
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
     def world_settings(self) -> dict[str, torch.Tensor]:
-        """Return what differs between worlds and no step changes, such as friction, as views of shape (N, ...)."""
+        """Return what differs between worlds and no step changes, such as friction, as views of shape (N, ...).
+
+        All may be written to but ``patient``: see :meth:`arcgym.assets.Colon.write_patient_to_sim`.
+        """
         return {
             "friction": self.friction,
             "moduli": self.moduli,
             "anchor_scale": self.anchor_scale,
             "rigid": self.rigid,
+            "patient": self.colon.data.patient,
         }
 
     def write_state(
@@ -261,14 +269,26 @@ class Simulation:
         """Complete state of one world, on the host."""
         return Snapshot.read(self, env_id)
 
-    def load_snapshots(self, snapshots: SnapshotSet) -> None:
+    def load_snapshots(self, snapshots: SnapshotSet | Sequence[SnapshotSet]) -> None:
         """Make stored states available to :meth:`write_snapshot`.
 
+        Args:
+            snapshots: States of the patient, or of each; names that one of them lacks are left out.
+
         Raises:
-            ValueError: If they belong to another colon mesh or scope.
+            ValueError: If they belong to another colon mesh or scope, or there is not a set for each patient.
         """
-        snapshots.check(self)
-        self._library.load(snapshots)
+        sets = [snapshots] if isinstance(snapshots, SnapshotSet) else list(snapshots)
+        for patient, one in enumerate(sets[: len(self.colon.patients)]):
+            one.check(self, patient)
+        self._library.load(sets)
+
+    def _rests(self) -> list[Snapshot]:
+        """Return the rest pose in each patient: that of the scope is the same, and its links look for their rings."""
+        now = self.read_snapshot(0).arrays
+        now["link_ring"] = np.full_like(now["link_ring"], -1)
+        walls = [patient.wall.points.astype(np.float32) for patient in self.colon.patients]
+        return [Snapshot({**now, "nodal_pos": points}) for points in walls]
 
     def write_snapshot(
         self, snapshot_index: torch.Tensor | int, env_ids: Sequence[int] | torch.Tensor | None = None
@@ -284,7 +304,7 @@ class Simulation:
             IndexError: If there is no such state; indices on a GPU are not checked, for that would wait for it.
         """
         ids = self._worlds(env_ids)
-        self._library.write(self.world_arrays(), snapshot_index, ids)
+        self._library.write(self.world_arrays(), snapshot_index, ids, self.colon.data.patient)
         self._after_write(ids)
 
     def _worlds(self, env_ids: Sequence[int] | torch.Tensor | None) -> torch.Tensor:

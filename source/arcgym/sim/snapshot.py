@@ -7,7 +7,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,6 +59,14 @@ class SnapshotSet:
             raise KeyError(f"There is no snapshot {name!r}; this set has {list(self.names)}.")
         return self.names.index(name)
 
+    def only(self, names: Sequence[str]) -> SnapshotSet:
+        """Return the states of some names, in their order.
+
+        Raises:
+            KeyError: If there is none of a name.
+        """
+        return replace(self, names=tuple(names), snapshots=tuple(self.snapshots[self.index(name)] for name in names))
+
     def save(self, path: str | Path) -> None:
         """Write to a compressed ``.npz`` file, whole or not at all."""
         path = Path(path)
@@ -90,31 +99,32 @@ class SnapshotSet:
         states = tuple(Snapshot({k: stacked[k][i] for k in keys}) for i in range(len(names)))
         return SnapshotSet(names, states, mark, about)
 
-    def check(self, sim: Simulation) -> None:
-        """Compare with a simulation.
+    def check(self, sim: Simulation, patient: int = 0) -> None:
+        """Compare with a patient of a simulation.
 
         Raises:
             ValueError: If the states are of another wall mesh or scope.
         """
-        problem = self.mismatch(sim)
+        problem = self.mismatch(sim, patient)
         if problem:
+            colon = sim.colon.patients[patient].path
             raise ValueError(
-                f"These start states do not fit {sim.colon.path} with {sim.endoscope.path}: {problem}. "
+                f"These start states do not fit {colon} with {sim.endoscope.path}: {problem}. "
                 "Make new ones with 'arcgym snapshots --task NAME'."
             )
 
-    def mismatch(self, sim: Simulation) -> str:
-        """Return what keeps the states from fitting a simulation; empty if they fit."""
-        expected = fingerprint(sim)
+    def mismatch(self, sim: Simulation, patient: int = 0) -> str:
+        """Return what keeps the states from fitting a patient of a simulation; empty if they fit."""
+        expected = fingerprint(sim, patient)
         if self.fingerprint != expected:
             return f"another wall mesh or endoscope (fingerprint {self.fingerprint}, expected {expected})"
         missing = set(sim.world_arrays()) ^ set(self.snapshots[0].arrays)
         return f"other actuators (differing in {', '.join(sorted(missing))})" if missing else ""
 
 
-def fingerprint(sim: Simulation) -> str:
-    """Return a short hash of the wall's rest points and rings and of the scope's links and joints."""
-    wall, scope = sim.colon.wall, sim.endoscope.stage
+def fingerprint(sim: Simulation, patient: int = 0) -> str:
+    """Return a short hash of a patient's rest points and rings and of the scope's links and joints."""
+    wall, scope = sim.colon.patients[patient].wall, sim.endoscope.stage
     digest = hashlib.sha256(" ".join(sim.endoscope.joint_names).encode())
     for array in (wall.points, wall.ring, scope.link_length, scope.link_radius):
         digest.update(np.ascontiguousarray(array).tobytes())

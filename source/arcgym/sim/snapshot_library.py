@@ -13,40 +13,55 @@ from arcgym.sim.snapshot import Snapshot, SnapshotSet
 
 
 class SnapshotLibrary:
-    """Holds the rest pose and the loaded snapshots as one tensor for each array of the state."""
+    """Holds the rest pose and the loaded snapshots of every patient as one tensor for each array of the state."""
 
-    def __init__(self, rest: Snapshot, device: str):
-        """Start with the rest pose alone.
+    def __init__(self, rests: Sequence[Snapshot], device: str):
+        """Start with the rest poses alone.
 
         Args:
-            rest: State of index -1.
+            rests: State of index -1 of each of P patients.
             device: Device of the tensors.
         """
-        self._rest, self._device = rest, device
+        self._rests, self._device = rests, device
         self.snapshots: SnapshotSet | None = None
-        """The loaded snapshots."""
-        self._arrays = self._stack([rest])
+        """The loaded snapshots of the first patient; the others have the same names."""
+        self._arrays = self._stack([[rest] for rest in rests])
 
-    def load(self, snapshots: SnapshotSet) -> None:
-        """Replace the loaded snapshots."""
-        self.snapshots = snapshots
-        self._arrays = self._stack([self._rest, *snapshots.snapshots])
+    def load(self, sets: Sequence[SnapshotSet]) -> None:
+        """Replace the loaded snapshots by those of each patient; names that some patient lacks are left out.
 
-    def write(self, arrays: dict[str, torch.Tensor], index: torch.Tensor | int, env_ids: torch.Tensor) -> None:
+        Raises:
+            ValueError: If there are not as many sets as patients, or they have no name in common.
+        """
+        names = [name for name in sets[0].names if all(name in one.names for one in sets)] if sets else []
+        if len(sets) != len(self._rests) or not names:
+            raise ValueError(
+                f"{len(sets)} sets of start states with {names or 'no'} names in common were given, expected one for "
+                f"each of {len(self._rests)} patients."
+            )
+        kept = [one.only(names) for one in sets]
+        self.snapshots = kept[0]
+        self._arrays = self._stack([[rest, *one.snapshots] for rest, one in zip(self._rests, kept, strict=True)])
+
+    def write(
+        self, arrays: dict[str, torch.Tensor], index: torch.Tensor | int, env_ids: torch.Tensor, patient: torch.Tensor
+    ) -> None:
         """Copy stored states into some worlds.
 
         Args:
             arrays: State of all worlds by name, each of shape (N, ...); changed in place.
             index: Which state each world takes, shape (n,), or one for all; -1 is the rest pose.
             env_ids: World indices, int64, shape (n,).
+            patient: Patient of all worlds, shape (N,).
 
         Raises:
             IndexError: If there is no such state; indices on a GPU are not checked, for that would wait for it.
         """
         self._check(torch.as_tensor(index))
         row = torch.as_tensor(index, device=self._device, dtype=torch.long).expand(len(env_ids)) + 1
+        owner = patient[env_ids].long()
         for name, array in arrays.items():
-            array[env_ids] = self._arrays[name][row].view(len(env_ids), *array.shape[1:])
+            array[env_ids] = self._arrays[name][owner, row].view(len(env_ids), *array.shape[1:])
 
     def _check(self, index: torch.Tensor) -> None:
         stored = 0 if self.snapshots is None else len(self.snapshots.snapshots)
@@ -55,13 +70,14 @@ class SnapshotLibrary:
                 f"Snapshot index {index.tolist()}: {stored} snapshots are loaded, from 0; -1 is the rest pose."
             )
 
-    def _stack(self, snapshots: Sequence[Snapshot]) -> dict[str, torch.Tensor]:
-        return {name: self._stacked(name, snapshots) for name in self._rest.arrays}
+    def _stack(self, snapshots: Sequence[Sequence[Snapshot]]) -> dict[str, torch.Tensor]:
+        """Arrays of the states of each patient, shape (P, S, ...)."""
+        return {name: self._stacked(name, snapshots) for name in self._rests[0].arrays}
 
-    def _stacked(self, name: str, snapshots: Sequence[Snapshot]) -> torch.Tensor:
+    def _stacked(self, name: str, snapshots: Sequence[Sequence[Snapshot]]) -> torch.Tensor:
         """One array of all states. Friction's memory is empty in states that were made with room for other contacts."""
-        empty = np.zeros_like(self._rest.arrays[name])
-        values = [snapshot.arrays.get(name, empty) for snapshot in snapshots]
+        empty = np.zeros_like(self._rests[0].arrays[name])
+        values = [[snapshot.arrays.get(name, empty) for snapshot in own] for own in snapshots]
         if name.startswith("contact_"):
-            values = [value if value.shape == empty.shape else empty for value in values]
-        return torch.tensor(np.stack(values), device=self._device)
+            values = [[value if value.shape == empty.shape else empty for value in own] for own in values]
+        return torch.tensor(np.stack([np.stack(own) for own in values]), device=self._device)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 """Raise it when drives or files change, and older files are made anew."""
-NOT_IN_STATE = ("class_type", "usd_path", "expert", "device", "use_graph")
+NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "expert", "device", "use_graph")
 """Fields of configurations that change no state, or whose content is hashed instead of their name."""
 
 

@@ -141,10 +141,10 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     from arcgym import assets
     from arcgym.anatomy import read_colon
     from arcgym.assets.endoscope_stage import write_endoscope
+    from arcgym.assets.patient_files import find_stages
     from arcgym.scene import InteractiveSceneCfg
     from arcgym.scene.interactive_scene import InteractiveScene
     from arcgym.sim import SimulationCfg
-    from arcgym.utils.paths import resolve_asset
 
     spec, setting = SPECS[case.robot](), case.setting
     endoscope = getattr(assets, f"{case.robot.upper()}_CFG")
@@ -155,7 +155,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     path = write_endoscope(spec, folder / f"{case.robot}_{case.material}_{setting or 'shipped'}.usda")
     colon = assets.ColonCfg(material=case.material)
     colon.usd_path = colon_path or colon.usd_path
-    _, end = read_colon(resolve_asset(colon.usd_path)).segment_bounds()["sigmoid"]
+    _, end = read_colon(find_stages(colon.usd_path)[0]).segment_bounds()["sigmoid"]
     colon.mobile_until = end + MARGIN
     if setting == "wall_half":
         colon.usd_path = str(write_smooth(folder, refine=2))

@@ -24,7 +24,7 @@ from arcgym.anatomy.meshing.surface_grid import grid_triangles, skin_to_rings, s
 from arcgym.anatomy.meshing.wall import build_wall
 from arcgym.anatomy.stage.types import TEXTURE_LENGTH
 from arcgym.assets import ColonCfg
-from arcgym.utils.paths import resolve_asset
+from arcgym.assets.patient_files import find_stages
 
 SEGMENT = "sigmoid"
 """Part of the shipped colon that the tubes take their measures from."""
@@ -86,7 +86,7 @@ class WallMeasures:
 @cache
 def shipped_stage() -> ColonStage:
     """Return the colon that ships with ARCGym."""
-    return read_colon(resolve_asset(ColonCfg().usd_path))
+    return read_colon(find_stages(ColonCfg().usd_path)[0])
 
 
 @cache

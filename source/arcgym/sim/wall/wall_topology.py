@@ -42,10 +42,30 @@ def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, laye
     lowest = ring[faces].min(axis=1)
     count = int(ring.max()) + 1
     rings = members(np.where(layer == 0)[0], ring, count, pad_first=True)
-    order = np.lexsort((_angle_around(points[faces].mean(axis=1) - points[rings].mean(axis=1)[lowest], lowest), lowest))
+    sector = _sectors(ring, layer)
+    if sector is None:
+        angle = _angle_around(points[faces].mean(axis=1) - points[rings].mean(axis=1)[lowest], lowest)
+    else:
+        angle = np.angle(np.exp(2j * np.pi * sector[faces]).sum(axis=1))
+    order = np.lexsort((angle, lowest))
     faces = faces[order].astype(np.int32)
     ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
     return LumenTopology(rings, faces, face_neighbors(faces), ring_start, *_patches(ring_start))
+
+
+def _sectors(ring: np.ndarray, layer: np.ndarray) -> np.ndarray | None:
+    """Return how far around its ring each vertex of the lumen side is, 0 to 1, shape (V,); None without a grid.
+
+    On a grid of rings and sectors the order of the faces is that of their numbers: the same in every patient.
+    """
+    inner = np.flatnonzero(layer == 0)
+    rings = int(ring.max()) + 1
+    count = len(inner) // rings
+    if not np.array_equal(ring[inner], np.repeat(np.arange(rings), count)):
+        return None
+    sector = np.zeros(len(ring))
+    sector[inner] = np.tile(np.arange(count) / count, rings)
+    return sector
 
 
 def _angle_around(arm: np.ndarray, ring: np.ndarray) -> np.ndarray:

@@ -1,0 +1,88 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which stages a configuration asks for: one, a list, a folder, or a split of a population."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from arcgym.utils.paths import resolve_asset
+from arcgym.utils.string import did_you_mean, resolve_callable
+
+Resolver = Callable[[str, int | None], Sequence[Path]]
+"""Returns the stages of the first so many patients of a split, of all for None, and makes those that are missing."""
+
+STAGE_NAMES = ("colon.usda", "colon.usdc", "colon.usd", "colon.usdz")
+"""Names of stage files in the folders of patients, the first that is there."""
+
+_POPULATIONS: dict[str, str | Resolver] = {}
+
+
+def register_population(name: str, resolver: str | Resolver) -> None:
+    """Let ``name:split`` stand for stages, in ``env.scene.colon.usd_path``.
+
+    Args:
+        name: Name before the colon, of at least two letters.
+        resolver: Function of a split's name and a number of patients, see :data:`Resolver`, or its name
+            ``"module:function"``, which is imported when stages are asked for. It raises :class:`ValueError` for a
+            split that it does not have.
+
+    Raises:
+        ValueError: If the name is taken or too short.
+    """
+    if name in _POPULATIONS or len(name) < 2:
+        raise ValueError(f"A population cannot be called {name!r}: it is taken or shorter than two letters.")
+    _POPULATIONS[name] = resolver
+
+
+def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list[Path]:
+    """Return the stages that a configuration names.
+
+    Args:
+        usd_path: A stage, a folder of folders with a stage each, ``name:split`` of a population, or a list of these.
+        count: How many of the stages to take, from the first; None for all.
+
+    Raises:
+        ValueError: If there is no such population or split, a folder has no stages, a stage comes twice, or there are
+            fewer stages than asked for.
+    """
+    entries = [usd_path] if isinstance(usd_path, str) else list(usd_path)
+    paths = [path for entry in entries for path in _stages_of(entry, count)]
+    if not paths:
+        raise ValueError("ColonCfg.usd_path is an empty list, expected at least one stage.")
+    if count is not None and len(paths) < count:
+        raise ValueError(f"ColonCfg.num_patients is {count}, but {usd_path} has {len(paths)} patients.")
+    paths = paths[:count]
+    twice = next((path for path in paths if paths.count(path) > 1), None)
+    if twice is not None:
+        raise ValueError(f"ColonCfg.usd_path names {twice} twice.")
+    return paths
+
+
+def _stages_of(entry: str, count: int | None) -> Sequence[Path]:
+    population, colon, split = entry.partition(":")
+    if colon and len(population) > 1 and not Path(entry).exists():
+        return _of_population(population, split, count)
+    path = resolve_asset(entry)
+    return _of_folder(path) if path.is_dir() else [path]
+
+
+def _of_population(name: str, split: str, count: int | None) -> Sequence[Path]:
+    if name not in _POPULATIONS:
+        raise ValueError(f"There is no population {name!r} ({name}:{split}). {did_you_mean(name, _POPULATIONS)}")
+    resolver = _POPULATIONS[name]
+    return (resolve_callable(resolver) if isinstance(resolver, str) else resolver)(split, count)
+
+
+def _of_folder(folder: Path) -> Sequence[Path]:
+    """Return the stage in a folder, or those in the folders in it, sorted by name."""
+    places = [folder] if _stage_in(folder) else sorted(place for place in folder.iterdir() if place.is_dir())
+    found = [stage for stage in map(_stage_in, places) if stage is not None]
+    if not found:
+        raise ValueError(f"ColonCfg.usd_path: no stages in {folder}, expected a colon.usda in it or in its folders.")
+    return found
+
+
+def _stage_in(folder: Path) -> Path | None:
+    return next((folder / name for name in STAGE_NAMES if (folder / name).is_file()), None)

@@ -1,0 +1,84 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stages that a configuration names: one, lists, folders, splits of populations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from arcgym.assets import patient_files
+from arcgym.assets.patient_files import find_stages, register_population
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Three patients, of which ``empty`` has no stage, and a file."""
+    for name in ("b", "a", "empty"):
+        (tmp_path / name).mkdir()
+    for name in ("a/colon.usda", "a/colon.usdc", "b/colon.usdc", "notes.txt"):
+        (tmp_path / name).write_text("")
+    return tmp_path
+
+
+@pytest.fixture
+def population(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[str, int | None]]]:
+    """A population of three patients a split; what was asked for."""
+    asked = []
+
+    def resolve(split: str, count: int | None) -> list[Path]:
+        if split != "train":
+            raise ValueError(f"There is no split '{split}'. Available: train.")
+        asked.append((split, count))
+        return [Path(f"{split}_{k}.usda") for k in range(3)][:count]
+
+    monkeypatch.setattr(patient_files, "_POPULATIONS", {})
+    register_population("people", resolve)
+    yield asked
+
+
+def test_a_folder_stands_for_the_stages_in_its_folders(folder: Path) -> None:
+    assert find_stages(str(folder)) == [folder / "a/colon.usda", folder / "b/colon.usdc"]
+    assert find_stages(str(folder / "b")) == [folder / "b/colon.usdc"]
+    assert find_stages([str(folder / "b/colon.usdc"), str(folder / "a")]) == [
+        folder / "b/colon.usdc",
+        folder / "a/colon.usda",
+    ]
+
+
+def test_the_first_patients_are_taken(folder: Path) -> None:
+    assert find_stages(str(folder), 1) == [folder / "a/colon.usda"]
+    with pytest.raises(ValueError, match="num_patients is 3, but .* has 2 patients"):
+        find_stages(str(folder), 3)
+
+
+def test_a_split_is_asked_for_as_many_as_wanted(population: list[tuple[str, int | None]]) -> None:
+    assert find_stages("people:train", 2) == [Path("train_0.usda"), Path("train_1.usda")]
+    assert population == [("train", 2)]
+    with pytest.raises(ValueError, match="no split 'test'"):
+        find_stages("people:test")
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        ([], "an empty list"),
+        ("peeple:train", "no population 'peeple'.*Did you mean 'people'"),
+        ("{folder}/empty", "no stages in .*empty, expected a colon.usda"),
+        (["{folder}/a", "{folder}/a/colon.usda"], "a/colon.usda twice"),
+    ],
+)
+@pytest.mark.usefixtures("population")
+def test_what_names_no_patients_is_refused(folder: Path, names: str | list[str], message: str) -> None:
+    filled = names.format(folder=folder) if isinstance(names, str) else [name.format(folder=folder) for name in names]
+    with pytest.raises(ValueError, match=message):
+        find_stages(filled)
+
+
+@pytest.mark.usefixtures("population")
+def test_a_name_is_registered_once() -> None:
+    for name in ("people", "c"):
+        with pytest.raises(ValueError, match=f"cannot be called '{name}'"):
+            register_population(name, "module:function")
