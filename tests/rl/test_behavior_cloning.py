@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import torch
@@ -13,7 +15,8 @@ from arcgym.managers import Episode, save_episode
 from arcgym.rl import OnPolicyRunner
 from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningAlgorithmCfg, RslRlBehaviorCloningRunnerCfg
 from arcgym.rl.behavior_cloning_runner import BehaviorCloningRunner
-from arcgym.rl.demonstrations import Demonstrations
+from arcgym.rl.demonstrations import read_demonstrations
+from arcgym.rl.expert_demonstrations import ask_expert
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
@@ -48,19 +51,19 @@ def test_failed_episodes_are_left_out(tmp_path):
     for number, success in enumerate((True, False)):
         steps = np.full((3, 1), number, dtype=np.float32)
         write_episode(tmp_path, number, success, actions=steps, **{"obs/policy": steps})
-    assert Demonstrations(tmp_path, ["policy"], "cpu").actions.flatten().tolist() == [0, 0, 0]
-    assert len(Demonstrations(tmp_path, ["policy"], "cpu", successful_only=False)) == 6
+    assert read_demonstrations(tmp_path, ["policy"], "cpu").actions.flatten().tolist() == [0, 0, 0]
+    assert len(read_demonstrations(tmp_path, ["policy"], "cpu", successful_only=False)) == 6
 
 
 def test_missing_observations_name_the_cure(tmp_path):
     write_episode(tmp_path, 0, actions=np.zeros((3, 1)))
     with pytest.raises(UsageError, match="no 'obs/policy'.*holds: actions.*PreStepObservationsRecorderCfg"):
-        Demonstrations(tmp_path, ["policy"], "cpu")
+        read_demonstrations(tmp_path, ["policy"], "cpu")
 
 
 def test_empty_folder_is_named(tmp_path):
     with pytest.raises(UsageError, match="No successful episodes"):
-        Demonstrations(tmp_path, ["policy"], "cpu")
+        read_demonstrations(tmp_path, ["policy"], "cpu")
 
 
 def test_folder_must_be_given(tmp_path):
@@ -119,3 +122,60 @@ def test_resumed_run_makes_the_same_step(tmp_path):
         each.alg.update()
     for old, new in zip(runner.alg.actor.parameters(), resumed.alg.actor.parameters(), strict=True):
         assert torch.equal(old, new)
+
+
+class Shown(SteerToDot):
+    """Worlds that can start anew; those with an even number succeed."""
+
+    def __init__(self, num_envs: int):
+        super().__init__(num_envs)
+        self.carried_out: list[torch.Tensor] = []
+        self.termination_manager = SimpleNamespace(success=torch.arange(num_envs) % 2 == 0)
+
+    def reset(self):
+        self.episode_length_buf.zero_()
+        self.start(torch.ones(self.num_envs, dtype=torch.bool))
+        return self.get_observations(), {}
+
+    def step(self, actions):
+        self.carried_out.append(actions)
+        return super().step(actions)
+
+
+def test_the_expert_is_asked_until_there_are_enough_steps():
+    """Episodes of 8 steps in 4 worlds, of which 2 succeed: 16 steps a round, and two rounds for 20."""
+    env = Shown(4)
+    shown = ask_expert(env, ["policy"], "cpu", 20, expert=lambda obs: torch.full((4, 2), 0.5))
+    assert (len(shown), shown.num_episodes) == (32, 4)
+    assert (
+        len(ask_expert(env, ["policy"], "cpu", 20, successful_only=False, expert=lambda obs: torch.zeros(4, 2))) == 32
+    )
+    assert shown.observations["policy"].dtype == torch.uint8
+
+
+def test_noise_is_carried_out_and_not_kept():
+    env = Shown(2)
+    shown = ask_expert(env, ["policy"], "cpu", 8, noise=0.3, expert=lambda obs: torch.full((2, 2), 0.5))
+    assert torch.all(shown.actions == 0.5)
+    assert 0.1 < (torch.cat(env.carried_out) - 0.5).std() < 0.5
+
+
+def test_an_expert_that_never_succeeds_is_named():
+    env = Shown(2)
+    env.termination_manager.success[:] = False
+    with pytest.raises(UsageError, match="none succeeded"):
+        ask_expert(env, ["policy"], "cpu", 8, expert=lambda obs: torch.zeros(2, 2))
+
+
+def test_asking_counts_among_the_transitions(monkeypatch):
+    """One round of 8 steps in 4 worlds, then one iteration of 4 steps: 48 transitions."""
+    torch.manual_seed(0)
+    algorithm = RslRlBehaviorCloningAlgorithmCfg(demonstrations="expert", expert_steps=8, steps_per_update=1)
+    cfg = RslRlBehaviorCloningRunnerCfg(actor=actor_cfg(), algorithm=algorithm)
+    env = Shown(4)
+    monkeypatch.setattr(
+        "arcgym.rl.expert_demonstrations.ExpertPolicy", lambda env: lambda obs: (-4.0 * env.offset).clamp(-1.0, 1.0)
+    )
+    runner = BehaviorCloningRunner(env, cfg.to_dict(), log_dir=None, device="cpu")
+    runner.learn(1)
+    assert runner.clock.transitions == 48

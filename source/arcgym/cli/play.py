@@ -33,6 +33,7 @@ class PlayArguments(RunArguments):
         "control steps (default: until each world's first episode has ended)", None, type=positive
     )
     record: str | None = argument("record trajectories: a folder, or a file ending in .hdf5", None, metavar="PATH")
+    observations: bool = argument("record what the policy observes too, for imitation", False)
     json: bool = argument("print the figures as JSON on the last line", False)
 
 
@@ -64,5 +65,6 @@ def run(namespace: argparse.Namespace) -> None:
         args.video_length if args.video else None,
         args.record,
         args.json,
+        args.observations,
     )
     play(args.task, env_cfg, agent_cfg, options)

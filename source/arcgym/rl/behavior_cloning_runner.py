@@ -5,13 +5,23 @@
 
 from __future__ import annotations
 
+import time
+
 from rsl_rl.env import VecEnv
 
+from arcgym.rl.expert_demonstrations import ask_expert
 from arcgym.rl.runner import OnPolicyRunner
+
+EXPERT = "expert"
+"""Demonstrations that mean the robot's scripted expert."""
 
 
 class BehaviorCloningRunner(OnPolicyRunner):
-    """The on-policy runner; a run that will be logged reads its demonstrations at once, playing needs none."""
+    """The on-policy runner; a run that will be logged reads its demonstrations at once, playing needs none.
+
+    With ``demonstrations=expert`` it asks the robot's scripted expert when learning begins; what the expert does counts
+    among the run's transitions and minutes.
+    """
 
     def __init__(self, env: VecEnv, train_cfg: dict, log_dir: str | None = None, device: str = "cpu"):
         """Build algorithm and logger; arguments as in rsl_rl.
@@ -20,6 +30,33 @@ class BehaviorCloningRunner(OnPolicyRunner):
             UsageError: The demonstrations are missing or do not fit the task.
         """
         super().__init__(env, train_cfg, log_dir, device)
-        if log_dir is not None:
-            demonstrations = self.alg.read_demonstrations()  # type: ignore[attr-defined]
-            print(f"demonstrations: {demonstrations.num_episodes} episodes, {len(demonstrations)} steps")
+        self._asks_expert = self.alg.folder == EXPERT  # type: ignore[attr-defined]
+        if log_dir is not None and not self._asks_expert:
+            self._describe()
+
+    def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
+        """Ask the expert where the configuration says so, and learn; see :class:`OnPolicyRunner`."""
+        if self._asks_expert and not self.clock.is_over:
+            self._ask_expert()
+        super().learn(num_learning_iterations, init_at_random_ep_len)
+
+    def _ask_expert(self) -> None:
+        start, alg = time.perf_counter(), self.alg
+        steps_before = self.env.unwrapped.common_step_counter  # type: ignore[attr-defined]
+        alg.take(  # type: ignore[attr-defined]
+            ask_expert(
+                self.env,
+                alg.groups,  # type: ignore[attr-defined]
+                self.device,
+                alg.expert_steps,  # type: ignore[attr-defined]
+                alg.expert_noise,  # type: ignore[attr-defined]
+                alg.successful_only,  # type: ignore[attr-defined]
+            )
+        )
+        steps = self.env.unwrapped.common_step_counter - steps_before  # type: ignore[attr-defined]
+        self.clock.add(time.perf_counter() - start, steps * self.env.num_envs * self.gpu_world_size)
+        self._describe()
+
+    def _describe(self) -> None:
+        demonstrations = self.alg.read_demonstrations()  # type: ignore[attr-defined]
+        print(f"demonstrations: {demonstrations.num_episodes} episodes, {len(demonstrations)} steps")

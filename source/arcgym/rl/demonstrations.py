@@ -16,35 +16,17 @@ from arcgym.utils.errors import UsageError
 
 
 class Demonstrations:
-    """Steps of recorded episodes in memory, for drawing batches of them."""
+    """Observations and actions of steps in memory, for drawing batches of them."""
 
-    def __init__(self, folder: str | Path, groups: list[str], device: str, successful_only: bool = True):
-        """Read the episodes that a recorder wrote, with ``obs/<group>`` and ``actions``.
+    def __init__(self, observations: TensorDict, actions: torch.Tensor, num_episodes: int):
+        """Keep the steps.
 
         Args:
-            folder: Folder of the episodes.
-            groups: Observation groups to read.
-            device: Where the steps are kept.
-            successful_only: Whether episodes that the task's success did not end are left out.
-
-        Raises:
-            UsageError: If there is no episode, or none that succeeded, or one lacks an observation group.
+            observations: What each action was chosen from, batch of steps.
+            actions: Raw actions, shape (steps, A).
+            num_episodes: Episodes that they are of.
         """
-        paths = episode_paths(folder)
-        episodes = [episode for path in paths if (episode := Episode.load(path)).info["success"] or not successful_only]
-        if not episodes:
-            wanted = "successful episodes" if successful_only else "episodes"
-            raise UsageError(f"No {wanted} in '{folder}', which holds {len(paths)} recorded episodes.")
-        self.num_episodes = len(episodes)
-        names = {group: f"obs/{group}" for group in groups} | {"actions": "actions"}
-        for path_name in names.values():
-            _check(episodes, path_name, folder)
-        joined = {
-            key: torch.from_numpy(np.concatenate([episode.data[name] for episode in episodes])).to(device)
-            for key, name in names.items()
-        }
-        self.actions = joined.pop("actions").float()
-        self.observations = TensorDict(joined, batch_size=[len(self.actions)], device=device)
+        self.observations, self.actions, self.num_episodes = observations, actions, num_episodes
 
     def __len__(self) -> int:
         """Return the number of steps."""
@@ -56,10 +38,41 @@ class Demonstrations:
         return self.observations[index], self.actions[index]
 
 
+def read_demonstrations(
+    folder: str | Path, groups: list[str], device: str, successful_only: bool = True
+) -> Demonstrations:
+    """Read the episodes that a recorder wrote, with ``obs/<group>`` and ``actions``.
+
+    Args:
+        folder: Folder of the episodes, or a data set of ``arcgym record`` with a folder for each patient.
+        groups: Observation groups to read.
+        device: Where the steps are kept.
+        successful_only: Whether episodes that the task's success did not end are left out.
+
+    Raises:
+        UsageError: If there is no episode, or none that succeeded, or one lacks an observation group.
+    """
+    folders = [Path(folder), *sorted(path for path in Path(folder).glob("*") if path.is_dir())]
+    paths = [path for place in folders for path in episode_paths(place)]
+    episodes = [episode for path in paths if (episode := Episode.load(path)).info["success"] or not successful_only]
+    if not episodes:
+        wanted = "successful episodes" if successful_only else "episodes"
+        raise UsageError(f"No {wanted} in '{folder}', which holds {len(paths)} recorded episodes.")
+    names = {group: f"obs/{group}" for group in groups} | {"actions": "actions"}
+    for path_name in names.values():
+        _check(episodes, path_name, folder)
+    joined = {
+        key: torch.from_numpy(np.concatenate([episode.data[name] for episode in episodes])).to(device)
+        for key, name in names.items()
+    }
+    actions = joined.pop("actions").float()
+    return Demonstrations(TensorDict(joined, batch_size=[len(actions)], device=device), actions, len(episodes))
+
+
 def _check(episodes: list[Episode], name: str, folder: str | Path) -> None:
     for episode in episodes:
         if name not in episode.data:
             raise UsageError(
                 f"An episode in '{folder}' has no '{name}'; it holds: {', '.join(sorted(episode.data))}. Record with "
-                "env.recorders.observations set to PreStepObservationsRecorderCfg()."
+                "--observations, or env.recorders.observations set to PreStepObservationsRecorderCfg()."
             )

@@ -47,6 +47,9 @@ class PlayOptions:
     json: bool = False
     """Whether the figures are printed as JSON on the last line."""
 
+    observations: bool = False
+    """Whether the group ``policy`` is recorded too, as imitation needs it."""
+
 
 def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOptions()) -> RolloutResult:
     """Check everything, build the environment, run the policy, and say how it did and where the files are.
@@ -57,7 +60,7 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
     folder = options.checkpoint.parent if options.checkpoint else LOG_ROOT / agent_cfg.experiment_name / options.policy
     _check(env_cfg, agent_cfg, options, folder)
     device = place(env_cfg, agent_cfg, options.device)
-    records = _record_to(options.record, env_cfg)
+    records = _record_to(options, env_cfg)
     video = VideoOptions(folder.resolve() / "videos" / "play", options.video_length) if options.video_length else None
     env = make_env(task, env_cfg, agent_cfg, video)
     try:
@@ -103,8 +106,9 @@ def _check(env_cfg: Any, agent_cfg: Any, options: PlayOptions, folder: Path) -> 
         check_environment(env_cfg, options.device, outputs)
 
 
-def _record_to(record: str | None, env_cfg: Any) -> Path | None:
+def _record_to(options: PlayOptions, env_cfg: Any) -> Path | None:
     """Switch recording on where it is asked for, and return the folder of the episodes."""
+    record = options.record
     if not record:
         return None
     from arcgym.envs import mdp
@@ -113,6 +117,8 @@ def _record_to(record: str | None, env_cfg: Any) -> Path | None:
     folder = path.with_suffix("") if path.suffix == ".hdf5" else path
     env_cfg.recorders = env_cfg.recorders or mdp.TrajectoryRecorderCfg()
     env_cfg.recorders.dataset_export_dir_path = str(folder)
+    if options.observations:
+        env_cfg.recorders.observations = mdp.PreStepObservationsRecorderCfg()
     return folder
 
 

@@ -58,6 +58,11 @@ class RunClock:
         """Hold the time."""
         self._before, self._start = self.seconds, None
 
+    def add(self, seconds: float, transitions: int) -> None:
+        """Count what was done beside learning, such as asking an expert."""
+        self._before += seconds
+        self.transitions += transitions
+
     def state(self) -> dict[str, float]:
         """Return what a checkpoint keeps."""
         return {"seconds": self.seconds, "transitions": self.transitions}

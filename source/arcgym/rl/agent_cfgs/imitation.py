@@ -10,6 +10,7 @@ from typing import Any
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
 from arcgym.rl.runner_cfg import GaussianDistributionCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import require_at_least, require_non_negative, require_positive
 
 
 @configclass
@@ -20,10 +21,18 @@ class RslRlBehaviorCloningAlgorithmCfg:
     """Algorithm class."""
 
     demonstrations: str = ""
-    """Folder of recorded episodes with ``obs/<group>`` for every group that the actor reads. Must be set."""
+    """Folder of recorded episodes with ``obs/<group>`` for every group that the actor reads, or ``expert``: the robot's
+    scripted expert is asked when learning begins. Must be set."""
 
     successful_only: bool = True
     """Whether episodes that did not succeed are left out."""
+
+    expert_steps: int = 20_000
+    """Steps that the expert is asked for, at least. A step of five images of 84×84 takes 106 kB of the device."""
+
+    expert_noise: float = 0.2
+    """Standard deviation of the noise on the expert's actions as they are carried out, in raw actions, so that it shows
+    how to get back from mistakes (DART, arXiv:1703.09327). Zero shows its own way alone."""
 
     learning_rate: float = 3.0e-4
     """Learning rate."""
@@ -36,6 +45,16 @@ class RslRlBehaviorCloningAlgorithmCfg:
 
     max_grad_norm: float = 1.0
     """Gradient clipping by norm."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require_at_least(self, 1, "expert_steps", "batch_size", "steps_per_update")
+        require_positive(self, "learning_rate", "max_grad_norm")
+        require_non_negative(self, "expert_noise")
 
 
 @configclass

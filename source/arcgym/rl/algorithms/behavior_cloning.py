@@ -14,7 +14,7 @@ from rsl_rl.utils import reduce_gradients_in_buckets, resolve_class, resolve_obs
 from tensordict import TensorDict
 from torch import nn
 
-from arcgym.rl.demonstrations import Demonstrations
+from arcgym.rl.demonstrations import Demonstrations, read_demonstrations
 from arcgym.utils.errors import UsageError
 
 
@@ -34,6 +34,8 @@ class BehaviorCloning:
         groups: list[str],
         demonstrations: str = "",
         successful_only: bool = True,
+        expert_steps: int = 20_000,
+        expert_noise: float = 0.2,
         learning_rate: float = 3.0e-4,
         batch_size: int = 256,
         steps_per_update: int = 100,
@@ -47,8 +49,11 @@ class BehaviorCloning:
         Args:
             actor: Policy without memory.
             groups: Observation groups that the policy reads.
-            demonstrations: Folder of the recorded episodes, see :class:`arcgym.rl.demonstrations.Demonstrations`.
+            demonstrations: Folder of the recorded episodes, see :func:`arcgym.rl.demonstrations.read_demonstrations`,
+                or ``expert``: the runner asks the scripted expert.
             successful_only: Whether episodes that did not succeed are left out.
+            expert_steps: Steps that the expert is asked for.
+            expert_noise: Noise on its actions as they are carried out, in raw actions.
             learning_rate: Learning rate.
             batch_size: Recorded steps of one gradient step.
             steps_per_update: Gradient steps of one iteration.
@@ -64,6 +69,7 @@ class BehaviorCloning:
             raise UsageError("Cloning draws single steps, expected a policy without memory, such as ByteCnnModel.")
         self.device, self.learning_rate = device, learning_rate
         self.groups, self.folder, self.successful_only = groups, demonstrations, successful_only
+        self.expert_steps, self.expert_noise = expert_steps, expert_noise
         self._demonstrations: Demonstrations | None = None
         self.batch_size, self.steps_per_update, self.max_grad_norm = batch_size, steps_per_update, max_grad_norm
         self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
@@ -92,13 +98,20 @@ class BehaviorCloning:
                 raise UsageError(
                     "No demonstrations to clone: set agent.algorithm.demonstrations to a folder of recorded episodes."
                 )
-            found = Demonstrations(self.folder, self.groups, self.device, self.successful_only)
-            expected = self.actor.distribution.output_dim
-            if found.actions.shape[1] != expected:
-                have = found.actions.shape[1]
-                raise UsageError(f"The demonstrations in '{self.folder}' have {have} actions, expected {expected}.")
-            self._demonstrations = found
+            self.take(read_demonstrations(self.folder, self.groups, self.device, self.successful_only))
+        assert self._demonstrations is not None
         return self._demonstrations
+
+    def take(self, demonstrations: Demonstrations) -> None:
+        """Clone these demonstrations.
+
+        Raises:
+            UsageError: If they have other actions than the task.
+        """
+        expected, have = self.actor.distribution.output_dim, demonstrations.actions.shape[1]
+        if have != expected:
+            raise UsageError(f"The demonstrations in '{self.folder}' have {have} actions, expected {expected}.")
+        self._demonstrations = demonstrations
 
     def act(self, obs: TensorDict) -> torch.Tensor:
         """Return the mean actions, shape (N, A)."""

@@ -40,7 +40,7 @@ class NavigationDistillationRunnerCfg(RslRlDistillationRunnerCfg):
 
 @configclass
 class NavigationBehaviorCloningRunnerCfg(RslRlBehaviorCloningRunnerCfg):
-    """From recorded episodes: ``agent.algorithm.demonstrations=logs/episodes``.
+    """From recorded episodes, ``agent.algorithm.demonstrations=logs/episodes``, or ``expert``.
 
     Its checkpoints start the other agents with a CNN: ``--agent ppo agent.init_policy=...``.
     """
