@@ -71,7 +71,7 @@ def features(name: str, stage: ColonStage) -> str:
     from arcgym.anatomy.generator.lesions import WIDE_NECK
     from arcgym.anatomy.generator.patients import PATIENTS
 
-    surface, lesions = draw_surface(PATIENTS[name](), int(stage.metadata["seed"]))
+    surface, lesions = draw_surface(PATIENTS[name](), int(stage.metadata.get("attempt", 0)))
     bends = len(acute_bends(stage.centerline.points.astype(float), stage.centerline.arc.astype(float)))
     polyps = sum(lesion.kind in ("sessile", "pedunculated", "flat") for lesion in lesions)
     sacs = [lesion for lesion in lesions if lesion.kind == "diverticulum"]

@@ -15,10 +15,10 @@ from tiny import tiny_colon_stage
 
 from arcgym.anatomy import read_colon, write_colon
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.measures import flipped_normal_fraction, winds_outwards
 from arcgym.anatomy.meshing.colon_fitting import FitSettings, FittedColon, fit_colon
 from arcgym.anatomy.meshing.grid_surfaces import Detail
-from arcgym.anatomy.meshing.lumen_grid import GridShape
 from arcgym.anatomy.meshing.mending import mend_wall
 from arcgym.anatomy.meshing.triangle_surface import TriangleSurface, cut_surface
 from arcgym.anatomy.stage import StageError

@@ -9,11 +9,12 @@ import pytest
 from folded_bend import centerline, field
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.measures import tet_quality
 from arcgym.anatomy.meshing.coarse_wall import RING_DISTANCE, place_rings, wall_points
 from arcgym.anatomy.meshing.conformal_map import ConformalMap, map_surface
 from arcgym.anatomy.meshing.level_curves import level_rings
-from arcgym.anatomy.meshing.lumen_grid import GridShape, LumenGrid, fit_grid, ring_centers
+from arcgym.anatomy.meshing.lumen_grid import LumenGrid, fit_grid, ring_centers
 from arcgym.anatomy.meshing.triangle_surface import TriangleSurface, cut_surface
 from arcgym.anatomy.meshing.wall import build_wall
 from arcgym.anatomy.validation.mesh_checks import boundary_faces, count_crossings
@@ -66,10 +67,11 @@ def test_map_of_a_straight_tube(tube: tuple[ConformalMap, np.ndarray]) -> None:
 
 def test_rings_of_a_straight_tube_are_circles(tube: tuple[ConformalMap, np.ndarray]) -> None:
     mapped, _ = tube
-    rings, found = level_rings(mapped, np.array([0.4, 0.5, 0.6]), 24)
+    rings, angle, found = level_rings(mapped, np.array([0.4, 0.5, 0.6]), 24)
     center, radius = ring_centers(rings)
     assert found.all()
     assert radius == pytest.approx(0.010, abs=1e-4)
+    assert np.abs(angle - np.arange(24) * np.pi / 12).max() < 0.1, "on a circle v and length agree"
     assert np.ptp(rings[..., 1], axis=1).max() < 1.2e-3, "the caps are a voxel off the axis, which tilts the curves"
     assert center[1] == pytest.approx([0, 0.04, 0], abs=3e-4)
 

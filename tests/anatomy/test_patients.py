@@ -14,7 +14,6 @@ from scipy.sparse.csgraph import connected_components
 
 from arcgym.anatomy import SEGMENTS, ColonStage, read_colon
 from arcgym.anatomy.bends import acute_bends
-from arcgym.anatomy.generator.generate import draw_surface
 from arcgym.anatomy.generator.patients import COLON_5_POLYPS, PATIENTS
 from arcgym.anatomy.generator.spec import ColonSpec, PolypSpec
 from arcgym.anatomy.segments import RETROPERITONEAL
@@ -102,28 +101,6 @@ def test_cecum_has_valve_and_appendix(stages: dict[str, ColonStage], name: str) 
     marks = stages[name].landmarks
     order = ["cecum_entry", "ileocecal_valve", "appendix_orifice", "cecum_pole"]
     assert [mark for mark in marks if mark in order] == order
-
-
-def test_wide_diverticula_are_in_the_wall() -> None:
-    """A wall vertex within a wide diverticulum's patch stands further out than without it."""
-    from arcgym.anatomy.generator.wall import sample_wall
-
-    surface, lesions = draw_surface(PATIENTS["colon_5"](), PATIENTS["colon_5"]().seed)
-    shift = np.linalg.norm(sample_wall(surface, lesions).points - sample_wall(surface).points, axis=1)
-    assert shift.max() > 0.004
-    assert np.count_nonzero(shift > 1e-6) <= 2 * 4 * 16
-
-
-def test_wide_sacs_let_the_tip_in() -> None:
-    """Four of 25 (15 %): the neck is wider than the 13 mm tip, and the wall behind it stands back over 8 mm."""
-    from arcgym.anatomy.generator.wall import sample_wall
-
-    surface, lesions = draw_surface(PATIENTS["colon_5"](), PATIENTS["colon_5"]().seed)
-    wide = [lesion for lesion in lesions if lesion.kind == "diverticulum" and 2 * lesion.size >= 0.014]
-    plain, sacs = (sample_wall(surface, some).points for some in ((), lesions))
-    pushed = np.linalg.norm(sacs - plain, axis=1)
-    assert len(wide) == 4
-    assert (pushed > 0.008).sum() >= 2 * 4 * len(wide)
 
 
 @pytest.mark.parametrize(("name", "wanted"), list(zip(PATIENTS, (10, 11, 11, 14, 11), strict=True)))

@@ -9,10 +9,10 @@ In reading order:
 - :mod:`generate` runs the stages in between;
 - :mod:`centerline` makes the course: :mod:`courses` and :mod:`routes` give control points, :mod:`relaxation` and
   :mod:`acute_bends` move them; :mod:`posture` lays the same wall along another course;
-- :mod:`surface` is the lumen as a function of arc length and angle, with its :mod:`folds`;
+- :mod:`surface` is the lumen's radius by arc length and angle, with its :mod:`folds`; :mod:`lumen_field` the lumen as a
+  field in space;
 - :mod:`lesions` places diverticula and polyps, :mod:`lesion_shapes` gives them their form;
-- :mod:`wall` and :mod:`visual` sample the surface (rows: :mod:`rows`), and :mod:`quantize` rounds it
-  for small files;
+- :mod:`fitting` makes wall and surfaces of the field, as for any lumen; :mod:`quantize` rounds them for small files;
 - :mod:`acceptance` rejects what is not as the spec asks.
 """
 

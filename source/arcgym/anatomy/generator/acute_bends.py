@@ -15,17 +15,18 @@ from scipy.ndimage import gaussian_filter1d
 from arcgym.anatomy.bends import WINDOW
 from arcgym.anatomy.generator.spec import ColonSpec
 
-SHARPEST = 0.78
-"""Largest curvature times lumen radius of a made bend."""
+SHARPEST = 1.15
+"""Largest curvature times lumen radius of a made bend: real flexures fold, at 0.85 to 1 times the lumen's radius at the
+5th percentile of the course."""
 
 WIDEST = 0.036
 """Largest radius of an arc that turns 90 degrees within the window of :func:`arcgym.anatomy.bends.acute_bends` [m]."""
 
-_ANGLE = np.radians(118.0)
-"""Angle by which an arc turns [rad]."""
+_ANGLES = np.radians(100.0), np.radians(165.0)
+"""Least and largest angle by which an arc turns [rad]."""
 
-_MARGIN = 1.08
-"""Radius of an arc over the least that the spec allows."""
+_WIDER = 1.0, 1.7
+"""Least and largest radius of an arc over the least that spec and lumen allow."""
 
 _REACH = 0.050
 """Length of the course before and behind an arc's middle that it shapes [m]."""
@@ -85,16 +86,31 @@ def choose_bends(points: np.ndarray, spacing: float, radius: np.ndarray, spec: C
     return chosen
 
 
-def make_bends(places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec) -> BendTargets:
-    """Return the bends at the given points; arguments as for :func:`choose_bends`."""
+def make_bends(
+    places: list[int], spacing: float, radius: np.ndarray, spec: ColonSpec, drawn: np.ndarray
+) -> BendTargets:
+    """Return the bends at the given points.
+
+    Args:
+        places: Points in the middle of the bends.
+        spacing: Distance of the course's points [m].
+        radius: Lumen radius at them [m], shape (n,).
+        spec: Asks for the least radius.
+        drawn: Random numbers from 0 to 1 for radius and angle of the bends along the course, shape (k, 2).
+    """
     reach = round(_REACH / spacing)
     index = np.array(places, int)[:, None] + np.arange(-reach, reach + 1)
-    shapes = [_arc_with_legs(float(_arc_radius(radius[k], spec)), reach, spacing) for k in places]
+    order, shapes = np.argsort(np.argsort(places)), []
+    for k, place in enumerate(places):
+        wide, turn = drawn[order[k] % len(drawn)]
+        size = float(_arc_radius(radius[place], spec)) * (_WIDER[0] + wide**2 * (_WIDER[1] - _WIDER[0]))
+        angle = _ANGLES[0] + turn * (_ANGLES[1] - _ANGLES[0])
+        shapes.append(_arc_with_legs(min(size, WIDEST), angle, reach, spacing))
     return BendTargets(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
 
 
 def _arc_radius(radius: np.ndarray, spec: ColonSpec) -> np.ndarray:
-    return np.maximum(_MARGIN * spec.min_bend_radius, radius / SHARPEST)
+    return np.maximum(spec.min_bend_radius, radius / SHARPEST)
 
 
 def _turn(points: np.ndarray, half: int) -> np.ndarray:
@@ -105,10 +121,10 @@ def _turn(points: np.ndarray, half: int) -> np.ndarray:
     return turn
 
 
-def _arc_with_legs(radius: float, reach: int, spacing: float) -> np.ndarray:
+def _arc_with_legs(radius: float, turn: float, reach: int, spacing: float) -> np.ndarray:
     """Return an arc with a straight leg at either end, about its mean [m], shape (2 reach + 1, 3)."""
     step, fine = spacing / 20, np.arange(-20 * reach, 20 * reach + 1) * spacing / 20
-    curvature = np.where(np.abs(fine) < 0.5 * _ANGLE * radius, 1.0 / radius, 0.0)
-    angle = np.cumsum(gaussian_filter1d(curvature, 0.004 / step)) * step
+    curvature = np.where(np.abs(fine) < 0.5 * turn * radius, 1.0 / radius, 0.0)
+    angle = np.cumsum(gaussian_filter1d(curvature, 0.002 / step)) * step
     points = np.cumsum(np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1), axis=0)[::20] * step
     return points - points.mean(0)

@@ -8,7 +8,9 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from arcgym.anatomy.bends import acute_bends
+from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.generator.conditions import effective_segment
 from arcgym.anatomy.generator.relaxation import relax
 from arcgym.anatomy.generator.routes import control_points, sample_route
 from arcgym.anatomy.generator.spec import ColonSpec
@@ -22,6 +24,21 @@ _SIGMOID = SEGMENTS.index("sigmoid")
 _HOLD_TIED, _HOLD_MOBILE, _HOLD_REPOSED = 0.0072, 0.003, 0.025
 """Share of the way back to the route in each iteration: of tied and mobile segments, and of tied ones that another
 posture leaves in place."""
+_WAVES = 0.015, 0.031
+"""Standard deviations of two Gaussians whose difference of random numbers are the waves of the course [m]: their
+wavelengths are 8 to 18 cm."""
+
+_OPENED = 0.9
+"""Radius below which bends are opened after all, over the least one."""
+
+_OPENINGS = 60
+"""Largest number of times that too tight bends are smoothed."""
+
+_CALM = 0.020
+"""Bend radius of the course at which waves are half as large [m]: a flexure does not wind besides."""
+
+_WAVES_FROM, _WAVES_TO = (0.05, 0.09), (0.06, 0.11)
+"""Ways from the anal verge and from the pole over which the waves begin [m]."""
 
 
 def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve | None = None) -> Curve:
@@ -45,13 +62,50 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
         hold = np.where(tied, _HOLD_REPOSED, _HOLD_MOBILE)
         route = np.where(tied[:, None], reference.position(np.asarray(share)), route)
         places = [int(np.abs(share - s).argmin()) for s in acute_bends(reference.points, reference.s)]
-    points = relax(route, edge, base_radius(spec, arc), hold, spec, places)
-    points = _smoothed(points)
+    points = relax(route, edge, base_radius(spec, arc), hold, spec, rng, places)
+    points = open_bends(add_waves(_smoothed(points), spec.waviness, rng), _OPENED * spec.min_bend_radius)
+    points *= edge.sum() / arc_lengths(points)[-1]
     arc = arc_lengths(points)
     ends = arc[np.cumsum(counts)]
     if spec.iliac_fossa is not None:
         ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])
     return Curve(points, ends)
+
+
+def add_waves(points: np.ndarray, size: float, rng: np.random.Generator) -> np.ndarray:
+    """Shift a course sideways by smooth random waves: real colons wind between their flexures as well.
+
+    Args:
+        points: Course, evenly spaced [m], shape (n, 3).
+        size: Standard deviation of the waves in each of the two directions [m].
+        rng: Source of randomness; the same numbers are drawn for every size.
+    """
+    arc = arc_lengths(points)
+    spacing = arc[-1] / (len(points) - 1)
+    noise = rng.normal(size=(len(points), 3))
+    short, long = (gaussian_filter1d(noise, wave / spacing, axis=0, mode="nearest") for wave in _WAVES)
+    waves = (short - long) * size / (short - long).std()
+    tangent = np.gradient(points, arc, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    bend = np.linalg.norm(np.gradient(tangent, arc, axis=0), axis=1)
+    calm = 1.0 / (1.0 + (_CALM * gaussian_filter1d(bend, 0.015 / spacing)) ** 2)
+    calm *= smooth_step(*_WAVES_FROM, arc) * smooth_step(*_WAVES_TO, arc[-1] - arc)
+    waves -= (waves * tangent).sum(1, keepdims=True) * tangent
+    return points + calm[:, None] * waves
+
+
+def open_bends(points: np.ndarray, least: float) -> np.ndarray:
+    """Smooth a course where it bends tighter than a radius [m], shape (n, 3); its ends stay."""
+    points = points.copy()
+    for _ in range(_OPENINGS):
+        before, after = points[:-2] - points[1:-1], points[2:] - points[1:-1]
+        span = 0.5 * (np.linalg.norm(before, axis=1) + np.linalg.norm(after, axis=1))
+        tight = np.linalg.norm(before + after, axis=1) / span**2 > 1.0 / least
+        if not tight.any():
+            break
+        share = np.convolve(tight, [0.15, 0.3, 0.15], "same")[:, None]
+        points[1:-1] += share * 0.5 * (before + after)
+    return points
 
 
 def _height_crossing(height: np.ndarray, arc: np.ndarray, level: float, bounds: np.ndarray) -> float:
@@ -75,7 +129,7 @@ def base_radius(spec: ColonSpec, s: np.ndarray) -> np.ndarray:
     """Return the lumen radius between folds [m] at the spec's nominal arc lengths, same shape as ``s``."""
     knots, values, start = [], [], 0.0
     for name in SEGMENTS:
-        segment = spec.segments[name]
+        segment = effective_segment(spec, name)
         knots += [start, start + 0.5 * segment.length]
         values += [0.5 * segment.start_diameter, 0.5 * segment.middle_diameter]
         start += segment.length

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.generator.conditions import effective_segment
 from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.segments import SEGMENTS
 
@@ -56,9 +57,10 @@ def make_fold_rows(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> l
 
 def _make_row(spec: ColonSpec, curve: Curve, rng: np.random.Generator, row: int) -> FoldRow:
     folds: list[tuple[float, float, float, float, float]] = []
+    kinds = [effective_segment(spec, name).folds for name in SEGMENTS]
     s = curve.bounds("sigmoid")[0] - 0.004
     while s < curve.length - 0.02:
-        kind = spec.segments[SEGMENTS[int(curve.segment(np.array(s)))]].folds
+        kind = kinds[int(curve.segment(np.array(s)))]
         if kind is None:
             s += 0.01
             continue
@@ -80,7 +82,7 @@ def make_valves(curve: Curve, rng: np.random.Generator) -> list[Valve]:
     ]
 
 
-def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float = 0.0) -> np.ndarray:
+def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray) -> np.ndarray:
     """Return the fold depth (share of the way to the chord) at arc length ``s``, ``phi`` from mid-row, shape (n,).
 
     The crest is flat on top: a Gaussian would alias into teeth on rings half a crest apart.
@@ -89,20 +91,10 @@ def fold_height(row: FoldRow, s: np.ndarray, phi: np.ndarray, min_width: float =
     after = np.searchsorted(row.s, s)
     for near in (after - 1, after):
         k = np.clip(near, 0, len(row.s) - 1)
-        x = np.abs(s - _crest(row, k, phi)) / np.maximum(row.width[k], min_width)
+        x = np.abs(s - _crest(row, k, phi)) / row.width[k]
         profile = (np.exp(-0.5 * x**3) + 0.35 * np.exp(-x / 2.6)) / _CREST
         height = np.maximum(height, row.depth[k] * profile)
     return height
-
-
-def nearness(row: FoldRow, s: np.ndarray, phi: np.ndarray, width: float) -> np.ndarray:
-    """Return how near each point is to a crest: 1 on it, falling off over ``width`` [m], 0 at the taeniae."""
-    after = np.searchsorted(row.s, s)
-    near = np.zeros_like(s)
-    for k in (np.clip(after - 1, 0, len(row.s) - 1), np.clip(after, 0, len(row.s) - 1)):
-        x = (s - _crest(row, k, phi)) / (row.width[k] + width)
-        near = np.maximum(near, np.exp(-0.5 * x**2))
-    return near * np.clip(np.cos(1.5 * phi), 0.0, 1.0) ** 0.5
 
 
 def _crest(row: FoldRow, k: np.ndarray, phi: np.ndarray) -> np.ndarray:
@@ -118,9 +110,9 @@ def haustral_bulge(row: FoldRow, s: np.ndarray, phi: np.ndarray) -> np.ndarray:
     return 0.10 * np.sin(np.pi * share) ** 0.8 * np.clip(np.cos(1.5 * phi), 0.0, 1.0)
 
 
-def valve_height(valve: Valve, s: np.ndarray, theta: np.ndarray, min_width: float = 0.0) -> np.ndarray:
+def valve_height(valve: Valve, s: np.ndarray, theta: np.ndarray) -> np.ndarray:
     """Return how far a rectal valve reaches into the lumen [m]: a half ring, bowed upwards at its ends."""
     angle = np.mod(theta - valve.theta + np.pi, 2 * np.pi) - np.pi
     around = np.cos(np.clip(angle / 2.1, -1, 1) * np.pi / 2) ** 0.7
-    x = np.abs(s - valve.s - 0.0025 * (1 - np.cos(angle))) / max(valve.width, min_width)
+    x = np.abs(s - valve.s - 0.0025 * (1 - np.cos(angle))) / valve.width
     return valve.depth * around * np.exp(-0.5 * x**2.2)

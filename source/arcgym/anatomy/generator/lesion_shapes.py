@@ -113,7 +113,7 @@ def _dimple(lesion: Lesion, t: np.ndarray, angle: np.ndarray) -> tuple[np.ndarra
 
 
 def wall_bulge(surface: Surface, lesions: Sequence[Lesion], s: np.ndarray, theta: np.ndarray) -> np.ndarray:
-    """Return how far diverticula that a tip can enter push the simulated wall out [m], shape like ``s``."""
+    """Return how far diverticula that a tip can enter push wall and contact surface out [m], shape like ``s``."""
     bulge = np.zeros_like(s)
     for lesion in lesions:
         if lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK:

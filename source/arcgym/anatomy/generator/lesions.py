@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from arcgym.anatomy.generator.conditions import effective_segment
 from arcgym.anatomy.generator.spec import PolypSpec
 from arcgym.anatomy.generator.surface import DOME_LENGTH, SEAM_MARGIN, Surface
 from arcgym.anatomy.segments import SEGMENTS
@@ -15,8 +16,9 @@ from arcgym.anatomy.segments import SEGMENTS
 WIDE_NECK = 0.007
 """Neck radius from which a diverticulum is also in the simulated wall [m]: a 13 mm colonoscope fits into it."""
 
-_BEND_NEAR, _BEND_SHARE = 0.02, 0.5
-"""How near a bend counts [m], and how far towards its centre a wide sac may reach as a share of its radius."""
+_BEND_NEAR, _BEND_SHARE = 0.015, 0.4
+"""How near a bend counts [m], and how far towards its centre a lesion may be, a wide sac's depth included, as a share
+of its radius: where creases begin."""
 
 _PARIS = {"Ip": ("pedunculated", 1.2), "Is": ("sessile", 1.1), "IIa": ("flat", 0.45)}
 """Kind of lesion, and its height over its radius, by Paris class."""
@@ -55,7 +57,7 @@ def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
     for polyp in sorted(surface.spec.polyp_list, key=lambda polyp: -polyp.diameter):
         lesions.append(_place(surface, polyp.segment, polyp, lesions, rng))
     for name in SEGMENTS:
-        segment = surface.spec.segments[name]
+        segment = effective_segment(surface.spec, name)
         kinds = ["wide diverticulum"] * segment.wide_diverticula
         kinds += ["diverticulum"] * (segment.diverticula - segment.wide_diverticula) + ["polyp"] * segment.polyps
         for kind in kinds:
@@ -96,7 +98,6 @@ def _draw(surface: Surface, kind: str | PolypSpec, s: float, theta: float, rng: 
         shape, height = _PARIS[kind.paris]
         return Lesion(shape, s, theta, 0.5 * kind.diameter, 0.5 * kind.diameter * height, 1.0)
     if kind == "wide diverticulum":
-        s, theta = _between_rings(surface, s, theta)
         return Lesion("diverticulum", s, theta, rng.uniform(*spec.wide_neck), rng.uniform(0.011, 0.014), 1.15)
     if kind == "diverticulum":
         neck = rng.uniform(*spec.diverticulum_neck)
@@ -106,22 +107,14 @@ def _draw(surface: Surface, kind: str | PolypSpec, s: float, theta: float, rng: 
     return Lesion(shape, s, theta, radius, radius * rng.uniform(0.9, 1.5), 1.0)
 
 
-def _between_rings(surface: Surface, s: float, theta: float) -> tuple[float, float]:
-    """Return the middle of the wall's cell at a place: its four vertices then carry the sac together."""
-    arc, step = surface.ring_arc(), 2 * np.pi / surface.spec.sectors
-    k = int(np.clip(np.searchsorted(arc, s), 1, len(arc) - 1))
-    return float(0.5 * (arc[k - 1] + arc[k])), float((np.floor(theta / step) + 0.5) * step)
-
-
 def _off_folds(surface: Surface, lesion: Lesion) -> bool:
-    """Return whether there is no fold or rectal valve on the patch, nor the inside of a bend behind a wide sac."""
+    """Return whether there is no fold or rectal valve on the patch, nor the inside of a bend behind it."""
     wide = lesion.kind == "diverticulum" and lesion.size >= WIDE_NECK
-    if wide:
-        s = lesion.s + np.array([-_BEND_NEAR, 0.0, _BEND_NEAR])
-        bend = surface.curve.interpolate(s, surface.curve.curvature_vector)
-        towards = (bend * surface.curve.outwards(s, np.full(3, lesion.theta))).sum(1).max()
-        if towards * (float(surface.lumen_radius(s)[1]) + lesion.depth) > _BEND_SHARE:
-            return False
+    s = lesion.s + np.array([-_BEND_NEAR, 0.0, _BEND_NEAR])
+    bend = surface.curve.interpolate(s, surface.curve.curvature_vector)
+    towards = (bend * surface.curve.outwards(s, np.full(3, lesion.theta))).sum(1).max()
+    if towards * (float(surface.lumen_radius(s)[1]) + lesion.depth * wide) > _BEND_SHARE:
+        return False
     if any(abs(lesion.s - valve.s) < lesion.patch + 0.012 for valve in surface.valves):
         return False
     near = [np.abs(row.s - lesion.s).min() for k, row in enumerate(surface.rows) if _meets(surface, k, lesion.theta)]

@@ -80,7 +80,7 @@ def colon_4() -> ColonSpec:
             sigmoid_shape="redundant",
             transverse_shape="redundant",
             acute_bends=14,
-            min_bend_radius=0.028,
+            min_bend_radius=0.012,
             transverse_sag=0.13,
             mucosa=MucosaSpec(paleness=0.35, redness=0.12, vessels=1.35),
         )
@@ -127,12 +127,9 @@ def _with_lengths(**lengths: float) -> dict[str, SegmentSpec]:
 
 
 def _committed(spec: ColonSpec) -> ColonSpec:
-    """Let the caecum bend as it may, and make files of less than 3 MB, as the repository holds them all, not of 7."""
+    """Make files of less than 5 MB, as the repository holds them all, not of 7."""
     return replace(
         spec,
-        straight_cecum=False,
-        visual_rows=430,
-        visual_columns=50,
         visual_refinements=2,
         mucosa=replace(spec.mucosa, width=512),
     )

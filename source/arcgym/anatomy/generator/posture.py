@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,14 +25,14 @@ _LENGTH_TRIALS = 4
 """Number of courses that are made to match the lengths."""
 
 
-def make_posed(spec: ColonSpec, reference: Curve, seed: int) -> Curve:
+def make_posed(spec: ColonSpec, reference: Curve, seed: Sequence[int]) -> Curve:
     """Generate the course in the spec's posture, asking for other lengths until segments are as long as before.
 
     Tied segments stay where they are; the wall keeps its acute bends, which turn another way.
     """
     segments = dict(spec.segments)
     for _ in range(_LENGTH_TRIALS):
-        posed = make_centerline(replace(spec, segments=segments), np.random.default_rng(seed), reference)
+        posed = make_centerline(replace(spec, segments=segments), np.random.default_rng(list(seed)), reference)
         ratio = (reference.ends - reference.starts) / (posed.ends - posed.starts)
         segments = {
             name: replace(segment, length=float(segment.length * ratio[k]))

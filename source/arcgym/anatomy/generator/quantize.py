@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from arcgym.anatomy.stage.types import VisualMesh
+from arcgym.anatomy.stage.types import ContactSurface, VisualMesh
 
 _POINT, _NORMAL, _UV, _WEIGHT = 2.0**-17, 2.0**-8, 2.0**-14, 2.0**-9
 """Steps to which is rounded: powers of two, as float32 holds them exactly."""
@@ -26,6 +26,11 @@ def quantize(visual: VisualMesh) -> VisualMesh:
         tint=_rounded(visual.tint, _NORMAL),
         skin_weights=(weights * _WEIGHT).astype(np.float32),
     )
+
+
+def quantize_contact(contact: ContactSurface) -> ContactSurface:
+    """Return the surface with rounded points (8 um)."""
+    return replace(contact, points=_rounded(contact.points, _POINT))
 
 
 def _rounded(values: np.ndarray, step: float) -> np.ndarray:

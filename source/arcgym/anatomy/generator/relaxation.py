@@ -13,8 +13,8 @@ from arcgym.anatomy.generator.acute_bends import choose_bends, make_bends
 from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.polyline import restore_lengths
 
-MAX_CURVATURE_RADIUS = 0.80
-"""Curvature times lumen radius that relaxation aims to stay below; at 1 the inside of a bend folds over."""
+MAX_CURVATURE_RADIUS = 1.15
+"""Curvature times lumen radius that relaxation aims to stay below; above 1 the inside of a bend is a crease."""
 
 HAUSTRAL_MARGIN = 1.14
 """Largest wall radius between folds over the mean radius: haustra bulge, taeniae are drawn in."""
@@ -27,6 +27,12 @@ _CHOOSING = (200, 400, 600)
 
 _CANAL_POINTS = 5
 """Points of the anal canal, which stays straight."""
+
+_LOOP_GAP = 0.0075
+"""Gap that relaxation leaves between the walls of two loops [m]; waves of the course take up part of it."""
+
+_MOST_BENDS = 30
+"""Largest number of acute bends."""
 
 _STIFFER = 0.006
 """Share of every bend that is opened in each iteration."""
@@ -44,6 +50,7 @@ def relax(
     radius: np.ndarray,
     hold: np.ndarray,
     spec: ColonSpec,
+    rng: np.random.Generator,
     bends: list[int] | None = None,
 ) -> np.ndarray:
     """Move the points until edges have their lengths, bends are as wanted and loops are apart.
@@ -57,19 +64,20 @@ def relax(
         radius: Lumen radius [m], shape (n,).
         hold: Share of the way back to the course in each iteration, shape (n,).
         spec: Specification of the colon.
+        rng: Source of the bends' radii and angles.
         bends: Points that become acute bends; None chooses those that turn most.
     """
     points, arc = route.copy(), np.r_[0.0, np.cumsum(edge)]
-    need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + 1.5 * spec.clearance
+    need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + max(_LOOP_GAP, spec.clearance)
     other_loop = np.abs(arc[:, None] - arc[None]) > 1.9 * need
     sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
     canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
-    made = None
+    made, drawn = None, rng.uniform(size=(_MOST_BENDS, 2))
     for k in range(_ITERATIONS):
         if spec.acute_bends and k in _CHOOSING:
             spacing = float(edge.mean())
             places = choose_bends(points, spacing, radius, spec) if bends is None else bends
-            made = make_bends(places, spacing, radius, spec)
+            made = make_bends(places, spacing, radius, spec, drawn)
         if k % _NEIGHBOR_AGE == 0:
             a, b = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
         points += _push_apart(points, a, b, need[a, b])

@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from arcgym.anatomy.generator.spec_checks import check_spec
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.mucosa.spec import MucosaSpec
 from arcgym.anatomy.stage.types import TissueMaterial
 
@@ -57,6 +58,20 @@ class PolypSpec:
     """Shape by the Paris classification: Ip (stalked), Is (sessile) or IIa (flat elevated)."""
 
 
+@dataclass(frozen=True)
+class CollapseSpec:
+    """A stretch that gas does not hold open."""
+
+    segment: str
+    """Segment that it lies in."""
+    position: float = 0.5
+    """Where its middle lies along the segment, from 0 to 1."""
+    length: float = 0.08
+    """Length [m]."""
+    diameter: float = 0.018
+    """Inner diameter between folds there [m]; a colonoscope's tip needs 13 mm."""
+
+
 def default_segments() -> dict[str, SegmentSpec]:
     """Return an average insufflated adult colon of 1.64 m.
 
@@ -94,11 +109,20 @@ class ColonSpec:
     """Course of the sigmoid, a key of :data:`arcgym.anatomy.generator.courses.SIGMOID_SHAPES`."""
     transverse_shape: str = "plain"
     """Course of the transverse colon, a key of :data:`arcgym.anatomy.generator.courses.TRANSVERSE_SHAPES`."""
+    inflation: float = 1.0
+    """Factor of all diameters: below 1 for colons that hold less gas."""
+    collapsed: tuple[CollapseSpec, ...] = ()
+    """Stretches that gas does not hold open; about a tenth of the segments on CT colonography."""
+    sigmoid_state: str = "relaxed"
+    """``relaxed``, ``spastic`` or ``diverticular``, see :mod:`arcgym.anatomy.generator.conditions`."""
     acute_bends: int | None = 10
     """How many places turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
     None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
-    min_bend_radius: float = 0.030
-    """Least radius of the centreline [m]. A colonoscope's bending section turns on about 25-30 mm."""
+    min_bend_radius: float = 0.013
+    """Least radius of the centreline [m], where the lumen is narrow enough. Colons from CT bend at 14-15 mm at least
+    and 15-18 at the 5th percentile; a colonoscope's bending section turns on about 25-30 mm."""
+    waviness: float = 0.0025
+    """Standard deviation of the course's waves between the bends [m]: larger ones turn more in total."""
     transverse_sag: float = 0.10
     """How far the middle of the transverse colon hangs below its ends [m]."""
     left_rise: float = 0.0
@@ -116,8 +140,8 @@ class ColonSpec:
     is too short for it: it bends wherever :attr:`jitter` and its neighbours push it, as in the five patients."""
     radius_variation: float = 0.05
     """Relative standard deviation of the lumen radius along the colon."""
-    clearance: float = 0.005
-    """Least gap between the walls of two loops [m]. Larger than the contact gap, or loops would touch at rest."""
+    clearance: float = 0.0005
+    """Least gap between the walls of two loops [m]; courses keep 7 mm apart, haustra and waves come nearer."""
     polyp_radius: tuple[float, float] = (0.0030, 0.0065)
     """Smallest and largest polyp radius [m] (diminutive to 13 mm)."""
     polyp_list: tuple[PolypSpec, ...] = ()
@@ -132,30 +156,17 @@ class ColonSpec:
     """Smallest and largest radius of a diverticulum's neck [m]; sacs are 5-10 mm wide."""
     wall_thickness: float = 0.002
     """Thickness of the simulated wall [m]; a well distended colon wall is thinner than 3 mm on CT."""
-    ring_spacing: float = 0.0125
-    """Distance of the wall's rings [m]. A finer grid bends more softly and costs proportionally more."""
-    sectors: int = 12
-    """Wall vertices around a ring."""
-    wall_fold_depth: float = 0.6
-    """Depth of the wall's folds as a share of the visual ones: a coarse grid would turn sharp folds into spikes."""
-    wall_fold_width: float = 0.007
-    """Least half width of the wall's folds [m], about half the ring spacing."""
-    min_lumen_radius: float = 0.010
-    """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through everywhere."""
+    grid: GridShape = GridShape()
+    """Rings and sectors of the wall, rows and columns of the surfaces. Change it for studies of the mesh alone: colons
+    of different grids cannot be in one batch."""
+    min_lumen_radius: float = 0.009
+    """Least distance from the centreline to folds [m]; lets a 13 mm scope through everywhere."""
     material: TissueMaterial = TissueMaterial()
     """Tissue of the wall."""
-    visual_rows: int = 590
-    """Cross sections of the fine visual surface."""
-    visual_columns: int = 68
-    """Points around the fine visual surface."""
     visual_refinements: int = 3
     """How often triangles on lesions are split for the fine surface. 2 makes smaller files of many lesions."""
-    proxy_rows: int = 430
-    """Cross sections of the surface drawn for policies."""
-    proxy_columns: int = 28
-    """Points around the surface drawn for policies."""
-    max_attempts: int = 8
-    """How many seeds are tried before the spec is given up."""
+    max_attempts: int = 40
+    """How many draws from the seed are tried before the spec is given up; most are rejected by their course in 1 s."""
 
     def __post_init__(self) -> None:
         """Check every value.

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from arcgym.anatomy.generator.conditions import check_conditions
 from arcgym.anatomy.generator.courses import SIGMOID_SHAPES, TRANSVERSE_SHAPES
 from arcgym.anatomy.segments import SEGMENTS
 
@@ -21,7 +22,9 @@ POSTURES = ("supine", "prone")
 _RANGES = {
     "seed": (0, 2**62),
     "acute_bends": (0, 30),
-    "min_bend_radius": (0.020, 0.033),
+    "min_bend_radius": (0.010, 0.033),
+    "waviness": (0.0, 0.010),
+    "inflation": (0.5, 1.3),
     "transverse_sag": (0.0, 0.25),
     "left_rise": (-0.08, 0.15),
     "right_rise": (-0.08, 0.15),
@@ -30,22 +33,20 @@ _RANGES = {
     "radius_variation": (0.0, 0.2),
     "clearance": (0.0, 0.1),
     "wall_thickness": (0.0005, 0.006),
-    "ring_spacing": (0.004, 0.03),
-    "sectors": (6, 64),
-    "wall_fold_depth": (0.0, 1.0),
-    "wall_fold_width": (0.001, 0.03),
+    "grid.rings": (8, 1000),
+    "grid.sectors": (6, 96),
+    "grid.contact": (1, 12),
+    "grid.visual": (1, 24),
     "min_lumen_radius": (0.004, 0.03),
-    "visual_rows": (100, 4000),
-    "visual_columns": (12, 400),
     "visual_refinements": (0, 4),
-    "proxy_rows": (100, 4000),
-    "proxy_columns": (12, 400),
     "max_attempts": (1, 100),
     "mucosa.width": (64, 4096),
     "mucosa.paleness": (0.0, 1.0),
     "mucosa.redness": (0.0, 1.0),
     "mucosa.vessels": (0.0, 2.0),
     "mucosa.stool": (0.0, 0.5),
+    "mucosa.fluid": (0.0, 0.5),
+    "mucosa.bubbles": (0.0, 0.5),
     "material.youngs_modulus": (1e2, 1e9),
     "material.poissons_ratio": (0.0, 0.4999),
     "material.density": (500.0, 2000.0),
@@ -79,7 +80,12 @@ def check_spec(spec: ColonSpec) -> None:
         _check(name, _value(spec, name), low, high)
     for name, (low, high) in _PAIRS.items():
         _check_pair(name, getattr(spec, name), low, high)
+    if spec.grid.visual % spec.grid.contact:
+        raise ValueError(
+            f"ColonSpec.grid.visual = {spec.grid.visual} must be a multiple of grid.contact = {spec.grid.contact}."
+        )
     _check_choice("posture", spec.posture, POSTURES)
+    check_conditions(spec)
     _check_choice("sigmoid_shape", spec.sigmoid_shape, SIGMOID_SHAPES)
     _check_choice("transverse_shape", spec.transverse_shape, TRANSVERSE_SHAPES)
     if not spec.name or "/" in spec.name:

@@ -9,9 +9,10 @@ from copy import copy
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from arcgym.anatomy.blending import smooth_step, soft_limit
+from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.centerline import base_radius
+from arcgym.anatomy.generator.conditions import narrowed
 from arcgym.anatomy.generator.folds import (
     TAENIAE,
     fold_height,
@@ -21,7 +22,6 @@ from arcgym.anatomy.generator.folds import (
     valve_height,
 )
 from arcgym.anatomy.generator.spec import ColonSpec
-from arcgym.anatomy.meshing.wall import ring_arcs
 
 DOME_LENGTH = 0.030
 """Length over which the caecum closes [m]."""
@@ -35,12 +35,9 @@ _MEDIAL = np.array([-0.8, -0.6, 0.0])
 _ILEUM = 0.004
 """Where the ileum enters, above the beginning of the caecum [m]."""
 
-_BEND_LIMIT = 0.62
-"""Largest radius over the bend's on its inside: rings then keep a third of their spacing, and the lumen flattens."""
-
 
 class Surface:
-    """Radial surface swept along a centreline; every sampling of it (wall, fine, proxy) shows the same colon."""
+    """Radial surface about a centreline, from which :mod:`arcgym.anatomy.generator.lumen_field` makes the lumen."""
 
     def __init__(self, spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> None:
         """Draw everything random: radius, taeniae, folds and valves."""
@@ -71,39 +68,29 @@ class Surface:
         surface.curve = curve
         return surface
 
-    def ring_arc(self) -> np.ndarray:
-        """Return the arc length of the wall's rings [m]."""
-        return ring_arcs(self.curve.length, self.spec.ring_spacing)
-
     def lumen_radius(self, s: np.ndarray) -> np.ndarray:
         """Return the mean radius between folds at ``s`` [m], without the dome of the caecum."""
         return np.interp(s, self.curve.s, self.mean_radius)
 
-    def points(self, s: np.ndarray, theta: np.ndarray, depth: float = 1.0, min_width: float = 0.0) -> np.ndarray:
-        """Return surface points [m], shape ``(*s.shape, 3)``; arguments as for :meth:`radius`."""
-        radius = self.radius(s, theta, depth, min_width)
-        return self.curve.position(s) + radius[..., None] * self.curve.outwards(s, theta)
-
-    def radius(self, s: np.ndarray, theta: np.ndarray, depth: float = 1.0, min_width: float = 0.0) -> np.ndarray:
+    def radius(self, s: np.ndarray, theta: np.ndarray, crease: np.ndarray | None = None) -> np.ndarray:
         """Return the distance from centreline to wall [m].
 
         Args:
             s: Arc length [m].
             theta: Angle around the lumen [rad], same shape.
-            depth: Scale of the fold depth; below 1 for coarse grids.
-            min_width: Least half width of a fold [m], larger for coarse grids.
+            crease: How far each place is a crease on the inside of a bend, 0 to 1, same shape: folds and haustra fade
+                there.
         """
         shape = s.shape
         s, theta = s.ravel(), theta.ravel()
         mean = self.lumen_radius(s)
-        radius = mean + self._folds(s, theta, mean, depth, min_width)
+        folds = self._folds(s, theta, mean) + _undulation(s, theta)
         for valve in self.valves:
-            radius = radius - depth * valve_height(valve, s, theta, min_width)
-        if min_width == 0.0:
-            radius = radius + _undulation(s, theta)
+            folds = folds - valve_height(valve, s, theta)
+        radius = mean + (folds if crease is None else (1.0 - crease.ravel()) * folds)
+        least = np.minimum(self.spec.min_lumen_radius, mean)
         close = np.clip((self.curve.length - s) / DOME_LENGTH, 0.0, 1.0)
-        radius = radius * np.sqrt(close * (2.0 - close))
-        return np.maximum(self._bounded(s, theta, radius), 0.0).reshape(shape)
+        return (np.maximum(radius, least) * np.sqrt(close * (2.0 - close))).reshape(shape)
 
     def sector(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return between which taeniae an angle lies (0 to 2), and the angle from the middle between them [rad]."""
@@ -111,7 +98,7 @@ class Surface:
         sector = np.minimum((angle * TAENIAE / (2 * np.pi)).astype(int), TAENIAE - 1)
         return sector, angle - (sector + 0.5) * 2 * np.pi / TAENIAE
 
-    def _folds(self, s: np.ndarray, theta: np.ndarray, mean: np.ndarray, depth: float, min_width: float) -> np.ndarray:
+    def _folds(self, s: np.ndarray, theta: np.ndarray, mean: np.ndarray) -> np.ndarray:
         """Return the change of radius [m] by taeniae, haustra and folds; none in the rectum."""
         start = self.curve.bounds("sigmoid")[0]
         on = smooth_step(start - 0.015, start + 0.02, s)
@@ -123,15 +110,8 @@ class Surface:
         for k, row in enumerate(self.rows):
             here = sector == k
             bulge[here] = haustral_bulge(row, s[here], phi[here])
-            height[here] = fold_height(row, s[here], phi[here], min_width)
-        return mean * (drawn_in * (1.0 + bulge * on) - 1.0) - depth * height * reach * on
-
-    def _bounded(self, s: np.ndarray, theta: np.ndarray, radius: np.ndarray) -> np.ndarray:
-        """Limit the radius softly on the inside of bends, where the surface would fold over."""
-        bend = self.curve.interpolate(s, self.curve.curvature_vector)
-        towards = np.einsum("ij,ij->i", bend, self.curve.outwards(s, theta))
-        limit = np.where(towards > 1e-3, _BEND_LIMIT / np.maximum(towards, 1e-3), 1.0)
-        return soft_limit(radius, limit)
+            height[here] = fold_height(row, s[here], phi[here])
+        return mean * (drawn_in * (1.0 + bulge * on) - 1.0) - height * reach * on
 
 
 def _vary_radius(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> np.ndarray:
@@ -140,7 +120,7 @@ def _vary_radius(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> np.
     radius = base_radius(spec, curve.s * nominal / curve.length)
     radius = gaussian_filter1d(radius, 4.0, mode="nearest")
     noise = gaussian_filter1d(rng.normal(size=len(curve.s)), 12.0, mode="nearest")
-    return radius * (1.0 + spec.radius_variation * noise / noise.std())
+    return narrowed(spec, curve, radius * (1.0 + spec.radius_variation * noise / noise.std()))
 
 
 def _undulation(s: np.ndarray, theta: np.ndarray) -> np.ndarray:

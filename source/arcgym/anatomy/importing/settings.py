@@ -61,9 +61,9 @@ class ImportSettings:
     """Edge of the voxels that are worked on [m]. Smaller keeps finer folds and costs time and memory."""
     max_gap: float = 0.05
     """Longest collapsed or fluid-filled stretch to bridge [m]."""
-    ring_spacing: float = ColonSpec.ring_spacing
-    """Distance of the wall's rings [m], by default that of generated colons."""
-    sectors: int = ColonSpec.sectors
+    ring_spacing: float = 0.0125
+    """Distance of the wall's rings [m], on average that of generated colons."""
+    sectors: int = 12
     """Wall vertices around a ring, likewise; more suit a wide colon: 12 are 13 mm apart where it is 50 mm wide."""
     wall_thickness: float = ColonSpec.wall_thickness
     """Thickness of the simulated wall [m], likewise."""

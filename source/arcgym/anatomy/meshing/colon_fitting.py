@@ -5,16 +5,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.meshing.coarse_wall import wall_points
 from arcgym.anatomy.meshing.conformal_map import map_surface
 from arcgym.anatomy.meshing.grid_surfaces import Detail, contact_surface, visual_surface
-from arcgym.anatomy.meshing.lumen_grid import GridShape, LumenGrid, fit_grid, ring_centers
+from arcgym.anatomy.meshing.lumen_grid import LumenGrid, fit_grid, ring_centers
 from arcgym.anatomy.meshing.mending import mend_wall
 from arcgym.anatomy.meshing.triangle_surface import TriangleSurface
 from arcgym.anatomy.meshing.wall import build_wall
@@ -92,9 +93,11 @@ def fit_colon(
     mapped = map_surface(surface, first, curve.position(np.array(curve.length)))
     grid = fit_grid(mapped, curve.points, settings.shape)
     if onto is not None:
-        grid = LumenGrid(onto(grid.points), grid.arc, grid.shape)
+        grid = replace(grid, points=onto(grid.points))
     layers, rows = wall_points(grid, settings.thickness)
     arc = np.interp(rows.mean(1), np.arange(grid.shape.rows), grid.arc[: grid.shape.rows])
+    if detail and detail.touched:
+        layers = layers + _shift(layers[0], detail.touched)
     mended = mend_wall(layers, settings.thickness, settings.least_radius)
     wall = build_wall(mended, curve.segment(arc), arc)
     bounds = {name: curve.bounds(name) for name in SEGMENTS}
@@ -102,12 +105,18 @@ def fit_colon(
     return FittedColon(
         grid=grid,
         wall=wall,
-        contact=contact_surface(grid, rows),
+        contact=contact_surface(grid, rows, detail),
         visual=visual_surface(grid, rows, bounds, 1, detail, refinements),
         visual_proxy=visual_surface(grid, rows, bounds, settings.proxy_step, detail, min(refinements, 1)),
         centerline=_centerline(curve, grid),
         mended=float(moved.mean()),
     )
+
+
+def _shift(points: np.ndarray, touched: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """Return by how much points are moved [m], shape kept."""
+    flat = points.reshape(-1, 3)
+    return (touched(flat) - flat).reshape(points.shape)
 
 
 def _centerline(curve: Curve, grid: LumenGrid) -> Centerline:

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.measures import face_normals
 from arcgym.anatomy.meshing.coarse_wall import sample_rows
-from arcgym.anatomy.meshing.lumen_grid import GridShape, LumenGrid, ring_centers
+from arcgym.anatomy.meshing.lumen_grid import LumenGrid, ring_centers
 from arcgym.anatomy.meshing.refine import refine
 from arcgym.anatomy.meshing.surface_grid import dome_texture, grid_triangles, smooth_normals, tube_texture
 from arcgym.anatomy.stage.types import ContactSurface, VisualMesh
@@ -29,9 +30,11 @@ class Detail:
     """Says of points, shape (n, 3), and a level from 0, which to refine, shape (n,), bool."""
     shape: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
     """Returns the points moved, shape (n, 3), and their tint, shape (n,)."""
+    touched: Callable[[np.ndarray], np.ndarray] | None = None
+    """Returns points of wall and contact surface moved, shape (n, 3); None leaves both as they are."""
 
 
-def contact_surface(grid: LumenGrid, wall_rows: np.ndarray) -> ContactSurface:
+def contact_surface(grid: LumenGrid, wall_rows: np.ndarray, detail: Detail | None = None) -> ContactSurface:
     """Return the surface that the scope touches: rows and columns that divide the wall's cells evenly.
 
     Row ``k * shape.contact`` and column ``j * shape.contact`` stand where the wall's ring k and sector j do, before
@@ -40,6 +43,7 @@ def contact_surface(grid: LumenGrid, wall_rows: np.ndarray) -> ContactSurface:
     Args:
         grid: Grid on the surface of the lumen.
         wall_rows: Row of the grid at which each vertex of the wall stands, shape (rings, sectors).
+        detail: Moves points, see :attr:`Detail.touched`.
     """
     shape, parts = grid.shape, grid.shape.contact
     step = shape.visual // parts
@@ -47,6 +51,8 @@ def contact_surface(grid: LumenGrid, wall_rows: np.ndarray) -> ContactSurface:
     tube = sample_rows(grid.tube[:, ::step], rows)
     dome = grid.points[shape.rows - 1 + step :: step, ::step]
     points = np.concatenate([tube, dome])
+    if detail and detail.touched:
+        points = detail.touched(points.reshape(-1, 3)).reshape(points.shape)
     count, columns = points.shape[:2]
     indices, weights = _carriers(
         np.repeat(np.minimum(np.arange(count) / parts, shape.rings - 1.0)[:, None], columns, 1).ravel(),
@@ -154,7 +160,8 @@ def _carriers(ring: np.ndarray, sector: np.ndarray, shape: GridShape) -> tuple[n
 
 def _texture(grid: LumenGrid, places: np.ndarray, bounds: Mapping[str, tuple[float, float]]) -> np.ndarray:
     """Return u round the lumen and v along it, shape (n, 2)."""
-    theta = 2 * np.pi * places[:, 1] / grid.shape.columns
+    closed = np.concatenate([grid.angle, grid.angle[:, :1] + 2 * np.pi], 1)
+    theta = map_coordinates(closed, places[:, :2].T, order=1, mode="nearest")
     s = np.interp(places[:, 0], np.arange(len(grid.arc)), grid.arc)
     uv = tube_texture(s, theta, bounds)
     dome = places[:, 2] > 0.5

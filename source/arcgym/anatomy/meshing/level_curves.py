@@ -34,7 +34,7 @@ class _Crossings:
 
 def level_rings(
     mapped: ConformalMap, levels: np.ndarray, sectors: int, by_length: float = 0.5
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the loop of each level curve that winds once round the lumen, as points.
 
     Args:
@@ -45,19 +45,20 @@ def level_rings(
             leaves few points to pouches.
 
     Returns:
-        Positions [m], shape (R, sectors, 3), and whether each level has such a loop, shape (R,).
+        Positions [m], shape (R, sectors, 3); v there, ascending by a full turn along a ring [rad], shape (R, sectors);
+        and whether each level has such a loop, shape (R,).
     """
     found = _find_crossings(mapped, np.asarray(levels, float))
     following = np.full(len(found.level), -1)
     following[found.start] = found.end
     chain_to = following.tolist()
-    rings = np.full((len(levels), sectors, 3), np.nan)
+    rings = np.full((len(levels), sectors, 4), np.nan)
     for first, turns in _main_loops(found, len(levels)):
         loop = _walk(chain_to, first)
         if loop:
             loop = loop[:: 1 if turns > 0 else -1]
             rings[found.level[first]] = _resample(found.position[loop], found.angle[loop], sectors, by_length)
-    return rings, np.isfinite(rings[:, 0, 0])
+    return rings[..., :3], rings[..., 3], np.isfinite(rings[:, 0, 0])
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
@@ -113,7 +114,10 @@ def _walk(chain_to: list[int], first: int) -> list[int]:
 
 
 def _resample(points: np.ndarray, angle: np.ndarray, sectors: int, by_length: float) -> np.ndarray:
-    """Return points of a closed polyline at even steps of a blend of v and length, the first at v = 0, (sectors, 3)."""
+    """Return points of a closed polyline, and v, at even steps of a blend of v and length, shape (sectors, 4).
+
+    The first step is at 0.
+    """
     closed = np.concatenate([points, points[:1]])
     turn = np.r_[0.0, np.cumsum(wrapped(np.diff(np.r_[angle, angle[0]])))]
     turn = 0.5 * (np.maximum.accumulate(turn) + np.minimum.accumulate(turn[::-1])[::-1])
@@ -123,4 +127,6 @@ def _resample(points: np.ndarray, angle: np.ndarray, sectors: int, by_length: fl
     place = (1.0 - by_length) * turn + by_length * (length + np.mean(turn - length))
     place += 1e-9 * np.arange(len(place))
     wanted = (np.arange(sectors) * 2 * np.pi / sectors - angle[0] - place[0]) % (2 * np.pi) + place[0]
-    return np.stack([np.interp(wanted, place, closed[:, k]) for k in range(3)], 1)
+    v = np.interp(wanted, place, angle[0] + turn)
+    even = np.arange(sectors) * 2 * np.pi / sectors
+    return np.stack([*(np.interp(wanted, place, closed[:, k]) for k in range(3)), even + wrapped(v - even)], 1)

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.meshing.conformal_map import ConformalMap
 from arcgym.anatomy.meshing.level_curves import level_rings
 from arcgym.anatomy.polyline import arc_lengths
@@ -34,35 +35,6 @@ _CECUM = 0.060
 
 
 @dataclass(frozen=True)
-class GridShape:
-    """Numbers of rows and columns, the same for every patient, so that a batch can hold any."""
-
-    rings: int = 160
-    """Rings of the wall: 11.9 mm apart in the mean colon of 1.9 m, 15 mm in the longest (2.4 m)."""
-    sectors: int = 12
-    """Wall vertices of a ring: 12 mm apart in a lumen of 46 mm."""
-    contact: int = 3
-    """Rows and columns of the contact surface for each of the wall's."""
-    visual: int = 6
-    """Rows and columns of the visual surface for each of the wall's; a multiple of :attr:`contact`."""
-
-    @property
-    def rows(self) -> int:
-        """Rows of the visual surface up to the last ring of the wall."""
-        return (self.rings - 1) * self.visual + 1
-
-    @property
-    def columns(self) -> int:
-        """Columns of the visual surface."""
-        return self.sectors * self.visual
-
-    @property
-    def dome_rows(self) -> int:
-        """Rows of the visual surface beyond the last ring, the last one at the pole."""
-        return 2 * self.visual
-
-
-@dataclass(frozen=True)
 class LumenGrid:
     """Points on the surface of a lumen: rows from the anal verge to the caecal pole, columns round it.
 
@@ -71,6 +43,8 @@ class LumenGrid:
 
     points: np.ndarray
     """Positions [m], shape (rows + dome rows, columns, 3); the last row is the pole, as often as there are columns."""
+    angle: np.ndarray
+    """Conformal angle of each point [rad], ascending along a row by a full turn, shape (rows + dome rows, columns)."""
     arc: np.ndarray
     """Arc length along the given centreline of each row [m], ascending, shape (rows + dome rows,)."""
     shape: GridShape
@@ -115,11 +89,12 @@ def fit_grid(mapped: ConformalMap, path: np.ndarray, shape: GridShape | None = N
     dome = np.linspace(last, chart.travel[-1], shape.dome_rows)[1:]
     travel = np.concatenate([np.linspace(start, last, shape.rows), dome])
     level = np.interp(travel, chart.travel, chart.level)
-    points, found = level_rings(mapped, level, shape.columns)
-    points = _oriented(_filled(points, found))
+    points, angle, found = level_rings(mapped, level, shape.columns)
+    points, angle = _oriented(_filled(points, found), _filled(angle, found))
     points = np.concatenate([points, np.broadcast_to(points[-1].mean(0), (1, shape.columns, 3))])
+    angle = np.concatenate([angle, angle[-1:]])
     arc = np.interp(travel, chart.travel, chart.arc)
-    return LumenGrid(points, _ascending(np.r_[arc, arc_lengths(path)[-1]]), shape)
+    return LumenGrid(points, angle, _ascending(np.r_[arc, arc_lengths(path)[-1]]), shape)
 
 
 def ring_centers(rings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -139,7 +114,7 @@ def _chart(mapped: ConformalMap, path: np.ndarray) -> _Chart:
     rising = np.maximum.accumulate(mapped.u[mapped.cut])
     level = np.unique(np.interp(np.arange(0.5 * _STEP, along[-1], _STEP), along, rising))
     level = level[(level > 1e-12) & (level < 1.0 - 1e-12)]
-    rings, found = level_rings(mapped, level, _SECTORS)
+    rings, _, found = level_rings(mapped, level, _SECTORS)
     if found.mean() < 0.5 or found.sum() < 10:
         raise ValueError(
             f"Of {len(level)} level curves between the ends, {found.sum()} go round the lumen; expected nearly all."
@@ -175,7 +150,7 @@ def _ascending(values: np.ndarray) -> np.ndarray:
 
 
 def _filled(rings: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """Return the rings, those that were not found interpolated from the nearest ones."""
+    """Return values of rings, those that were not found interpolated from the nearest ones, shape kept."""
     at = np.arange(len(rings))
     flat = rings.reshape(len(rings), -1).copy()
     for k in np.flatnonzero(~found):
@@ -186,12 +161,14 @@ def _filled(rings: np.ndarray, found: np.ndarray) -> np.ndarray:
     return flat.reshape(rings.shape)
 
 
-def _oriented(rings: np.ndarray) -> np.ndarray:
-    """Return the rings, turned round if they are left-handed about the way ahead."""
+def _oriented(rings: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rings and their angles, turned round if they are left-handed about the way ahead."""
     center = ring_centers(rings)[0]
     spoke = rings - center[:, None]
     area = np.cross(spoke, np.roll(spoke, -1, 1)).sum(1)
     forward = np.gradient(center, axis=0)
     if np.einsum("ij,ij->", area, forward) > 0:
-        return rings
-    return np.roll(rings[:, ::-1], 1, 1)
+        return rings, angle
+    turned = np.roll(-angle[:, ::-1], 1, 1)
+    turned[:, 1:] += 2 * np.pi
+    return np.roll(rings[:, ::-1], 1, 1), turned

@@ -21,3 +21,7 @@ class MucosaSpec:
     """How clearly vessels shine through; 0 hides them."""
     stool: float = 0.0
     """Share of the mucosa under residual stool, 0 to 0.5."""
+    fluid: float = 0.0
+    """Share of the mucosa under turbid, greenish fluid, 0 to 0.5; 0.05 to 0.25 is a good preparation (Aronchick)."""
+    bubbles: float = 0.0
+    """Share of the mucosa under foam, 0 to 0.5."""

@@ -67,7 +67,13 @@ def make_textures(
     fine = draw_vessels(rng, height, width, fine=True)
     look = look or MucosaSpec()
     albedo, detail = _albedo(noise, trunks, fine, look), _detail(noise, trunks)
-    return _soil(noise, albedo, detail, look.stool) if look.stool else (albedo, detail)
+    if look.stool:
+        albedo, detail = _soil(noise, albedo, detail, look.stool)
+    if look.fluid:
+        albedo, detail = _flood(noise, albedo, detail, look.fluid)
+    if look.bubbles:
+        albedo, detail = _foam(noise, albedo, detail, look.bubbles)
+    return albedo, detail
 
 
 class _Noise:
@@ -127,6 +133,38 @@ def _soil(noise: _Noise, albedo: np.ndarray, detail: np.ndarray, share: float) -
     relief = detail.astype(float)
     relief[..., 3:] *= 1.0 - 0.6 * cover
     return _bytes(soiled), np.rint(relief).astype(np.uint8) & _DETAIL_BITS
+
+
+def _cover(patches: np.ndarray, share: float, edge: float) -> np.ndarray:
+    """Return a mask that is 1 on a share of the pixels, those of the highest patches, with edges of a width."""
+    return np.clip((patches - np.quantile(patches, 1.0 - share)) / edge, 0.0, 1.0)[..., None]
+
+
+def _flood(noise: _Noise, albedo: np.ndarray, detail: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """Cover a share of the mucosa with a smooth, shining, turbid film that lets vessels through where it is thin."""
+    patches = noise(160, 900, 1.4)
+    cover, deep = _cover(patches, share, 0.10), _cover(patches, share, 1.6)
+    color = np.array([0.62, 0.56, 0.24])
+    film = albedo / 255 + cover * (0.30 + 0.5 * deep) * (color - albedo / 255)
+    relief = detail.astype(float)
+    relief[..., :2] += cover * (127.5 - relief[..., :2])
+    relief[..., 3:] += cover * (255.0 - relief[..., 3:])
+    return _bytes(film), np.rint(relief).astype(np.uint8) & _DETAIL_BITS
+
+
+def _foam(noise: _Noise, albedo: np.ndarray, detail: np.ndarray, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """Cover a share of the mucosa with bubbles: pale rims, domes that shine."""
+    patches = noise(90, 600, 1.3) + 0.2 * noise(12, 40, 0.8)
+    cells = noise(9, 22, 0.2)
+    cover, rims = _cover(patches, share, 0.05), np.exp(-((cells / 0.35) ** 2))[..., None]
+    foam = albedo / 255 + cover * (0.25 + 0.55 * rims) * (np.array([0.93, 0.88, 0.76]) - albedo / 255)
+    domes = 0.10 * np.abs(cells)
+    slopes = [(np.roll(domes, -1, axis) - np.roll(domes, 1, axis)) / (2 * _PIXEL) for axis in (1, 0)]
+    relief = detail.astype(float)
+    shape = 127.5 * (1.0 + np.clip(np.stack(slopes, -1) / SLOPE_RANGE, -1.0, 1.0))
+    relief[..., :2] += cover * (shape - relief[..., :2])
+    relief[..., 3:] += cover * (255.0 - relief[..., 3:])
+    return _bytes(foam), np.rint(relief).astype(np.uint8) & _DETAIL_BITS
 
 
 def _bytes(image: np.ndarray) -> np.ndarray:

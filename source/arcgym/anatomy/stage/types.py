@@ -85,7 +85,7 @@ class ContactSurface:
     A grid of rows from the anal verge to the caecal pole and columns round the lumen, with vertex
     ``row * columns + column``, carried by the wall's inner layer. It closes after the last column; its last row is the
     pole, as often as there are columns. Rows and columns divide each cell of the wall evenly
-    (:class:`arcgym.anatomy.meshing.lumen_grid.GridShape`): with k columns a sector, the cell between rings r, r + 1 and
+    (:class:`arcgym.anatomy.grid_shape.GridShape`): with k columns a sector, the cell between rings r, r + 1 and
     sectors j, j + 1 carries rows ``r * k`` to ``(r + 1) * k`` and columns ``j * k`` to ``(j + 1) * k``; rows beyond the
     last ring are carried by it alone.
     """

@@ -1,0 +1,199 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The lumen of a generated colon as a field in space, positive inside, which bends of any radius leave whole.
+
+A point belongs to the nearest place of the centreline; the field is the lumen's radius there, folds included, less the
+distance. Where the colon turns back on itself a wall is kept between its two legs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+from scipy.spatial import cKDTree
+
+from arcgym.anatomy.blending import smooth_step
+from arcgym.anatomy.generator.surface import Surface
+
+VOXEL = 0.0016
+"""Edge of a voxel [m]; the surface is moved onto the exact field afterwards."""
+
+LEAD = 0.020
+"""Length by which the anal canal is continued outwards, so that the surface does not end at the verge [m]."""
+
+_BAND = -0.005, 0.014
+"""Distances out of and into the plain tube between which the field is evaluated: haustra and folds reach less [m]."""
+
+_BLOCK = 4
+"""Voxels of an edge of the blocks in which the band is looked for."""
+
+_AT_ONCE = 400_000
+"""Points evaluated at once, which bounds the memory."""
+
+_CURVE_STEP = 0.0005
+"""Distance of the centreline points to which distances are taken [m]."""
+
+_CHUNK = 0.020
+"""Length of the pieces of the centreline among which other legs are looked for [m]."""
+
+_LEGS = 1.0, 2.0
+"""Way along the centreline between two places, over the sum of their radii, from and at which they are two legs."""
+
+_OPEN = 0.010
+"""How far two places overlap before the wall between them begins, where they are not yet two legs [m]."""
+
+_NEAR_WALL = -0.005, 0.010
+"""Distances out of and into the plain tube between which another leg may cut into it [m]."""
+
+_CREASE = 0.45, 0.85
+"""Curvature times distance towards the centre of a bend where a crease begins, and where it is fully rounded."""
+
+_ROUNDING = 0.0032
+"""Standard deviation of the smoothing of creases on the inside of bends [m]: two walls do not fold to an edge."""
+
+
+@dataclass(frozen=True)
+class FieldGrid:
+    """A field at the centres of voxels."""
+
+    values: np.ndarray
+    """Positive in the lumen [m], shape (X, Y, Z), float32."""
+    origin: np.ndarray
+    """Centre of the first voxel [m], shape (3,)."""
+    spacing: float
+    """Edge of a voxel [m]."""
+
+
+class LumenField:
+    """Field of a generated lumen, at any points and on a grid."""
+
+    def __init__(self, surface: Surface, septum: float) -> None:
+        """Prepare distances to the centreline.
+
+        Args:
+            surface: Radius by arc length and angle.
+            septum: Least distance of the lumens of two legs [m].
+        """
+        self._surface, self._septum = surface, septum
+        curve = surface.curve
+        self._s = np.arange(-LEAD, curve.length, _CURVE_STEP)
+        tangent = curve.frame(np.array(0.0))[0]
+        self._line = curve.position(self._s) + np.minimum(self._s, 0.0)[:, None] * tangent
+        self._radius = surface.lumen_radius(self._s)
+        self._tree = cKDTree(self._line)
+        self._chunks = _Chunks(self._line, self._s, self._radius, septum)
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Return the field at points [m], shape (n,), of positions (n, 3), without the rounding of creases."""
+        return self._evaluate(points)[0]
+
+    def places(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return arc length [m] and angle about the centreline [rad] of points, shape (n,) each, of (n, 3)."""
+        _, near = self._tree.query(points)
+        s = np.clip(self._s[near], 0.0, self._surface.curve.length)
+        _, normal, binormal = self._surface.curve.frame(s)
+        offset = points - self._line[near]
+        angle = np.arctan2(np.einsum("ij,ij->i", offset, binormal), np.einsum("ij,ij->i", offset, normal))
+        return s, np.mod(angle, 2 * np.pi)
+
+    def sample(self, spacing: float = VOXEL) -> FieldGrid:
+        """Return the field on a grid; away from the wall it is that of the plain tube, or the bounds of the band."""
+        reach = float(self._radius.max()) - _BAND[0] + _BLOCK * spacing
+        origin = self._line.min(0) - reach
+        blocks = np.ceil((self._line.max(0) + reach - origin) / (_BLOCK * spacing)).astype(int)
+        values, band = self._blocks(origin, blocks, spacing)
+        crease = np.zeros(values.size, np.float32)
+        for part in np.array_split(band, max(1, len(band) // _AT_ONCE)):
+            at = origin + spacing * np.stack(np.unravel_index(part, values.shape), 1)
+            values.ravel()[part], crease[part] = self._evaluate(at)
+        return FieldGrid(_rounded(values, crease.reshape(values.shape), spacing), origin, spacing)
+
+    def _blocks(self, origin: np.ndarray, blocks: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return a field that is right in sign outside of the band, and the voxels of blocks that meet the band."""
+        edge = _BLOCK * spacing
+        index = np.stack(np.meshgrid(*map(np.arange, blocks), indexing="ij"), -1).reshape(-1, 3)
+        half = 0.5 * np.sqrt(3.0) * (edge - spacing)
+        farthest = float(self._radius.max()) - _BAND[0] + half
+        distance, near = self._tree.query(
+            origin + edge * index + 0.5 * (edge - spacing), distance_upper_bound=farthest, workers=2
+        )
+        plain = np.r_[self._radius, 0.0][near] - distance
+        meets = (plain > _BAND[0] - half) & (plain < _BAND[1] + half)
+        coarse = np.where(plain > 0.0, _BAND[1], _BAND[0]).astype(np.float32).reshape(blocks)
+        for axis in range(3):
+            coarse = np.repeat(coarse, _BLOCK, axis)
+        corner = _BLOCK * index[meets]
+        within = np.stack(np.meshgrid(*[np.arange(_BLOCK)] * 3, indexing="ij"), -1).reshape(-1, 3)
+        voxels = (corner[:, None] + within).reshape(-1, 3)
+        return np.ascontiguousarray(coarse), np.ravel_multi_index(voxels.T, coarse.shape)
+
+    def _evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the field, and how far each point is on the inside of a bend where its crease is rounded (0 to 1)."""
+        distance, near = self._tree.query(points, workers=2)
+        plain = self._radius[near] - distance
+        value, crease = plain.copy(), np.zeros(len(points))
+        band = np.flatnonzero((plain > _BAND[0]) & (plain < _BAND[1]))
+        value[band], crease[band] = self._detailed(points[band], distance[band], near[band])
+        other = self._chunks.other_leg(points, near, plain)
+        return np.minimum(value, 0.5 * (np.maximum(value, plain) - other)), crease
+
+    def _detailed(self, points: np.ndarray, distance: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the field with folds, and the marks of creases, both of shape (n,)."""
+        curve = self._surface.curve
+        s = np.clip(self._s[near], 0.0, curve.length)
+        _, normal, binormal = curve.frame(s)
+        offset = points - self._line[near]
+        angle = np.arctan2(np.einsum("ij,ij->i", offset, binormal), np.einsum("ij,ij->i", offset, normal))
+        bend = np.einsum("ij,ij->i", curve.interpolate(s, curve.curvature_vector), offset)
+        crease = smooth_step(*_CREASE, bend)
+        return self._surface.radius(s, np.mod(angle, 2 * np.pi), crease=crease) - distance, crease
+
+
+class _Chunks:
+    """Pieces of the centreline, by which the other leg at a point is found."""
+
+    def __init__(self, line: np.ndarray, s: np.ndarray, radius: np.ndarray, septum: float) -> None:
+        self._line, self._s, self._radius, self._septum = line, s, radius, septum
+        count = max(1, round((s[-1] - s[0]) / _CHUNK))
+        self._bounds = np.linspace(0, len(s), count + 1).astype(int)
+        self._chunk = np.repeat(np.arange(count), np.diff(self._bounds))
+        self._trees = [cKDTree(line[a:b]) for a, b in zip(self._bounds[:-1], self._bounds[1:], strict=True)]
+        middle = np.array([line[a:b].mean(0) for a, b in zip(self._bounds[:-1], self._bounds[1:], strict=True)])
+        size = 0.5 * _CHUNK + np.array(
+            [radius[a:b].max() for a, b in zip(self._bounds[:-1], self._bounds[1:], strict=True)]
+        )
+        gap = np.linalg.norm(middle[:, None] - middle[None], axis=2) - size[:, None] - size[None]
+        apart = (
+            np.abs(np.subtract.outer(np.arange(count), np.arange(count))) * _CHUNK > size[:, None] + size[None] - _CHUNK
+        )
+        self._near = [np.flatnonzero(row) for row in (gap < septum + 0.012) & apart]
+
+    def other_leg(self, points: np.ndarray, near: np.ndarray, plain: np.ndarray) -> np.ndarray:
+        """Return the plain field of the other leg plus the wall's thickness, largest over all legs, shape (n,)."""
+        out = np.full(len(points), -1.0)
+        chunk = self._chunk[near]
+        order = np.argsort(chunk, kind="stable")
+        first = np.searchsorted(chunk[order], np.arange(len(self._near) + 1))
+        for a, others in enumerate(self._near):
+            here = order[first[a] : first[a + 1]]
+            if not len(others) or not len(here):
+                continue
+            here = here[(plain[here] > _NEAR_WALL[0]) & (plain[here] < _NEAR_WALL[1])]
+            for b in others:
+                distance, index = self._trees[b].query(points[here], distance_upper_bound=0.08)
+                index = np.minimum(index, self._bounds[b + 1] - self._bounds[b] - 1) + self._bounds[b]
+                ways = np.abs(self._s[index] - self._s[near[here]]) / (self._radius[index] + self._radius[near[here]])
+                leg = smooth_step(*_LEGS, ways)
+                value = self._radius[index] - distance + leg * (self._septum + _OPEN) - _OPEN
+                out[here] = np.maximum(out[here], np.where(ways > _LEGS[0], value, -1.0))
+        return out
+
+
+def _rounded(values: np.ndarray, crease: np.ndarray, spacing: float) -> np.ndarray:
+    """Smooth a field where creases are."""
+    sigma = _ROUNDING / spacing
+    soft = gaussian_filter(values, sigma)
+    share = np.clip(1.5 * gaussian_filter(crease, sigma), 0.0, 1.0)
+    return values + share * (soft - values)

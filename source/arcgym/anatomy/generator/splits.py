@@ -1,0 +1,48 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Splits of the random patients by seed, as ``splits.yaml`` beside this file has them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import yaml
+
+from arcgym.utils.string import did_you_mean
+
+SPLITS_FILE = Path(__file__).with_name("splits.yaml")
+"""The file that defines the splits."""
+
+
+@dataclass(frozen=True)
+class Splits:
+    """Seeds of the random patients."""
+
+    version: int
+    """Version of the splits; belongs to every result."""
+    generator: int
+    """Version of the generator that makes their patients."""
+    seeds: dict[str, range]
+    """Seeds of each split by name."""
+
+
+@cache
+def read_splits() -> Splits:
+    """Return the splits."""
+    values = yaml.safe_load(SPLITS_FILE.read_text())
+    seeds = {name: range(first, last + 1) for name, (first, last) in values["splits"].items()}
+    return Splits(int(values["version"]), int(values["generator"]), seeds)
+
+
+def split_seeds(name: str) -> range:
+    """Return the seeds of a split.
+
+    Raises:
+        ValueError: There is no such split; lists those there are.
+    """
+    seeds = read_splits().seeds
+    if name not in seeds:
+        raise ValueError(f"Unknown split '{name}' of the population. {did_you_mean(name, seeds)}")
+    return seeds[name]
