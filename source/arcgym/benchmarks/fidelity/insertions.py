@@ -170,11 +170,16 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
 
 
 def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
-    """Return a scope with every link but the base's cut in two, of the same shaft."""
-    parts = np.r_[1, np.full(len(spec.link_length) - 1, 2)]
-    bent = 2 * spec.bending_links
-    along = 0.25 * spec.link_length[-1]
-    x, y, z = spec.camera.position
+    """Return a scope of the same shaft with every link cut in two but the base and the last.
+
+    The last link carries the camera, and a magnet pulls at its middle: cut in two, it would be pulled elsewhere.
+    """
+    links = len(spec.link_length)
+    parts = np.r_[1, np.full(links - 2, 2), 1]
+    bent = max(0, 2 * spec.bending_links - 1)
+    limit = _split_hinges(spec.hinge_limit)
+    limit[: len(limit) - bent] *= 0.5
+    limit[len(limit) - bent :] *= spec.bending_links / max(1, bent)
     return replace(
         spec,
         link_length=np.repeat(spec.link_length / parts, parts),
@@ -182,10 +187,8 @@ def halved(spec: EndoscopeSpec) -> EndoscopeSpec:
         link_mass=np.repeat(spec.link_mass / parts, parts),
         bending_rigidity=_split_hinges(spec.bending_rigidity),
         torsional_rigidity=_split_hinges(spec.torsional_rigidity),
-        hinge_limit=0.5 * _split_hinges(spec.hinge_limit),
+        hinge_limit=limit,
         bending_links=bent,
-        camera=replace(spec.camera, position=(x, y, z - along)),
-        lights=spec.lights - np.array([0.0, 0.0, along]),
     )
 
 
@@ -194,5 +197,7 @@ def _split_hinges(value: np.ndarray) -> np.ndarray:
 
     A hinge stands for half of its two links, so that half of what a middle hinge stands for was each of theirs.
     """
-    after = np.concatenate([value[1:], value[-1:]])
-    return np.stack([value, 2.0 / (1.0 / value + 1.0 / after)], axis=1).reshape(-1, *value.shape[1:])
+    middle = 2.0 / (1.0 / value[:-1] + 1.0 / value[1:])
+    out = np.repeat(value, 2, axis=0)[:-1]
+    out[1::2] = middle
+    return out
