@@ -35,6 +35,7 @@ COMMANDS = {
     "bench soak": ("arcgym.cli.bench_soak", "drive the robots for a long time and look for faults"),
     "bench camera": ("arcgym.cli.bench_camera", "measure how many pictures the camera draws"),
     "bench learner": ("arcgym.cli.bench_learner", "measure how long agents take for an update"),
+    "bench scaling": ("arcgym.cli.bench_scaling", "measure how much faster a run gets with more GPUs"),
     "snapshots": ("arcgym.cli.snapshots", "make the start states of a task ahead"),
 }
 """Module and one line of help by subcommand. A name may have two words, such as ``bench soak``."""
