@@ -9,7 +9,8 @@ W worlds, L links a world, S contact slots a world, V wall vertices.
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactRecords, LinkShapes
-from arcgym.sim.contact.contact_search_kernels import FAR, Candidates, LumenSurface, sum_before
+from arcgym.sim.contact.contact_search_kernels import Candidates, sum_before
+from arcgym.sim.contact.lumen_kernels import FAR, LumenSurface
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
 from arcgym.utils import warp_setup  # noqa: F401
 

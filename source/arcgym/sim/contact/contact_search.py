@@ -10,6 +10,7 @@ import warp as wp
 
 from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
+from arcgym.sim.contact import lumen_kernels
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
@@ -67,7 +68,7 @@ class ContactSearch:
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
-        self.bounds = kernels.Bounds()
+        self.bounds = lumen_kernels.Bounds()
         self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
         self.bounds.patch = wp.zeros((len(topology.patch_start) - 1, num_envs), dtype=wp.vec4, device=device)
         self.candidates = self._candidates(cfg.patch_capacity * (self.link_count + FURTHER_LINKS))
@@ -79,9 +80,9 @@ class ContactSearch:
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
 
-    def _surface(self, topology: LumenTopology, reach: int) -> kernels.LumenSurface:
-        surface = kernels.LumenSurface()
-        for name in ("rings", "faces", "neighbors", "patch_start", "ring_patch"):
+    def _surface(self, topology: LumenTopology, reach: int) -> lumen_kernels.LumenSurface:
+        surface = lumen_kernels.LumenSurface()
+        for name in ("rings", "faces", "neighbors", "patch_start", "ring_patch", "patch_vertices"):
             setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
         ring = np.repeat(np.arange(self.ring_count), np.diff(topology.ring_start))
         surface.ring = wp.array(ring, dtype=int, device=self.device)
@@ -142,7 +143,7 @@ class ContactSearch:
     def update_centers(self, x: wp.array) -> None:
         """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W), vec3."""
         wp.launch(
-            kernels.ring_centers,
+            lumen_kernels.ring_centers,
             (self.num_envs, self.ring_count),
             inputs=[x, self.surface],
             outputs=[self.centers],
@@ -156,7 +157,7 @@ class ContactSearch:
             body_q: Link poses, shape (W*L,), transform.
         """
         wp.launch(
-            kernels.track_rings,
+            lumen_kernels.track_rings,
             (self.num_envs, self.link_count),
             inputs=[self.centers, body_q, MAX_RING_SHIFT],
             outputs=[self.ring, self.ring_distance],
@@ -179,7 +180,7 @@ class ContactSearch:
         """Find the patches near each link, and the distances of their faces."""
         links, stride = (self.num_envs, self.link_count), self._stride
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
-        self._launch(kernels.bound_faces, (self.ring_count, self.num_envs), [x, self.surface], [self.bounds])
+        self._launch(lumen_kernels.bound_faces, (self.ring_count, self.num_envs), [x, self.surface], [self.bounds])
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)

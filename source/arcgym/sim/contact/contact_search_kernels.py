@@ -10,31 +10,9 @@ a patch, V wall vertices.
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactLaw, LinkShapes
+from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, sphere_reached
 from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
-
-FAR = wp.constant(1.0e9)
-
-
-@wp.struct
-class LumenSurface:
-    """Inner faces of one world's wall, sorted by ring; normals point from the lumen into the wall."""
-
-    rings: wp.array2d[int]  # inner vertices of each ring, padded with the first, shape (R, S)
-    faces: wp.array2d[int]  # shape (F, 3)
-    ring: wp.array[int]  # lowest ring of each face's vertices, shape (F,)
-    neighbors: wp.array2d[int]  # face across the edge opposite to each corner or -1, shape (F, 3)
-    patch_start: wp.array[int]  # first face of each patch, shape (P + 1,)
-    ring_patch: wp.array[int]  # first patch of each ring, shape (R + 1,)
-    reach: int  # rings on either side of a link's own whose faces may touch it from outside, too
-
-
-@wp.struct
-class Bounds:
-    """Spheres around the faces of each patch and of each ring: center [m] and radius [m]."""
-
-    patch: wp.array2d[wp.vec4]  # shape (P, W)
-    ring: wp.array2d[wp.vec4]  # shape (R, W)
 
 
 @wp.struct
@@ -54,107 +32,11 @@ class Candidates:
     nearest: wp.array2d[float]  # least distance of them, FAR for none [m], shape (W, L)
 
 
-@wp.kernel
-def ring_centers(x: wp.array2d[wp.vec3], surface: LumenSurface, centers: wp.array2d[wp.vec3]):
-    """Compute the mean of each ring's inner vertices. Launch (W, R).
-
-    Args:
-        x: Wall positions [m], shape (V, W).
-        surface: Inner faces of one world.
-        centers: Ring centres [m], shape (W, R); written.
-    """
-    w, r = wp.tid()
-    n = surface.rings.shape[1]
-    total = wp.vec3(0.0)
-    for k in range(n):
-        total += x[surface.rings[r, k], w]
-    centers[w, r] = total / float(n)
-
-
-@wp.kernel
-def track_rings(
-    centers: wp.array2d[wp.vec3],
-    body_q: wp.array[wp.transform],
-    max_shift: int,
-    ring: wp.array2d[int],
-    ring_distance: wp.array2d[float],
-):
-    """Find the ring nearest to each link, and its distance [m]. Launch (W, L).
-
-    Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1.
-
-    A link whose center is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
-
-    Args:
-        centers: Ring centers [m], shape (W, R).
-        body_q: Link poses, shape (W*L,).
-        max_shift: Rings that a link may cross since the last call.
-        ring: Ring of each link or -1, shape (W, L); updated.
-        ring_distance: Distance from its center [m], shape (W, L); written.
-    """
-    w, link = wp.tid()
-    p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
-    last = ring[w, link]
-    lo = int(0)
-    hi = centers.shape[1]
-    if last >= 0:
-        lo = wp.max(0, last - max_shift)
-        hi = wp.min(hi, last + max_shift + 1)
-    best = float(FAR)
-    found = last
-    for r in range(lo, hi):
-        d = wp.length_sq(p - centers[w, r])
-        if d < best:
-            best = d
-            found = r
-    ring[w, link] = found
-    ring_distance[w, link] = wp.sqrt(best)
-    if found == 0 and wp.dot(p - centers[w, 0], centers[w, 1] - centers[w, 0]) < 0.0:
-        ring_distance[w, link] = FAR
-
-
 @wp.func
 def plane_reached(a: wp.vec3, normal: wp.vec3, axis: wp.vec3, limit: float) -> bool:
     """Return whether the plane through ``a`` comes within ``limit`` of the segment from ``-axis`` to ``axis``."""
     gap = wp.abs(wp.dot(normal, a)) - wp.abs(wp.dot(normal, axis))
     return gap <= 0.0 or gap * gap <= limit * limit * wp.length_sq(normal)
-
-
-@wp.kernel
-def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
-    """Enclose the faces of each ring, patch by patch. Launch (R, W)."""
-    r, w = wp.tid()
-    first = surface.ring_patch[r]
-    last = surface.ring_patch[r + 1]
-    middle = wp.vec3(0.0)
-    for p in range(first, last):
-        center = wp.vec3(0.0)
-        faces = surface.patch_start[p + 1] - surface.patch_start[p]
-        for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
-            for k in range(3):
-                center += x[surface.faces[f, k], w]
-        center = center / float(3 * faces)
-        radius = float(0.0)
-        for f in range(surface.patch_start[p], surface.patch_start[p + 1]):
-            for k in range(3):
-                radius = wp.max(radius, wp.length_sq(x[surface.faces[f, k], w] - center))
-        bounds.patch[p, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
-        middle += center
-    middle = middle / float(wp.max(1, last - first))
-    radius = float(0.0)
-    for p in range(first, last):
-        sphere = bounds.patch[p, w]
-        radius = wp.max(radius, wp.length(wp.vec3(sphere[0], sphere[1], sphere[2]) - middle) + sphere[3])
-    bounds.ring[r, w] = wp.vec4(middle[0], middle[1], middle[2], radius)
-
-
-@wp.func
-def sphere_reached(sphere: wp.vec4, center: wp.vec3, axis: wp.vec3, limit: float) -> bool:
-    """Whether a sphere comes within ``limit`` of the segment from ``center`` - ``axis`` to ``center`` + ``axis``."""
-    p = wp.vec3(sphere[0], sphere[1], sphere[2])
-    t = segment_parameter(p, center - axis, center + axis)
-    reach = limit + sphere[3]
-    return wp.length_sq(p - center - (2.0 * t - 1.0) * axis) < reach * reach
 
 
 @wp.func

@@ -28,6 +28,8 @@ class LumenTopology:
     """First face of each patch, some neighboring faces of one ring, shape (P + 1,), int32."""
     ring_patch: np.ndarray
     """First patch of each ring, shape (R + 1,), int32."""
+    patch_vertices: np.ndarray
+    """Vertices of each patch, padded with its first, shape (P, K), int32."""
 
 
 def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, layer: np.ndarray) -> LumenTopology:
@@ -50,7 +52,9 @@ def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, laye
     order = np.lexsort((angle, lowest))
     faces = faces[order].astype(np.int32)
     ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
-    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, *_patches(ring_start))
+    patch_start, ring_patch = _patches(ring_start)
+    patch_vertices = _patch_vertices(faces, patch_start)
+    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, patch_start, ring_patch, patch_vertices)
 
 
 def _sectors(ring: np.ndarray, layer: np.ndarray) -> np.ndarray | None:
@@ -93,6 +97,16 @@ def _patches(ring_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     ]
     ring_patch = np.cumsum([0, *map(len, starts)]).astype(np.int32)
     return np.append(np.concatenate(starts), ring_start[-1]).astype(np.int32), ring_patch
+
+
+def _patch_vertices(faces: np.ndarray, patch_start: np.ndarray) -> np.ndarray:
+    """Return the vertices of each patch, each once, padded with the first, shape (P, K)."""
+    groups = [np.unique(faces[a:b]) for a, b in zip(patch_start[:-1], patch_start[1:], strict=True)]
+    out = np.zeros((len(groups), max(map(len, groups))), np.int32)
+    for row, group in zip(out, groups, strict=True):
+        row[:] = group[0]
+        row[: len(group)] = group
+    return out
 
 
 def members(vertices: np.ndarray, ring: np.ndarray, count: int, pad_first: bool) -> np.ndarray:
