@@ -29,6 +29,8 @@ class WallElements(Protocol):
     """Total force with this kind of elements."""
     data: Any
     """Struct that those kernels take."""
+    size: float
+    """Length that makes the first modulus a stiffness [m]; 1 for a shell, whose moduli are stiffnesses."""
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure the elements at positions ``x`` [m], shape (V, W), before a residual or a sweep."""
@@ -61,11 +63,13 @@ class Solid:
         """
         edges = [(rest[tets[:, 1:]] - rest[tets[:, :1]]).transpose(0, 2, 1) for rest in points]
         start, entry = vertex_entries(tets, len(points[0]))
+        volume = [np.linalg.det(one) / 6.0 for one in edges]
+        self.size = float(np.mean(volume)) ** (1.0 / 3.0)
         self.data = solid_kernels.SolidElements()
         self.data.patient = patient
         self.data.tets = wp.array(tets, dtype=wp.vec4i, device=device)
         self.data.inv_rest = patient_array([np.linalg.inv(one) for one in edges], wp.mat33, device)
-        self.data.volume = patient_array([np.linalg.det(one) / 6.0 for one in edges], float, device)
+        self.data.volume = patient_array(volume, float, device)
         self.data.entry_start = wp.array(start, dtype=int, device=device)
         self.data.entry = wp.array(entry, dtype=int, device=device)
 
@@ -76,6 +80,7 @@ class Solid:
 class Shell:
     """Triangles and hinges, measured once a step."""
 
+    size = 1.0
     sweep_color, residual = sweep_kernels(
         shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
     )

@@ -50,19 +50,20 @@ class VertexBlock:
     hessian: wp.mat33
 
 
-FORCE_TOLERANCE = wp.constant(1.0e-3)
-"""Force under which a vertex that the ring correction did not move is not swept [N]: noise of single precision."""
 MOVE_TOLERANCE = wp.constant(1.0e-7)
 """Move by the ring correction under which it counts as not moved [m]."""
 
 
 @wp.func
-def converged(force: wp.vec3, correction: wp.vec3) -> bool:
-    """Return whether a vertex with this force [N] and this move by the ring correction [m] needs no sweep."""
-    return (
-        wp.length_sq(force) < FORCE_TOLERANCE * FORCE_TOLERANCE
-        and wp.length_sq(correction) < MOVE_TOLERANCE * MOVE_TOLERANCE
-    )
+def converged(force: wp.vec3, correction: wp.vec3, noise: float) -> bool:
+    """Return whether a vertex needs no sweep.
+
+    Args:
+        force: Force on it [N].
+        correction: Its move by the ring correction [m].
+        noise: Force that is rounding alone [N].
+    """
+    return wp.length_sq(force) < noise * noise and wp.length_sq(correction) < MOVE_TOLERANCE * MOVE_TOLERANCE
 
 
 @wp.func
