@@ -21,7 +21,7 @@ from arcgym.benchmarks.fidelity.placement import follow
 from arcgym.benchmarks.fidelity.pushes import BEND, DEPTH
 from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.smooth_colon import smooth_stage
-from arcgym.benchmarks.fidelity.tube_model import TubeModel
+from arcgym.benchmarks.fidelity.tube_model import TubeModel, load_size
 from arcgym.benchmarks.fidelity.tubes import shipped_stage
 from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
 from arcgym.sim import ContactCfg
@@ -64,6 +64,22 @@ def test_a_long_brick_tube_bends_like_a_beam() -> None:
 
     # L^3 / 192 EI, and a few per cent for shear and for the load's width.
     assert tube.compliance(middle) == pytest.approx(length**3 / (192.0 * 5.0e6 * inertia), rel=0.05)
+
+
+def oval(angle: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Press a tube oval with the same load everywhere."""
+    return np.cos(2.0 * angle)[:, None] * np.stack([np.cos(angle), np.sin(angle), 0.0 * z], axis=1)
+
+
+def test_size_of_a_load_is_its_integral() -> None:
+    # the integral of |cos 2 angle| around is 4, times the length
+    assert load_size(oval, 0.1) == pytest.approx(0.4, rel=1e-4)
+
+
+def test_an_octant_is_the_whole_tube() -> None:
+    whole = TubeModel(0.1, 0.02, 0.002, 5.0e6, 0.3, around=16, along=4)
+    octant = TubeModel(0.1, 0.02, 0.002, 5.0e6, 0.3, around=16, along=4, octant=True)
+    assert octant.compliance(oval) == pytest.approx(whole.compliance(oval), rel=1e-6)
 
 
 @pytest.mark.parametrize(("poissons_ratio", "ratio"), [(0.0, 1.01), (0.5, 1.0)])

@@ -33,11 +33,16 @@ class TubeModel:
     """Elements around."""
     along: int = 24
     """Elements along."""
+    octant: bool = False
+    """Models a half of the length and a quarter around, for loads with these symmetries: angle and pi minus angle,
+    angle and its negative, both ends. Numbers of elements are those of the whole tube."""
 
     def nodes(self) -> np.ndarray:
         """Return the nodes' cylinder coordinates (r, angle, z), shape (Z, A, 3, 3): along, around, across the wall."""
         z = np.linspace(0.0, self.length, 2 * self.along + 1)
         angle = np.linspace(0.0, 2.0 * np.pi, 2 * self.around, endpoint=False)
+        if self.octant:
+            z, angle = z[: self.along + 1], angle[: self.around // 2 + 1]
         r = self.radius + self.thickness * np.array([0.0, 0.5, 1.0])
         z, angle, r = np.meshgrid(z, angle, r, indexing="ij")
         return np.stack([r, angle, z], axis=-1)
@@ -48,9 +53,16 @@ class TubeModel:
         return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
 
     def bricks(self) -> np.ndarray:
-        """Return the nodes of the elements, shape (E, 27)."""
-        columns = 2 * self.around
-        i, j = np.meshgrid(2 * np.arange(self.along), 2 * np.arange(self.around), indexing="ij")
+        """Return the nodes of the elements, shape (E, 27).
+
+        Raises:
+            ValueError: If an octant has a number of elements that symmetry does not divide.
+        """
+        if self.octant and (self.around % 4 or self.along % 2):
+            raise ValueError(f"An octant of {self.around} x {self.along} bricks; expected multiples of 4 and 2.")
+        columns = self.nodes().shape[1]
+        along, around = (self.along // 2, self.around // 4) if self.octant else (self.along, self.around)
+        i, j = np.meshgrid(2 * np.arange(along), 2 * np.arange(around), indexing="ij")
         a, b, c = np.meshgrid(range(3), range(3), range(3), indexing="ij")
         z = i.reshape(-1, 1) + a.reshape(1, -1)
         angle = (j.reshape(-1, 1) + b.reshape(1, -1)) % columns
@@ -76,23 +88,34 @@ class TubeModel:
         return sparse.csc_matrix((blocks.ravel(), (rows, columns)), shape=(3 * len(points),) * 2)
 
     def loads(self, traction: Traction) -> np.ndarray:
-        """Return the nodal forces of a load on the inside, shape (n, 3); the sizes of the vectors add up to one."""
+        """Return the nodal forces of a load on the inside [N], shape (n, 3): one newton on the whole tube."""
         _, angle, z = self.nodes().reshape(-1, 3).T
         shape = self.nodes().shape[:3]
-        weight = np.zeros(shape)
-        weight[:, :, 0] = np.where(np.arange(shape[0]) % 2, 2.0, 1.0)[:, None]
-        weight[:, :, 0] *= np.where(np.arange(shape[1]) % 2, 2.0, 1.0)
-        force = weight.reshape(-1, 1) * traction(angle, z)
-        return force / np.linalg.norm(force, axis=1).sum()
+        share = np.zeros(shape)
+        share[:, :, 0] = self.length / (2 * self.along) * np.pi / self.around
+        share[[0, -1]] *= 0.5
+        if self.octant:
+            share[:, [0, -1]] *= 0.5
+        return share.reshape(-1, 1) * traction(angle, z) / load_size(traction, self.length)
 
     def displacements(self, traction: Traction) -> np.ndarray:
         """Return the displacement of the nodes under a load of one newton [m/N], shape (n, 3)."""
         force, matrix = self.loads(traction), self.stiffness()
-        z = self.points()[:, 2]
-        free = np.repeat((z > 1.0e-9) & (z < self.length - 1.0e-9), 3)
+        free = self._free().ravel()
         moved = np.zeros(free.shape)
         moved[free] = splu(matrix[free][:, free]).solve(force.ravel()[free])
         return moved.reshape(-1, 3)
+
+    def _free(self) -> np.ndarray:
+        """Return which coordinates may move, shape (n, 3): none at held ends, none across planes of symmetry."""
+        points = self.points()
+        free = np.ones(points.shape, bool)
+        free[(points[:, 2] < 1.0e-9) | (points[:, 2] > self.length - 1.0e-9)] = False
+        if self.octant:
+            free[np.abs(points[:, 0]) < 1.0e-9, 0] = False
+            free[np.abs(points[:, 1]) < 1.0e-9, 1] = False
+            free[points[:, 2] > 0.5 * self.length - 1.0e-9, 2] = False
+        return free
 
     def compliance(self, traction: Traction, moved: np.ndarray | None = None) -> float:
         """Return the displacement under the load, weighted by it, for a load of one newton [m/N].
@@ -102,7 +125,15 @@ class TubeModel:
             moved: :meth:`displacements` under it, if they are known.
         """
         moved = self.displacements(traction) if moved is None else moved
-        return float((self.loads(traction) * moved).sum())
+        return (8.0 if self.octant else 1.0) * float((self.loads(traction) * moved).sum())
+
+
+def load_size(traction: Traction, length: float) -> float:
+    """Return the size of a load integrated over angle [rad] and a tube's length [m]; no mesh has a part in it."""
+    angle = np.pi * (np.arange(720) + 0.5) / 360.0
+    z = length * (np.arange(1000) + 0.5) / 1000.0
+    angle, z = (grid.ravel() for grid in np.meshgrid(angle, z, indexing="ij"))
+    return float(np.linalg.norm(traction(angle, z), axis=1).mean() * 2.0 * np.pi * length)
 
 
 def brick_rule() -> list[tuple[float, np.ndarray]]:
