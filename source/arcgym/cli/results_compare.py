@@ -1,0 +1,24 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compare two agents on the same trials: mean differences, second minus first, with 95 % intervals.
+
+arcgym results compare results/first results/second
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    parser.add_argument("first", metavar="FIRST", help="result folder of one agent")
+    parser.add_argument("second", metavar="SECOND", help="result folder of the other")
+
+
+def run(namespace: argparse.Namespace) -> None:
+    """Print the table."""
+    from arcgym.evaluation.compare import compare, to_markdown
+
+    print(to_markdown(compare(Path(namespace.first), Path(namespace.second))))

@@ -1,0 +1,82 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Check of a result folder before it is published. Loads neither torch nor Warp."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
+from arcgym.evaluation.suites import Suite, read_suites
+from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
+
+BASIC = ("task", "agent", *COLUMNS, "success", "end", "reward", "seconds")
+"""Columns that every row must have."""
+
+
+def problems(path: Path) -> list[str]:
+    """Return what is wrong with a submission, a line each; none if it can be published.
+
+    Trials must be those of the suite's condition file, each of them once, with possible values.
+
+    Raises:
+        UsageError: It is no result folder.
+    """
+    run, rows, suites = read_run(path), read_trial_rows(path), read_suites()
+    suite = suites.get(str(run.get("suite")))
+    if suite is None:
+        return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
+    conditions = read_conditions(suite.conditions_path)
+    return [
+        *_run_problems(run, conditions),
+        *_row_problems(rows, conditions),
+        *_missing_trials(rows, conditions, suite),
+    ]
+
+
+def _run_problems(run: dict, conditions: Conditions) -> list[str]:
+    found = []
+    if run.get("conditions_sha256") != conditions.sha256:
+        found.append(f"conditions are not those of {conditions.name}: the hash of the condition file differs")
+    if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
+        found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
+    if run.get("overrides"):
+        found.append(f"overrides {run['overrides']} change the task: publish it as a variant of its own")
+    return found
+
+
+def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
+    if not rows:
+        return ["trials.csv has no row"]
+    lacking = [name for name in BASIC if name not in rows[0]]
+    if lacking:
+        return [f"trials.csv lacks the columns {', '.join(lacking)}"]
+    trials = {trial.trial: trial for trial in conditions.trials}
+    found, seen = [], set()
+    for row in rows:
+        label = f"trial {row['trial']} of {row['task']}"
+        trial = trials.get(row["trial"])
+        if (row["task"], row["trial"]) in seen:
+            found.append(f"{label} is there twice")
+        seen.add((row["task"], row["trial"]))
+        if trial is None or (row["patient"], row["seed"], row["group"]) != (trial.patient, trial.seed, trial.group):
+            found.append(f"{label} has another patient, seed or group than the condition file")
+        if row["success"] not in (0, 1) or (row["success"] == 1) != (row["end"] == "success"):
+            found.append(f"{label} says success {row['success']} and end '{row['end']}'")
+        if row.get("progress") is not None and not 0.0 <= row["progress"] <= 1.0:
+            found.append(f"{label} has a progress of {row['progress']}, expected 0 to 1")
+        if row["success"] == 1 and row.get("progress", 1.0) < 0.999:
+            found.append(f"{label} succeeded with a progress of {row['progress']}")
+    return found
+
+
+def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
+    robots = {row["task"].split("-")[-1] for row in rows if "task" in row}
+    found = []
+    for robot in sorted(robots):
+        for task in suite.tasks(robot):
+            done = {row["trial"] for row in rows if row["task"] == task}
+            missing = [trial.trial for trial in conditions.trials if trial.trial not in done]
+            if missing:
+                found.append(f"{task} lacks {len(missing)} of {len(conditions.trials)} trials, first {missing[0]}")
+    return found

@@ -1,0 +1,63 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Two agents on the same trials."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from arcgym.evaluation.result_folder import read_run, read_trial_rows
+from arcgym.evaluation.statistics import Interval, paired_difference
+from arcgym.evaluation.summary import KEY_METRICS
+from arcgym.utils.errors import UsageError
+
+SAME = ("suite", "conditions_sha256")
+"""Entries of the runs that must agree."""
+
+
+def compare(first: Path, second: Path) -> dict[str, dict[str, Interval]]:
+    """Return the mean difference, second minus first, of success and the key metrics of each task both have run.
+
+    Args:
+        first: Result folder of one agent.
+        second: Result folder of the other.
+
+    Raises:
+        UsageError: The folders are of other trials, or have none in common.
+    """
+    runs = [read_run(path) for path in (first, second)]
+    for name in SAME:
+        if runs[0].get(name) != runs[1].get(name):
+            raise UsageError(
+                f"{first} and {second} cannot be compared: {name} is {runs[0].get(name)!r} and {runs[1].get(name)!r}."
+            )
+    rows = [{(row["task"], row["trial"]): row for row in read_trial_rows(path)} for path in (first, second)]
+    common = [key for key in rows[0] if key in rows[1]]
+    if not common:
+        raise UsageError(f"{first} and {second} have no trial in common.")
+    by_task = {task: [key for key in common if key[0] == task] for task in sorted({task for task, _ in common})}
+    return {task: _differences(*([of[key] for key in keys] for of in rows)) for task, keys in by_task.items()}
+
+
+def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:
+    """Return the differences as a table: mean and 95 % interval."""
+    names = list(next(iter(differences.values())))
+    lines = ["| task | " + " | ".join(names) + " |", "|---|" + "---|" * len(names)]
+    for task, of in differences.items():
+        cells = [f"{of[name].value:+.3g} ({of[name].low:+.3g} to {of[name].high:+.3g})" for name in names]
+        lines.append(f"| `{task}` | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def _differences(first: list[dict[str, Any]], second: list[dict[str, Any]]) -> dict[str, Interval]:
+    groups = np.array([row["group"] for row in first])
+    names = [name for name in ("success", *KEY_METRICS) if name in first[0] and name in second[0]]
+    return {
+        name: paired_difference(
+            np.array([row[name] for row in first], float), np.array([row[name] for row in second], float), groups
+        )
+        for name in names
+    }

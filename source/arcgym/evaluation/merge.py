@@ -1,0 +1,34 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""One result folder of several: an evaluation that was shared by machines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
+from arcgym.utils.errors import UsageError
+
+
+def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
+    """Write the rows of several folders of the same evaluation into one.
+
+    Raises:
+        UsageError: A folder is of another evaluation, or two have different results of the same trial.
+    """
+    folder = ResultFolder(out, read_run(parts[0]))
+    known = {(row["task"], row["trial"]): row for row in folder.rows}
+    for part in parts:
+        ResultFolder(out, read_run(part))
+        for row in read_trial_rows(part):
+            key = (row["task"], row["trial"])
+            if key not in known:
+                known[key] = row
+                folder.add(row)
+            elif known[key] != row:
+                raise UsageError(
+                    f"{part} has another result of trial {key[1]} of {key[0]} than the folders before: trials of "
+                    "different devices differ in the last digits, run each trial on one."
+                )
+    return folder

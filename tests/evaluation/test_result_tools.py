@@ -1,0 +1,95 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Comparing, merging and checking of result folders."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from arcgym.cli.main import main
+from arcgym.evaluation.compare import compare
+from arcgym.evaluation.result_folder import ResultFolder
+from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.trials import read_conditions
+from arcgym.utils.errors import UsageError
+
+CONDITIONS = read_conditions(read_suites()["paper"].conditions_path)
+RUN = {
+    "agent": "checkpoint",
+    "checkpoint_sha256": ["abc"],
+    "suite": "paper",
+    "conditions_sha256": CONDITIONS.sha256,
+    "overrides": [],
+}
+TASKS = read_suites()["paper"].tasks("Magnetic")
+
+
+def result(path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = slice(None), **changes) -> Path:
+    """A folder in which every trial succeeds; ``changes`` are made in the first row."""
+    folder = ResultFolder(path, run)
+    for task in TASKS:
+        for trial in CONDITIONS.trials[trials]:
+            row = {"task": task, "agent": "a", **vars(trial), "success": 1, "end": "success", "reward": 1.0}
+            folder.add(row | {"seconds": seconds + trial.trial, "progress": 1.0} | (changes if not folder.rows else {}))
+    return path
+
+
+def test_difference_is_of_the_same_trials(tmp_path: Path) -> None:
+    table = compare(result(tmp_path / "a"), result(tmp_path / "b", seconds=7.0))
+    assert set(table) == set(TASKS)
+    of = table[TASKS[0]]["seconds"]
+    assert (of.value, of.low, of.high) == pytest.approx((2.0, 2.0, 2.0))
+
+
+def test_other_trials_cannot_be_compared(tmp_path: Path) -> None:
+    other = result(tmp_path / "b", run={**RUN, "conditions_sha256": "other"})
+    with pytest.raises(UsageError, match="conditions_sha256"):
+        compare(result(tmp_path / "a"), other)
+
+
+def test_parts_of_two_machines_make_a_whole(tmp_path: Path) -> None:
+    parts = [result(tmp_path / "a", trials=slice(0, 16)), result(tmp_path / "b", trials=slice(15, 30))]
+    assert main(["results", "merge", str(tmp_path / "all"), *map(str, parts)]) == 0
+    assert main(["results", "check", str(tmp_path / "all")]) == 0
+
+
+def test_two_results_of_one_trial_are_refused(tmp_path: Path) -> None:
+    parts = [str(result(tmp_path / "a")), str(result(tmp_path / "b", seconds=6.0))]
+    with pytest.raises(SystemExit):
+        main(["results", "merge", str(tmp_path / "all"), *parts])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"seed": 5}, "another patient, seed or group"),
+        ({"end": "time_out"}, "says success 1 and end 'time_out'"),
+        ({"progress": 0.5}, "succeeded with a progress of 0.5"),
+        ({"trial": 1}, "is there twice"),
+    ],
+)
+def test_a_wrong_submission_is_refused_with_the_reason(tmp_path: Path, capsys, changes: dict, message: str) -> None:
+    path = result(tmp_path / "mine", **changes)
+    assert main(["results", "check", str(path)]) == 1
+    assert message in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("run", "message"),
+    [
+        ({**RUN, "overrides": ["env.start=rest"]}, "change the task"),
+        ({**RUN, "checkpoint_sha256": []}, "cannot be identified"),
+        ({**RUN, "suite": "mine"}, "expected one of paper"),
+        ({**RUN, "conditions_sha256": "x"}, "hash of the condition file differs"),
+    ],
+)
+def test_a_run_that_is_not_the_suites_is_refused(tmp_path: Path, capsys, run: dict, message: str) -> None:
+    assert main(["results", "check", str(result(tmp_path / "mine", run=run))]) == 1
+    assert message in capsys.readouterr().out
+
+
+def test_missing_trials_are_counted(tmp_path: Path, capsys) -> None:
+    assert main(["results", "check", str(result(tmp_path / "mine", trials=slice(0, 28)))]) == 1
+    assert "lacks 2 of 30 trials, first 28" in capsys.readouterr().out
