@@ -78,11 +78,16 @@ class FakeColon:
         spans = torch.tensor([(0.0, 0.1), (0.1, 0.5), *[(0.5, 0.5)] * (len(SEGMENTS) - 2)])
         self.data = SimpleNamespace(
             centerline_arc=arc.repeat(num_envs, 1),
+            patient=torch.zeros(num_envs, dtype=torch.int32),
             segment_spans=spans.expand(num_envs, len(SEGMENTS), 2),
             centerline_pos_w=points.expand(num_envs, 6, 3),
             **{name: torch.zeros(num_envs, 6) for name in RING_READOUTS},
         )
+        self.patients = [SimpleNamespace(name="tube", bounds={"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.5)})]
         self.commands: dict[str, Any] = {}
+
+    def write_patient_to_sim(self, patient: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["patient"] = (patient.clone(), env_ids)
 
     def require_segment(self, name: str) -> None:
         if name not in ("rectum", "sigmoid"):

@@ -24,8 +24,8 @@ class FakeSim:
         self.snapshots = None if names is None else SimpleNamespace(names=names, index=names.index)
         self.written: list[tuple[int, list[int]]] = []
 
-    def load_snapshots(self, snapshots: object) -> None:
-        self.snapshots = snapshots
+    def load_snapshots(self, snapshots: list[object]) -> None:
+        self.snapshots = snapshots[0]
 
     def write_snapshot(self, index: torch.Tensor, env_ids: torch.Tensor) -> None:
         self.written.append((int(index), env_ids.tolist()))
@@ -48,13 +48,13 @@ def test_reset_writes_the_snapshot_of_the_segment(env, segment: str, names: list
 def test_missing_start_states_are_made(env, monkeypatch: pytest.MonkeyPatch) -> None:
     names = ["rectum", "sigmoid"]
     made = SimpleNamespace(names=names, index=names.index)
-    monkeypatch.setattr(events, "ensure", lambda scene, segment: made)
+    monkeypatch.setattr(events, "ensure_all", lambda scene, segment: [made])
     make_reset(env, "sigmoid", None)(env, torch.tensor([1]))
     assert env.sim.written == [(1, [1])] and env.sim.snapshots is made
 
 
 def test_the_first_segment_starts_from_rest_without_snapshots(env, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(events, "find_stored", lambda scene, segment: None)
+    monkeypatch.setattr(events, "find_stored", lambda scene, segment, patient: None)
     make_reset(env, "rectum", ["sigmoid"])(env, torch.tensor([0]))
     assert env.sim.written == [(-1, [0])]
 
@@ -131,3 +131,27 @@ def test_a_parameter_moves_linearly(env) -> None:
     for env.common_step_counter in (0, 500, 2000):
         values.append(mdp.move_param(env, torch.tensor([0]), "event", "aim", "std", start=0.1, end=0.3, num_steps=1000))
     assert values == pytest.approx([0.1, 0.2, 0.3]) and cfg.params["std"] == pytest.approx(0.3)
+
+
+def test_every_patient_is_drawn_about_as_often(env) -> None:
+    colon = env.scene["colon"]
+    mdp.randomize_patient(env, torch.arange(2))
+    assert "patient" not in colon.commands
+    colon.patients = colon.patients * 3
+    counts = torch.zeros(3)
+    for _ in range(300):
+        env.random.begin(torch.arange(2))
+        mdp.randomize_patient(env, torch.arange(2))
+        patient, env_ids = colon.commands["patient"]
+        assert env_ids.tolist() == [0, 1]
+        counts += patient.bincount(minlength=3)
+    assert bool((counts > 150).all()) and int(counts.sum()) == 600
+
+
+def test_start_states_of_every_patient_are_loaded(env, monkeypatch: pytest.MonkeyPatch) -> None:
+    env.scene["colon"].patients *= 2
+    one = SimpleNamespace(only=lambda names: SimpleNamespace(names=names, index=names.index))
+    made = [one, one]
+    monkeypatch.setattr(events, "ensure_all", lambda scene, segment: made)
+    make_reset(env, "sigmoid", None)(env, torch.tensor([1]))
+    assert env.sim.written == [(0, [1])] and env.sim.snapshots.names == ["sigmoid"]

@@ -55,7 +55,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Segments that are driven to from here on."""
     made: list[str] = []
     original = find.make
-    monkeypatch.setattr(find, "make", lambda a, b, until: made.append(until) or original(a, b, until))
+    monkeypatch.setattr(find, "make", lambda a, b, until, **of: made.append(until) or original(a, b, until, **of))
     return made
 
 
@@ -188,7 +188,8 @@ def test_make_returns_states_and_file(tiny: TinySim, cache: Path) -> None:
 
 
 def test_states_lie_beside_the_colon_by_robot_and_tissue(tmp_path: Path) -> None:
-    colon = SimpleNamespace(path=tmp_path / "colon.usda", cfg=SimpleNamespace(material="in_situ"))
+    patient = SimpleNamespace(path=tmp_path / "colon.usda")
+    colon = SimpleNamespace(patients=[patient], cfg=SimpleNamespace(material="in_situ"))
     scope = SimpleNamespace(path=Path("magnetic.usda"))
     assert store.find_beside_colon(colon, scope) is None
     default, own = (tmp_path / "snapshots" / name for name in ("magnetic.npz", "magnetic_in_situ.npz"))

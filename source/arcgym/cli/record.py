@@ -58,10 +58,22 @@ def run(namespace: argparse.Namespace) -> int:
     env_cfg, agent_cfg, checkpoint = (*load_cfgs(asked), None) if scripted else load_run_cfgs(asked)
     if args.num_envs is None:
         env_cfg.scene.num_envs = 1
-    patients = [env_cfg.scene.colon.usd_path] if args.patients is None else args.patients.split(",")
-    stages = tuple(_stage(name) for name in patients)
+    stages = _stages(env_cfg.scene.colon, args.patients)
+    env_cfg.scene.colon.num_patients = None
     out = Path(args.out or f"logs/datasets/{args.task}_{args.agent}")
     return _record(args, env_cfg, agent_cfg, checkpoint, stages, out)
+
+
+def _stages(colon: Any, patients: str | None) -> tuple[str, ...]:
+    """Return the stage files of the patients, those of the task where none are named."""
+    from arcgym.assets.patient_files import find_stages
+
+    if patients is not None:
+        return tuple(_stage(name) for name in patients.split(","))
+    try:
+        return tuple(map(str, find_stages(colon.usd_path, colon.num_patients)))
+    except (ValueError, OSError) as error:
+        raise UsageError(str(error)) from error
 
 
 def _stage(name: str) -> str:

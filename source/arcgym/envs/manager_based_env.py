@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 
 from arcgym.envs.env_arguments import check_device, check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
-from arcgym.envs.provenance import provenance
+from arcgym.envs.provenance import episode_facts, provenance
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
 from arcgym.managers.observation_manager import Observation
@@ -233,9 +233,13 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
 
-    def provenance(self) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Return what a recording says about this environment; see :func:`arcgym.envs.provenance.provenance`."""
-        return provenance(self)
+    def provenance(self, world: int = 0) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return what a recording of a world says about this; see :func:`arcgym.envs.provenance.provenance`."""
+        return provenance(self, world)
+
+    def episode_facts(self, world: int) -> dict[str, Any]:
+        """Return what distinguishes the episode under way in a world, such as its ``patient``."""
+        return episode_facts(self, world)
 
     def render(self) -> np.ndarray | None:  # type: ignore[override]
         """Return the picture of world ``cfg.viewer.env_id``, uint8, shape (H, W, 3); None without a render mode."""

@@ -26,8 +26,8 @@ NOT_PHYSICS = ("recorders", "viewer", "log_dir")
 """Fields of a configuration that change nothing that happens."""
 
 
-def provenance(env: ManagerBasedEnv) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what a recording must say about its environment.
+def provenance(env: ManagerBasedEnv, world: int = 0) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what a recording of a world must say about its environment; the colon's stage is that of its patient.
 
     Returns:
         Facts (``task``, ``seed``, ``device``, ``device_name``, ``num_envs``, ``step_dt`` [s], ``versions``, ``stages``
@@ -35,6 +35,9 @@ def provenance(env: ManagerBasedEnv) -> tuple[dict[str, Any], dict[str, Any]]:
     """
     settings = to_plain(env.cfg)
     stages = {name: getattr(env.scene[name], "path", None) for name in env.scene.keys()}  # noqa: SIM118
+    patient = _patient(env, world)
+    if patient is not None:
+        stages["colon"] = patient.path
     facts = {
         "task": env.spec.id if env.spec else None,
         "seed": env.cfg.seed,
@@ -49,6 +52,17 @@ def provenance(env: ManagerBasedEnv) -> tuple[dict[str, Any], dict[str, Any]]:
         "settings": settings_hash(settings),
     }
     return facts, settings
+
+
+def episode_facts(env: ManagerBasedEnv, world: int) -> dict[str, Any]:
+    """Return what distinguishes the episode under way in a world: ``patient``, the name of its patient."""
+    patient = _patient(env, world)
+    return {} if patient is None else {"patient": patient.name}
+
+
+def _patient(env: ManagerBasedEnv, world: int) -> Any:
+    """Return the patient of a world, None if the scene has no colon."""
+    return env.scene["colon"].patient_of(world) if "colon" in env.scene.keys() else None  # noqa: SIM118
 
 
 def settings_hash(settings: dict[str, Any]) -> str:
@@ -75,7 +89,7 @@ def stage_hash(path: str | Path) -> str:
     return _stage_hash(path, path.stat().st_mtime_ns)
 
 
-@lru_cache
+@lru_cache(maxsize=4096)
 def _stage_hash(path: Path, changed: int) -> str:
     from pxr import UsdUtils
 

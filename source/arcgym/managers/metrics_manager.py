@@ -88,7 +88,7 @@ class MetricsManager(ManagerBase):
         fill_worlds(self._values, env_ids, 0.0, dim=1)
         fill_worlds(self._num_steps, env_ids, 0.0)
         by_name = dict(zip(self._order, means, strict=True))
-        return {f"Episode_Metrics/{name}": by_name[name] for name in self._terms}
+        return {f"Episode_Metrics/{name}": by_name[name] for name, term in self._terms.items() if term.log}
 
     def _sort_rows(self) -> None:
         """Sort the rows by reduction again if one was changed."""

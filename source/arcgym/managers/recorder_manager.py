@@ -176,7 +176,7 @@ class RecorderManager(ManagerBase):
         """Hand the steps that wait over to the file; the first ones make it."""
         steps = self._buffer.take(self._place[world])
         if world not in self._writers:
-            facts, settings = self._env.provenance()
+            facts, settings = self._env.provenance(world)
             path = next_path(self._settings.dataset_export_dir_path, self._settings.dataset_filename)
             self._writers[world] = EpisodeWriter(path, facts | {"env_id": world}, settings, self._chunk)
             self._writers[world].append(steps, self._buffer.take_once(self._place[world]))
@@ -192,7 +192,8 @@ class RecorderManager(ManagerBase):
             writer = self._writers.pop(world, None)
             if writer is None:
                 continue
-            info = {"length": writer.length, "step_dt": self._env.step_dt, "env_id": world, **self._info(world)}
+            info = {"length": writer.length, "step_dt": self._env.step_dt, "env_id": world}
+            info |= {**self._env.episode_facts(world), **self._info(world)}
             if writer.length == 0 or (self._settings.dataset_export_mode == "succeeded_only" and not info["success"]):
                 writer.discard()
                 continue

@@ -101,6 +101,10 @@ class MetricsTermCfg(ManagerTermBaseCfg):
     reduce: Literal["mean", "last", "max", "sum"] = "mean"
     """How the values of an episode become one number: ``last`` for success, ``max`` for a peak force."""
 
+    log: bool = True
+    """Whether the mean over the episodes that end is logged. Switch it off for what has no mean, such as the number of
+    a patient; the value of each episode is there all the same."""
+
 
 @configclass
 class EventTermCfg(ManagerTermBaseCfg):

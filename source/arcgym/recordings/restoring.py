@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from arcgym.assets.patient_files import find_stages
 from arcgym.envs.provenance import settings_hash, stage_hash, versions
 from arcgym.managers import Episode
 from arcgym.rl.params import differences, restore
@@ -20,8 +21,20 @@ from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.paths import resolve_asset
 from arcgym.utils.registry import load_cfg_from_registry
 
-CHANGED_HERE = ("scene.num_envs", "sim.device", "events", "recorders", "autoreset", "viewer", "log_dir", "seed")
-"""Settings that a replay chooses for itself and that change nothing in a world."""
+CHANGED_HERE = (
+    "scene.num_envs",
+    "scene.colon.usd_path",
+    "scene.colon.num_patients",
+    "sim.device",
+    "events",
+    "recorders",
+    "autoreset",
+    "viewer",
+    "log_dir",
+    "seed",
+)
+"""Settings that a replay chooses for itself and that change nothing in a world; stages count by their content."""
+_PATIENT = "world_settings/patient"
 
 
 def restored_cfg(episode: Episode, task: str | None, device: str, overrides: Sequence[str] = ()) -> tuple[str, Any]:
@@ -45,6 +58,7 @@ def restored_cfg(episode: Episode, task: str | None, device: str, overrides: Seq
         raise UsageError(str(error)) from error
     if episode.settings:
         restore(cfg, {name: value for name, value in episode.settings.items() if name != "viewer"}, "env")
+    _choose_patient(cfg, episode)
     try:
         apply_overrides({"env": cfg}, list(overrides))
     except (TypeError, ValueError) as error:
@@ -52,6 +66,13 @@ def restored_cfg(episode: Episode, task: str | None, device: str, overrides: Seq
     cfg.scene.num_envs, cfg.sim.device, cfg.seed = 1, device, episode.provenance.get("seed") or 0
     cfg.events, cfg.recorders, cfg.autoreset = None, None, False
     return task, cfg
+
+
+def _choose_patient(cfg: Any, episode: Episode) -> None:
+    """Take the episode's patient alone, where it was recorded with several: each goes on as if it were the only one."""
+    stage = episode.provenance.get("stages", {}).get("colon", {}).get("path")
+    if stage and (not isinstance(cfg.scene.colon.usd_path, str) or int(episode.data.get(_PATIENT, 0)) > 0):
+        cfg.scene.colon.usd_path, cfg.scene.colon.num_patients = stage, None
 
 
 def mismatches(episode: Episode, cfg: Any) -> list[str]:
@@ -62,7 +83,8 @@ def mismatches(episode: Episode, cfg: Any) -> list[str]:
         for name, (old, new) in differences(then.get("versions", {}), versions()).items()
     ]
     for name, stage in then.get("stages", {}).items():
-        file = resolve_asset(getattr(cfg.scene, name).usd_path)
+        given = getattr(cfg.scene, name).usd_path
+        file = find_stages(given)[0] if name == "colon" else resolve_asset(given)
         if stage_hash(file) != stage["sha256"]:
             lines.append(f"the stage {file} is not the one recorded ({stage_hash(file)}, not {stage['sha256']})")
     if episode.settings and settings_hash(episode.settings) != then.get("settings"):
@@ -103,8 +125,9 @@ def put_in_state(
         UsageError: If the state does not fit this colon and robot.
     """
     ids = torch.tensor(list(env_ids), device=env.device)
-    if "patient" in settings and len(env.scene["colon"].patients) > 1:
-        env.scene["colon"].write_patient_to_sim(torch.full((len(ids),), int(settings["patient"])), ids)
+    colon = env.scene["colon"]
+    if "patient" in settings and len(colon.patients) > 1:
+        colon.write_patient_to_sim(torch.full((len(ids),), int(settings["patient"])), ids)
     known = dict(env.sim.world_settings())
     for name, sensor in env.scene.sensors.items():
         known |= {f"{name}/{key}": value for key, value in sensor.world_settings().items()}

@@ -16,6 +16,9 @@ from arcgym.utils.configclass import validate
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
 
+MOST_STAGES = 3
+"""Stages of a list that are read before the run; the environment reads and checks all of them."""
+
 
 def check_environment(env_cfg: Any, device: str | None, outputs: Sequence[Path] = ()) -> None:
     """Check an environment's configuration, the files that it names, the device, and the folders to write to.
@@ -66,20 +69,21 @@ def _check_scene(env_cfg: Any) -> None:
     from arcgym.anatomy import read_colon
     from arcgym.assets.endoscope_reader import read_endoscope
     from arcgym.assets.materials import TISSUE_PRESETS
+    from arcgym.assets.patient_files import find_stages
     from arcgym.utils.paths import resolve_asset
 
     colon, endoscope = env_cfg.scene.colon, env_cfg.scene.endoscope
     if colon.material not in TISSUE_PRESETS:
         hint = did_you_mean(colon.material, TISSUE_PRESETS)
         raise UsageError(f"env.scene.colon.material is '{colon.material}', which is no tissue preset. {hint}")
-    stage = _in_one_line(read_colon, _in_one_line(resolve_asset, colon.usd_path))
     _in_one_line(read_endoscope, _in_one_line(resolve_asset, endoscope.usd_path))
-    segment, bounds = getattr(env_cfg, "segment", None), stage.segment_bounds()
-    if segment is not None and segment not in bounds:
-        raise UsageError(
-            f"env.segment is '{segment}', which the colon {colon.usd_path} does not have. "
-            f"{did_you_mean(segment, bounds)}"
-        )
+    segment = getattr(env_cfg, "segment", None)
+    for path in _in_one_line(find_stages, colon.usd_path, colon.num_patients)[:MOST_STAGES]:
+        bounds = _in_one_line(read_colon, path).segment_bounds()
+        if segment is not None and segment not in bounds:
+            raise UsageError(
+                f"env.segment is '{segment}', which the colon {path} does not have. {did_you_mean(segment, bounds)}"
+            )
 
 
 def _in_one_line(check: Callable[..., Any], *args: Any) -> Any:

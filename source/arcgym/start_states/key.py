@@ -49,15 +49,16 @@ class StateKey:
         return [name for name, value in dataclasses.asdict(self).items() if other.get(name) != value]
 
 
-def state_key(colon: Colon, endoscope: Endoscope, sim: SimulationCfg) -> StateKey:
+def state_key(colon: Colon, endoscope: Endoscope, sim: SimulationCfg, patient: int = 0) -> StateKey:
     """Return the key of the start states of a robot in a colon.
 
     Args:
         colon: The colon.
         endoscope: The robot.
         sim: Settings of the simulation.
+        patient: Which of the colon's patients.
     """
-    wall, line = colon.wall, colon.stage.centerline
+    wall, line = colon.patients[patient].wall, colon.patients[patient].centerline
     mesh = {name: getattr(wall, name) for name in ("points", "ring", "layer", "segment", "anchor", "ring_arc")}
     mesh |= {f"line_{name}": getattr(line, name) for name in ("points", "arc", "segment")}
     stage = {f.name: getattr(endoscope.stage, f.name) for f in dataclasses.fields(endoscope.stage)}

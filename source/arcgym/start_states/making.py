@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
@@ -15,6 +16,7 @@ from arcgym.start_states.drive import Drive
 from arcgym.start_states.errors import StartStateError
 from arcgym.start_states.key import StateKey, state_key
 from arcgym.start_states.progress import say, shown
+from arcgym.utils.configclass import replace
 
 SPEED = 0.04
 """Speed of the experts unless told otherwise [m/s]."""
@@ -28,6 +30,7 @@ def make(
     speed: float = SPEED,
     max_time: float = 180.0,
     path: Path | None = None,
+    patient: Path | None = None,
 ) -> tuple[SnapshotSet, Path]:
     """Drive a robot up a colon and write the start states of the segments that it enters.
 
@@ -38,6 +41,7 @@ def make(
         speed: Speed of the expert [m/s].
         max_time: Simulated time after which to give up [s].
         path: File to write; the cache's by default.
+        patient: Stage of the patient, in place of the scene's first.
 
     Returns:
         The states, and the file for them. Their ``about["problem"]`` says why the drive ended before its goal; it is
@@ -46,7 +50,7 @@ def make(
     Raises:
         StartStateError: If the colon has no such segment, or the robot no expert.
     """
-    scene = build_scene(scene_cfg, sim_cfg)
+    scene = build_scene(scene_cfg, sim_cfg, patient)
     key = key_of(scene)
     bounds = scene.colon.stage.segment_bounds()
     if until not in bounds:
@@ -72,14 +76,17 @@ def make(
     return states, path
 
 
-def key_of(scene: InteractiveScene) -> StateKey:
-    """Return what the start states of a scene depend on."""
-    return state_key(scene.colon, scene.endoscope, scene.sim.cfg)
+def key_of(scene: InteractiveScene, patient: int = 0) -> StateKey:
+    """Return what the start states of a patient of a scene depend on."""
+    return state_key(scene.colon, scene.endoscope, scene.sim.cfg, patient)
 
 
-def build_scene(scene_cfg: InteractiveSceneCfg, sim_cfg: SimulationCfg) -> InteractiveScene:
-    """Return the one world in which a robot is driven."""
-    cfg = InteractiveSceneCfg(num_envs=1, colon=scene_cfg.colon, endoscope=scene_cfg.endoscope)
+def build_scene(
+    scene_cfg: InteractiveSceneCfg, sim_cfg: SimulationCfg, patient: Path | None = None
+) -> InteractiveScene:
+    """Return the one world in which a robot is driven, with the patient of a stage or the scene's first."""
+    own: dict[str, Any] = {"num_patients": 1} if patient is None else {"usd_path": str(patient), "num_patients": None}
+    cfg = InteractiveSceneCfg(num_envs=1, colon=replace(scene_cfg.colon, **own), endoscope=scene_cfg.endoscope)
     return InteractiveScene(cfg, sim_cfg)
 
 

@@ -31,17 +31,18 @@ def beside_colon(colon_path: Path, endoscope_path: Path, material: str = DEFAULT
     return colon_path.parent / "snapshots" / f"{endoscope_path.stem}{suffix}.npz"
 
 
-def find_beside_colon(colon: Colon, endoscope: Endoscope) -> Path | None:
-    """Return the states made in the colon's tissue, else those made in the default one, else None."""
+def find_beside_colon(colon: Colon, endoscope: Endoscope, patient: int = 0) -> Path | None:
+    """Return a patient's states made in the colon's tissue, else those made in the default one, else None."""
     materials = (colon.cfg.material, DEFAULT_MATERIAL)
-    paths = (beside_colon(colon.path, endoscope.path, material) for material in materials)
+    stage = colon.patients[patient].path
+    paths = (beside_colon(stage, endoscope.path, material) for material in materials)
     return next((path for path in paths if path.is_file()), None)
 
 
-def in_cache(colon: Colon, endoscope: Endoscope, key: StateKey) -> Path:
-    """Return where states lie in the cache: ``start_states/<colon>/<endoscope>-<material>-<hash>.npz``."""
+def in_cache(colon: Colon, endoscope: Endoscope, key: StateKey, patient: int = 0) -> Path:
+    """Return where a patient's states lie in the cache: ``start_states/<colon>/<endoscope>-<material>-<hash>.npz``."""
     name = f"{endoscope.path.stem}-{colon.cfg.material}-{key.digest}.npz"
-    return cache_dir() / "start_states" / colon.path.parent.name / name
+    return cache_dir() / "start_states" / colon.patients[patient].name / name
 
 
 def outdated(path: Path, key: StateKey) -> list[str]:

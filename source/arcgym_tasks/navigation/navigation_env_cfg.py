@@ -114,6 +114,7 @@ class TerminationsCfg:
 class EventsCfg:
     """Where an episode starts and what differs from world to world."""
 
+    patient = EventTerm(func=mdp.randomize_patient, mode="reset")
     reset = EventTerm(func=mdp.reset_to_segment_start, mode="reset")
     aim = EventTerm(func=mdp.perturb_tip, mode="reset", params={"std": 0.1})
     light = EventTerm(func=mdp.randomize_light, mode="reset", params={"gain": (0.7, 1.4)})
@@ -136,6 +137,7 @@ class MetricsCfg:
     """What an episode is judged by."""
 
     success = MetricsTerm(func=mdp.success, reduce="max")
+    patient_index = MetricsTerm(func=mdp.patient_index, reduce="last", log=False)
     progress = MetricsTerm(func=mdp.progress_fraction, reduce="max")
     time_to_success = MetricsTerm(func=mdp.time_to_success, reduce="last")
     s_c = MetricsTerm(func=mdp.lumen_centering, reduce="mean")
@@ -288,5 +290,5 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""
         self.scene.num_envs = 4
         self.observations.policy.enable_corruption = False
-        for name in ("aim", "light", "color", "texture", "stiffness", "friction"):
+        for name in ("patient", "aim", "light", "color", "texture", "stiffness", "friction"):
             setattr(self.events, name, None)

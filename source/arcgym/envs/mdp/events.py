@@ -7,16 +7,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import torch
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.materials import ANCHOR_SCALES, TISSUE_PRESETS, anchor_scale, tissue_preset
-from arcgym.envs.mdp.segments import segment_span
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
-from arcgym.start_states.find import ensure, find_stored
+from arcgym.start_states.find import ensure_all, find_stored
 from arcgym.utils.validation import FRACTION, NON_NEGATIVE, POSITIVE, expects
 
 if TYPE_CHECKING:
@@ -28,6 +27,7 @@ __all__ = [
     "randomize_color",
     "randomize_friction",
     "randomize_light",
+    "randomize_patient",
     "randomize_rigidity",
     "randomize_texture",
     "randomize_tissue",
@@ -44,7 +44,8 @@ class reset_to_segment_start(ManagerTermBase):
     """Put worlds into the complete stored state (scope, wall, targets) whose tip is at the start of the segment.
 
     States come from beside the colon's stage or from the cache, and are made if there are none, see
-    :mod:`arcgym.start_states`. The first segment of the colon starts from the rest pose if none is stored.
+    :mod:`arcgym.start_states`; every patient has its own. The first segment of the colon starts from the rest pose if
+    none is stored, in all patients if in one.
     """
 
     def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
@@ -72,13 +73,33 @@ class reset_to_segment_start(ManagerTermBase):
 
     @staticmethod
     def _find(env: ManagerBasedEnv, segment: str) -> int:
-        is_first = bool((segment_span(env, segment)[0] <= 0.0).all())
-        if env.sim.snapshots is None or segment not in env.sim.snapshots.names:
-            states = find_stored(env.scene, segment) if is_first else ensure(env.scene, segment)
-            if states is None:
+        loaded = () if env.sim.snapshots is None else env.sim.snapshots.names
+        if segment not in loaded:
+            states = _start_states(env, segment)
+            if any(one is None for one in states):
                 return REST_POSE
-            env.sim.load_snapshots(states)
+            env.sim.load_snapshots(states if len(states) == 1 else [one.only([*loaded, segment]) for one in states])
         return env.sim.snapshots.index(segment)
+
+
+def _start_states(env: ManagerBasedEnv, segment: str) -> list[Any]:
+    """Return the start states of every patient; None for those that begin with the segment and have none stored."""
+    env.scene["colon"].require_segment(segment)
+    patients = env.scene["colon"].patients
+    if all(patient.bounds[segment][0] <= 0.0 for patient in patients):
+        return [find_stored(env.scene, segment, index) for index in range(len(patients))]
+    return ensure_all(env.scene, segment)
+
+
+def randomize_patient(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
+    """Give each world one of the colon's patients, all equally likely; nothing is done where there is one.
+
+    It must come before the reset in the same mode, which puts the scope into the new patient's start state.
+    """
+    colon = env.scene["colon"]
+    if len(colon.patients) > 1:
+        patient = env.random.integers("patient", 0, len(colon.patients), env_ids=env_ids)
+        colon.write_patient_to_sim(patient, env_ids)
 
 
 @expects(std=NON_NEGATIVE)

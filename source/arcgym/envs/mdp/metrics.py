@@ -28,6 +28,7 @@ __all__ = [
     "inserted_scope",
     "looping_ratio",
     "mean_speed",
+    "patient_index",
     "progress_fraction",
     "time_to_success",
     "visible_rate",
@@ -106,3 +107,8 @@ def mean_speed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tens
     start, _ = segment_span(env, segment)
     advance = env.scene["endoscope"].data.tip_arc_length - start
     return advance / (env.episode_length_buf.clamp(min=1) * env.step_dt)
+
+
+def patient_index(env: ManagerBasedRLEnv) -> torch.Tensor:
+    """Return the number of the world's patient, an index into ``colon.patients``, shape (N,) (reduce: last)."""
+    return env.scene["colon"].data.patient.float()
