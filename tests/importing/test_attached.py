@@ -112,6 +112,19 @@ def test_gap_is_bridged_along_the_lumen(gap: float, tmp_path: Path) -> None:
     assert length(find_path(grid, [None, None], "ras").points) == pytest.approx(whole, rel=0.06)
 
 
+def test_bridge_is_as_wide_as_the_lumen_on_either_side(tmp_path: Path) -> None:
+    """The tube's radius is 16 mm; in the middle of a gap of 30 mm it was 5 mm."""
+    line, _ = course()
+    path = write_volume(tmp_path / "a.mha", gap=0.03 + 2 * RADIUS, voxel=2.0)
+    grid, cleaning = keep_colon(read_volume(path, None, None, 0.002), 0.05)
+    middle = line[len(line) // 2 - 2 : len(line) // 2 + 3]
+    across = np.cross(middle[-1] - middle[0], [1.0, 0.0, 0.0])
+    across /= np.linalg.norm(across)
+    ray = middle[2] + np.linspace(-0.03, 0.03, 121)[:, None] * across
+    assert (grid.sample(ray) > 0.5).sum() * 0.0005 == pytest.approx(2 * RADIUS, abs=0.006)
+    assert cleaning.bridges[0]["radius_mm"] == pytest.approx([16, 16], abs=3)
+
+
 def test_air_and_fluid_may_have_labels_of_their_own(tmp_path: Path) -> None:
     """Fluid of label 2 continues the tube."""
     line, whole = course()

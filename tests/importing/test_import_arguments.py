@@ -40,6 +40,8 @@ def mask(tmp_path: Path) -> Path:
         ({"spacing": (1.0, 0.0, 1.0)}, "spacing is .*Pass three numbers above 0"),
         ({"anus": (1.0, 2.0)}, "anus is .*X,Y,Z"),
         ({"name": ""}, "name is ''"),
+        ({"name": "-rf"}, "name is '-rf'. Pass letters"),
+        ({"name": "a\nb"}, "Pass letters, digits"),
     ],
 )
 def test_impossible_setting(settings: dict, match: str) -> None:
@@ -84,12 +86,22 @@ def test_overwrite_keeps_folders_of_others(mask: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     out.mkdir()
     check_paths(mask, out, True)
-    (out / "thesis.tex").touch()
-    with pytest.raises(ImportArgumentError, match="out is not replaced"):
-        check_paths(mask, out, True)
-    for name in ("colon.usda", "report.json"):
+    (out / "report.json").write_text('{"made_by": "arcgym import-colon"}')
+    for name in ("colon.usda", "mucosa_albedo.jpg", "preview.png"):
         (out / name).touch()
     check_paths(mask, out, True)
+    (out / "thesis.tex").touch()
+    with pytest.raises(ImportArgumentError, match="out is not replaced: thesis.tex in it is not of an import"):
+        check_paths(mask, out, True)
+
+
+def test_overwrite_keeps_a_folder_that_only_looks_like_an_import(mask: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in ("colon.usda", "report.json"):
+        (out / name).touch()
+    with pytest.raises(ImportArgumentError, match="neither empty nor a folder made by an import"):
+        check_paths(mask, out, True)
 
 
 def test_overwrite_keeps_the_inputs_folder(tmp_path: Path) -> None:

@@ -4,6 +4,11 @@
 
 from __future__ import annotations
 
+import gzip
+import signal
+import struct
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +67,71 @@ def test_nan_volume(tmp_path: Path) -> None:
     refused(volume(tmp_path / "a.mha", np.full((9, 9, 9), np.nan, np.float32)), "NaN")
 
 
+@pytest.mark.parametrize("name", ["a.nii", "a.nii.gz"])
+@pytest.mark.parametrize(
+    ("place", "match"), [(80, "spacing of nan x 2 x 2 mm. Pass --spacing"), (280, "axes that are no")]
+)
+def test_nifti_header_with_nan(name: str, place: int, match: str, tmp_path: Path) -> None:
+    """ITK would take a spacing of 1 mm and say nothing."""
+    path = volume(tmp_path / name, ball())
+    opened = gzip.open if name.endswith(".gz") else open
+    with opened(path, "rb") as file:
+        data = bytearray(file.read())
+    data[place : place + 4] = struct.pack("<f", float("nan"))
+    data[254:256] = struct.pack("<h", 1)
+    with opened(path, "wb") as file:
+        file.write(data)
+    refused(path, match)
+
+
+def test_text_header_with_nan(tmp_path: Path) -> None:
+    path = volume(tmp_path / "a.mha", ball())
+    path.write_bytes(path.read_bytes().replace(b"ElementSpacing = 2 2 2", b"ElementSpacing = 2 nan 2"))
+    refused(path, "says 'ElementSpacing = 2 nan 2'. Pass --spacing")
+
+
+def test_spacing_that_is_given_may_be_missing_in_the_file(tmp_path: Path) -> None:
+    path = volume(tmp_path / "a.nii", ball())
+    data = bytearray(path.read_bytes())
+    data[80:84] = struct.pack("<f", float("nan"))
+    path.write_bytes(data)
+    refused(path, "No colon-like component", ImportSettings(voxel=0.004, spacing=(2.0, 2.0, 2.0)))
+
+
+def test_solid_body(tmp_path: Path) -> None:
+    refused(volume(tmp_path / "a.mha", np.ones((80, 80, 80), np.uint8)), "fills 100% of the box round it")
+
+
+def test_lumen_that_does_not_fit_into_memory(tmp_path: Path) -> None:
+    """Two voxels in opposite corners of half a meter, on voxels of 0.5 mm: 1.2e9 of them."""
+    values = np.zeros((100, 100, 100), np.uint8)
+    values[0, 0, 0] = values[-1, -1, -1] = 1
+    path = volume(tmp_path / "a.mha", values, spacing=5.0)
+    refused(path, "million voxels of 0.5 mm, about .* GB;.*--voxel", ImportSettings(voxel=0.0005))
+
+
+def test_ball_of_80_units_is_no_colon_in_centimeters(tmp_path: Path) -> None:
+    path = tmp_path / "a.stl"
+    trimesh.creation.icosphere(subdivisions=3, radius=40).export(path)
+    refused(path, "80 units long, which is no colon's size in mm, cm or m")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_stopped_import_leaves_nothing(number: signal.Signals, tmp_path: Path) -> None:
+    """The signal comes while a folder is half made; the process ends with 128 and its number, in one line."""
+    code = (
+        "import os, signal, sys, tempfile, time\n"
+        "from arcgym.cli.stopping import stopped_cleanly\n"
+        f"with stopped_cleanly('out was not made'), tempfile.TemporaryDirectory(dir={str(tmp_path)!r}):\n"
+        f"    os.kill(os.getpid(), {int(number)})\n"
+        "    time.sleep(20)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 128 + number
+    assert done.stderr == f"stopped by {number.name}: out was not made\n"
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("name", ["a.mha", "a.nii", "a.nii.gz", "a.nrrd"])
 def test_truncated_volume(name: str, tmp_path: Path) -> None:
     path = volume(tmp_path / name, np.random.default_rng(0).integers(0, 2, (40, 40, 40)).astype(np.uint8))
@@ -90,7 +160,7 @@ def test_surface_of_no_known_unit(tmp_path: Path) -> None:
 def test_big_ball_is_no_colon(tmp_path: Path) -> None:
     path = tmp_path / "a.stl"
     trimesh.creation.icosphere(subdivisions=3, radius=200).export(path)
-    refused(path, "No colon-like component: a ball of 3.. mm", ImportSettings(voxel=0.01))
+    refused(path, "No colon-like component: the lumen fills 5.% of the box", ImportSettings(voxel=0.01))
 
 
 def test_surface_with_nan(tmp_path: Path) -> None:

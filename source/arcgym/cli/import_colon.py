@@ -11,6 +11,7 @@ import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from arcgym.cli.stopping import stopped_cleanly
 from arcgym.utils.errors import UsageError
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--max-gap", type=float, default=50.0, help="longest gap to bridge [mm] (default: 50)")
     parser.add_argument("--min-lumen", type=float, default=8.0, help="least radius of the wall [mm] (default: 8)")
     parser.add_argument("--wall-thickness", type=float, default=2.0, help="thickness of the wall [mm] (default: 2)")
+    parser.add_argument("--voxel", type=float, default=1.0, help="edge of the voxels worked on [mm] (default: 1)")
     parser.add_argument("--ring-spacing", type=float, default=12.5, help="distance of wall rings [mm] (default: 12.5)")
     parser.add_argument("--sectors", type=int, default=12, help="wall vertices around a ring (default: 12)")
 
@@ -62,7 +64,8 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(str(error)) from error
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     try:
-        figures = import_to_folder(args.input, args.out, settings, args.overwrite)
+        with stopped_cleanly(f"{args.out} was not made"):
+            figures = import_to_folder(args.input, args.out, settings, args.overwrite)
     except ColonImportError as error:
         raise SystemExit(f"error: {error}") from error
     report(figures)
@@ -129,6 +132,7 @@ def import_settings(args: argparse.Namespace) -> ImportSettings:
         licence=args.licence,
         patient=args.patient,
         max_gap=1e-3 * args.max_gap,
+        voxel=1e-3 * args.voxel,
         min_lumen_radius=1e-3 * args.min_lumen,
         wall_thickness=1e-3 * args.wall_thickness,
         ring_spacing=1e-3 * args.ring_spacing,

@@ -11,7 +11,7 @@ import numpy as np
 
 from arcgym.anatomy.importing.clearance import coarse_clearance
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.tree import LumenTree, lumen_tree
+from arcgym.anatomy.importing.tree import LumenTree, caliber, lumen_tree
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,8 @@ class Tip:
     """Unit vector in which the lumen would go on, shape (3,)."""
     room: float
     """Distance from the point to the wall ahead [m], about the lumen's radius."""
+    radius: float
+    """Radius of the lumen behind it, between folds [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +84,8 @@ class Bridge:
     """First point, inside the lumen [m], shape (3,)."""
     end: np.ndarray
     """Last point [m], shape (3,)."""
+    radius: tuple[float, float]
+    """Radius of the lumen at either end [m]."""
     volume: float
     """Volume of the smaller of both pieces [m^3]."""
 
@@ -108,19 +112,21 @@ def _small_piece(voxels: Grid, label: int, volume: float, middle: np.ndarray) ->
     points = voxels.points(np.argwhere(voxels.mask))
     axis = np.linalg.svd(points - middle, full_matrices=False)[2][0]
     along = (points - middle) @ axis
-    tips = [Tip(points[along.argmin()], -axis, 0.0), Tip(points[along.argmax()], axis, 0.0)]
+    radius = float(np.sqrt(volume / (np.pi * max(float(np.ptp(along)), 1e-3))))
+    tips = [Tip(points[along.argmin()], -axis, 0.0, radius), Tip(points[along.argmax()], axis, 0.0, radius)]
     return Piece(label, volume, middle, float(np.ptp(along)), tips)
 
 
 def _tip(tree: LumenTree, node: int, voxels: Grid) -> Tip:
     path = tree.to_root(node) if node else _from_root(tree)
     points = tree.points[path]
-    back = points[min(len(points) - 1, int(np.searchsorted(np.cumsum(tree.step[path]), SETTINGS.look_back)))]
-    ahead = points[0] - back
+    first = min(len(points) - 1, int(np.searchsorted(np.cumsum(tree.step[path]), SETTINGS.look_back)))
+    ahead = points[0] - points[first]
     ahead = ahead / max(np.linalg.norm(ahead), 1e-9)
     ray = points[0] + 0.0005 * np.arange(1, 100)[:, None] * ahead
     inside = voxels.sample(ray) > 0.5
-    return Tip(points[0], ahead, 0.0005 * float(len(inside) if inside.all() else inside.argmin()))
+    radius = float(np.median(caliber(tree.clearance[path], points)[: first + 1]))
+    return Tip(points[0], ahead, 0.0005 * float(len(inside) if inside.all() else inside.argmin()), radius)
 
 
 def _from_root(tree: LumenTree) -> list[int]:
@@ -141,7 +147,7 @@ def join_pieces(pieces: list[Piece], max_gap: float) -> tuple[list[Piece], list[
         if id(first) in used or id(last) in used or chain[a] is chain[b]:
             continue
         used |= {id(first), id(last)}
-        joined.append((a, b, Bridge(first.point, last.point, min(a.volume, b.volume))))
+        joined.append((a, b, Bridge(first.point, last.point, (first.radius, last.radius), min(a.volume, b.volume))))
         merged = chain[a] | chain[b]
         for piece in merged:
             chain[piece] = merged

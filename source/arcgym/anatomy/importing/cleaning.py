@@ -13,6 +13,7 @@ from scipy import ndimage
 from arcgym.anatomy.importing.bridging import Bridge, Piece, join_pieces, make_piece
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.tubes import draw_tube
 
 _SMALLEST_PIECE = 5e-7
 """Volume below which a piece is a speck and dropped [m^3]."""
@@ -26,8 +27,11 @@ _LEAST_EXTENT = 0.15
 _MOST_PIECES = 40
 """Number of pieces, the largest first, that may be joined; each takes a search."""
 
-_BRIDGE_RADIUS = 0.005
-"""Radius of the bridge that is drawn through a gap [m]."""
+_BRIDGE_RADIUS = 0.008, 0.025
+"""Least and largest radius of the tube that is drawn through a gap [m]; between, that of the lumen on either side."""
+
+_OWN_END = 0.030
+"""How far behind a tip the lumen is the bridged one, and no other loop, apart from its radius [m]."""
 
 
 @dataclass
@@ -39,7 +43,7 @@ class Cleaning:
     specks: int = 0
     """Pieces below 0.5 ml, which are always dropped."""
     bridges: list[dict[str, Any]] = field(default_factory=list)
-    """Gap [mm], volume [ml] of the piece that was joined, and place [mm] of each bridge."""
+    """Gap and radius at both ends [mm], volume [ml] of the smaller piece, and place [mm] of each bridge."""
     dropped: list[dict[str, Any]] = field(default_factory=list)
     """Volume [ml] and place [mm] of the larger pieces that were left out."""
     cut: list[dict[str, Any]] = field(default_factory=list)
@@ -86,6 +90,7 @@ def _report_pieces(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[P
         outside = float((grid.sample(bridge.start + np.linspace(0, 1, 200)[:, None] * offset) < 0.5).mean())
         figures = {
             "gap_mm": round(1e3 * outside * float(np.linalg.norm(offset)), 1),
+            "radius_mm": [round(1e3 * float(value), 1) for value in np.clip(bridge.radius, *_BRIDGE_RADIUS)],
             "volume_ml": round(1e6 * bridge.volume, 1),
         }
         done.bridges.append(figures | {"place_mm": in_millimeters(0.5 * (bridge.start + bridge.end))})
@@ -100,14 +105,15 @@ def in_millimeters(point: np.ndarray) -> list[int]:
 
 def _drawn(grid: Grid, keep: np.ndarray, bridges: list[Bridge]) -> Grid:
     """Return the field of what is kept, with bridges drawn and holes filled."""
-    for bridge in bridges:
-        start, end = (np.rint(grid.index(point)).astype(int) for point in (bridge.start, bridge.end))
-        _draw_bridge(keep, start, end, _BRIDGE_RADIUS / grid.spacing)
     values = np.where(ndimage.binary_dilation(keep), grid.values, 0.0).astype(np.float32)
     values[keep] = np.maximum(values[keep], 0.51)
-    holes = ndimage.binary_fill_holes(keep) & ~keep
-    values[holes] = 1.0
-    return Grid(values, grid.origin, grid.spacing)
+    out = Grid(values, grid.origin, grid.spacing)
+    lumen = grid.points(np.argwhere(keep)) if bridges else np.zeros((0, 3))
+    for bridge in bridges:
+        _draw_bridge(out, bridge, lumen)
+    inside = out.mask
+    values[ndimage.binary_fill_holes(inside) & ~inside] = 1.0
+    return out
 
 
 def _check_extent(keep: np.ndarray, spacing: float) -> None:
@@ -121,12 +127,11 @@ def _check_extent(keep: np.ndarray, spacing: float) -> None:
         )
 
 
-def _draw_bridge(mask: np.ndarray, start: np.ndarray, end: np.ndarray, radius: float) -> None:
-    """Set the voxels within a capsule."""
-    low = np.maximum(np.minimum(start, end) - int(radius) - 2, 0)
-    high = np.minimum(np.maximum(start, end) + int(radius) + 3, mask.shape)
-    box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
-    index = np.moveaxis(np.indices(high - low), 0, -1) + low
-    axis = (end - start).astype(float)
-    share = np.clip((index - start) @ axis / max(axis @ axis, 1e-9), 0.0, 1.0)
-    mask[box] |= np.linalg.norm(index - start - share[..., None] * axis, axis=-1) <= radius
+def _draw_bridge(grid: Grid, bridge: Bridge, lumen: np.ndarray) -> None:
+    """Draw a tube as wide as the lumen on either side, a wall away from other loops, in place."""
+    length = float(np.linalg.norm(bridge.end - bridge.start))
+    share = np.linspace(0.0, 1.0, round(length / grid.spacing) + 2)
+    first, last = np.clip(bridge.radius, *_BRIDGE_RADIUS)
+    own = np.min([np.linalg.norm(lumen - tip, axis=1) for tip in (bridge.start, bridge.end)], axis=0)
+    line = bridge.start + share[:, None] * (bridge.end - bridge.start)
+    draw_tube(grid, line, first + share * (last - first), lumen[own > _OWN_END + max(first, last)])

@@ -12,10 +12,9 @@ from scipy.ndimage import gaussian_filter1d
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.importing.bend_opening import open_bends
 from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.openings import Opening
 from arcgym.anatomy.importing.polar import cast, cast_rings, own_loop
 from arcgym.anatomy.importing.settings import ImportSettings
-from arcgym.anatomy.importing.smooth_centerline import center_path, plain_curve
+from arcgym.anatomy.importing.smooth_centerline import plain_curve
 from arcgym.anatomy.stage.types import Centerline
 
 _MEASURE_SPACING = 0.001
@@ -23,6 +22,9 @@ _MEASURE_SPACING = 0.001
 
 _MEASURE_COLUMNS = 72
 """Rays in a cross-section."""
+
+_AT_VERGE = 4
+"""Cross-sections at the anal verge that lie in the end of the lumen; they are taken as wide as the next."""
 
 _DOME_ROWS = 12
 """Rows of rays in the dome."""
@@ -44,20 +46,19 @@ class Measured:
     """Distance to the wall from its centre, from across the curve to along it [m], shape (m, k)."""
 
 
-def measure(grid: Grid, path: np.ndarray, settings: ImportSettings, openings: list[Opening]) -> Measured:
-    """Make a smooth centerline of a path and measure the lumen along it.
+def measure(grid: Grid, points: np.ndarray, settings: ImportSettings) -> Measured:
+    """Open the bends of a centerline for the wall and measure the lumen along it.
 
     Args:
         grid: The lumen in the patient's frame.
-        path: Path from the anus to the cecum [m], shape (n, 3).
+        points: Centerline from the anal verge to the caecal pole [m], evenly spaced, shape (n, 3).
         settings: Size of the wall, for which bends are opened.
-        openings: Holes of a surface.
     """
-    points = center_path(grid, path, settings.cecum is None, openings)
     half_width = settings.min_lumen_radius + settings.wall_thickness + 0.5 * settings.clearance
     curve = plain_curve(open_bends(points, np.full(len(points), half_width)))
     s = np.linspace(0.0, curve.length, round(curve.length / _MEASURE_SPACING) + 1)
     radius = own_loop(curve, s, cast_rings(grid, curve, s, _MEASURE_COLUMNS))
+    radius[:_AT_VERGE] = radius[_AT_VERGE]
     reach = np.clip(np.median(radius[-60:-20]), 0.012, 0.035)
     row = int(np.searchsorted(s, curve.length - reach))
     theta = np.arange(_MEASURE_COLUMNS) * 2 * np.pi / _MEASURE_COLUMNS

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -43,6 +42,6 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
         write_colon(imported.stage, made / "colon.usda")
         report = write_report(imported, made)
         if out.exists():
-            shutil.rmtree(out)
+            out.rename(Path(place) / "replaced")
         made.rename(out)
     return report

@@ -4,38 +4,25 @@
 
 from __future__ import annotations
 
-import logging
-import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.importing.cleaning import keep_colon
-from arcgym.anatomy.importing.formats import FRAMES, GRAVITY, VOLUME_SUFFIXES
+from arcgym.anatomy.importing.formats import GRAVITY
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.lumen import Lumen, Progress, find_lumen
 from arcgym.anatomy.importing.measuring import Measured, measure, sample_centerline
-from arcgym.anatomy.importing.openings import Opening, find_openings
-from arcgym.anatomy.importing.orientation import Orientation, orient
-from arcgym.anatomy.importing.path_search import LEAST_HOLE, find_path
-from arcgym.anatomy.importing.placement import describe_transform, given_landmarks, place, turned_grid
-from arcgym.anatomy.importing.preflight import check_input
+from arcgym.anatomy.importing.placement import describe_transform, given_landmarks, place
 from arcgym.anatomy.importing.segment_borders import find_segment_ends
 from arcgym.anatomy.importing.settings import ImportSettings
-from arcgym.anatomy.importing.surfaces import fill_surface, load_surface
 from arcgym.anatomy.importing.visual_fitting import fit_visual
-from arcgym.anatomy.importing.volumes import read_volume
 from arcgym.anatomy.importing.wall_fitting import FittedWall, fit_wall
 from arcgym.anatomy.landmarks import find_landmarks
 from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import ColonStage, TissueMaterial
-
-_LOGGER = logging.getLogger(__name__)
-_SMOOTHING = 0.0006
-"""Standard deviation of the smoothing of the lumen before it is measured [m]."""
 
 
 @dataclass(frozen=True)
@@ -56,20 +43,6 @@ class ImportedColon:
     """Figures by stage."""
 
 
-class _Progress:
-    """Logs and times the stages of an import."""
-
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
-        self._start = time.perf_counter()
-
-    def done(self, stage: str, message: str) -> None:
-        now = time.perf_counter()
-        self.seconds[stage] = round(now - self._start, 2)
-        self._start = now
-        _LOGGER.info("%-11s %5.1f s  %s", stage, self.seconds[stage], message)
-
-
 def import_colon(path: Path, settings: ImportSettings, folder: Path) -> ImportedColon:
     """Import a colon.
 
@@ -81,64 +54,42 @@ def import_colon(path: Path, settings: ImportSettings, folder: Path) -> Imported
     Raises:
         ColonImportError: The input cannot become a colon; says what was found and what to pass.
     """
-    check_input(path)
-    progress = _Progress()
-    grid, openings, source = _read(path, settings)
-    progress.done("read", f"{grid.mask.sum() * grid.spacing**3 * 1e6:.0f} ml in {'x'.join(map(str, grid.mask.shape))}")
-    grid, cleaning = keep_colon(grid, settings.max_gap)
-    progress.done(
-        "clean", f"{cleaning.pieces} pieces, {len(cleaning.bridges)} bridged, {len(cleaning.dropped)} dropped"
-    )
-    path_points, orientation, cleaning.cut = _find_path(grid, settings, source["kind"] == "surface")
-    rotation = FRAMES[orientation.frame]
-    grid, path_points = turned_grid(grid, path_points, rotation)
-    progress.done("centreline", f"likeness {orientation.likeness:.2f}, frame {orientation.frame}")
-    grid = Grid(gaussian_filter(grid.values, _SMOOTHING / grid.spacing), grid.origin, grid.spacing)
-    measured = measure(grid, path_points, settings, [opening.turned(rotation) for opening in openings])
+    progress = Progress()
+    lumen = find_lumen(path, settings, progress)
+    return mesh_colon(lumen, path.name, settings, folder, progress)
+
+
+def mesh_colon(lumen: Lumen, source: str, settings: ImportSettings, folder: Path, progress: Progress) -> ImportedColon:
+    """Make the rings, surfaces and landmarks of a lumen.
+
+    Args:
+        lumen: The lumen and the way through it.
+        source: Name of the file it was read from.
+        settings: What the caller knows better.
+        folder: Where the textures are written.
+        progress: Told when a stage is done.
+
+    Raises:
+        ColonImportError: No wall fits the lumen.
+    """
+    measured = measure(lumen.grid, lumen.line, settings)
     progress.done("radii", f"{1e3 * measured.curve.length:.0f} mm long")
     curve, measured, canal = place(measured)
-    given = given_landmarks(settings, measured.curve, rotation, curve.length)
+    given = given_landmarks(settings, measured.curve, lumen.rotation, curve.length)
     ends, guessed = find_segment_ends(curve.points, curve.s, given)
     curve = Curve(curve.points, ends)
     fitted = fit_wall(curve, measured.s, measured.radius, settings)
     progress.done("wall", f"{len(fitted.wall.points)} vertices, {100 * fitted.widened:.0f} % widened")
-    transform = describe_transform(orientation, measured, curve, canal)
+    transform = describe_transform(lumen.orientation, measured, curve, canal)
     folder.mkdir(parents=True, exist_ok=True)
-    stage = _stage(path, curve, measured, fitted, settings, folder, transform)
+    stage = _stage(source, curve, measured, fitted, settings, folder, transform)
     progress.done("surfaces", f"{len(stage.visual.points)} and {len(stage.visual_proxy.points)} vertices")
-    report = {
-        "input": {"file": path.name, **source},
-        "cleaning": asdict(cleaning),
-        "orientation": asdict(orientation),
-        "guessed_landmarks": guessed,
-        "seconds": progress.seconds,
-    }
-    return ImportedColon(stage, grid, measured.curve.points, rotation, fitted, report)
-
-
-def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], dict[str, str]]:
-    """Return the lumen, where it is open if it was a surface, and what was read."""
-    if path.name.lower().endswith(VOLUME_SUFFIXES):
-        grid = read_volume(path, settings.label, settings.spacing, settings.voxel)
-        return grid, [], {"kind": "volume", "units": "mm"}
-    points, faces, unit = load_surface(path, settings.units, settings.spacing)
-    grid = fill_surface(points, faces, settings.voxel)
-    return grid, find_openings(points, faces), {"kind": "surface", "units": unit}
-
-
-def _find_path(grid: Grid, settings: ImportSettings, is_surface: bool) -> tuple[np.ndarray, Orientation, list[Any]]:
-    """Return the path from anus to cecum on the file's axes, how these lie in the patient, and what was cut off."""
-    ends = [None if end is None else 1e-3 * np.array(end) for end in (settings.anus, settings.cecum)]
-    frame = settings.frame if is_surface else "ras"
-    found = find_path(grid, ends, frame)
-    orientation = orient(found.points, frame, ends_known=any(end is not None for end in ends))
-    if found.filled_hole > LEAST_HOLE:
-        found.cut.append({"kind": "hole in the rectum, filled", "volume_ml": round(1e6 * found.filled_hole, 1)})
-    return (found.points[::-1] if orientation.reversed else found.points), orientation, found.cut
+    report = {**lumen.report, "guessed_landmarks": guessed, "seconds": progress.seconds}
+    return ImportedColon(stage, lumen.grid, measured.curve.points, lumen.rotation, fitted, report)
 
 
 def _stage(
-    path: Path,
+    source: str,
     curve: Curve,
     measured: Measured,
     fitted: FittedWall,
@@ -163,7 +114,7 @@ def _stage(
             "patient": settings.patient,
             "posture": settings.posture,
             "gravityInScan": GRAVITY[settings.posture],
-            "provenance": f"imported from {path.name} with arcgym import-colon",
+            "provenance": f"imported from {source} with arcgym import-colon",
             "licence": settings.licence,
             **transform,
         },

@@ -91,7 +91,7 @@ def describe_transform(orientation: Orientation, measured: Measured, curve: Curv
         "rotationFromSource": FRAMES[orientation.frame].ravel().tolist(),
         "translationAfterRotation": [round(float(value), 6) for value in offset],
         "canalTurnedDegrees": round(float(np.degrees(canal)), 1),
-        "transformNote": "stage = rotation * source [m] + translation; the first 7 cm are bent so that the canal is +Z",
+        "transformNote": "stage = rotation * source [m] + translation; the anal canal is drawn anew along +Z",
     }
 
 

@@ -4,14 +4,22 @@
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
 
 from arcgym.anatomy.importing.errors import ImportArgumentError
 from arcgym.anatomy.importing.formats import SURFACE_SUFFIXES, VOLUME_SUFFIXES
 
-_OWN_FILES = ("colon.usda", "report.json")
-"""Files that show that a folder was made by an import."""
+MADE_BY = "arcgym import-colon"
+"""What ``made_by`` says in the report of an import."""
+
+_REPORT = "report.json"
+_OWN_FILES = {"colon.usda", "colon.usdc", _REPORT, "report.png", "preview.png", "snapshots"}
+"""What an import, a preview and start states put into the folder, beside textures."""
+
+_OWN_TEXTURES = "mucosa_"
+"""How the names of the textures begin."""
 
 
 def check_paths(path: Path, out: Path, overwrite: bool) -> None:
@@ -51,13 +59,27 @@ def check_input(path: Path) -> None:
 
 
 def _check_replaceable(path: Path, out: Path, overwrite: bool) -> None:
-    """Check that an existing folder may be deleted: asked for, empty or made by an import, and not the input's."""
+    """Check that an existing folder may be deleted: asked for, empty or an import's and nothing else, not in use."""
     if not overwrite:
         raise ImportArgumentError(f"{out} exists", "Pass another folder, or --overwrite.")
     whole = out.resolve()
-    own = out.is_dir() and (not any(out.iterdir()) or all((out / name).is_file() for name in _OWN_FILES))
-    if not own or whole in path.resolve().parents or whole in (Path.cwd(), *Path.cwd().parents):
-        raise ImportArgumentError(
-            f"{out} is not replaced: it is neither empty nor a folder made by an import, or it is in use",
-            "Pass another folder, or remove it.",
-        )
+    if whole in path.resolve().parents or whole in (Path.cwd(), *Path.cwd().parents):
+        raise ImportArgumentError(f"{out} is not replaced: it is in use", "Pass another folder.")
+    if not out.is_dir() or out.is_symlink():
+        raise ImportArgumentError(f"{out} is not replaced: it is no folder", "Pass another folder, or remove it.")
+    names = sorted(entry.name for entry in out.iterdir())
+    foreign = [name for name in names if name not in _OWN_FILES and not name.startswith(_OWN_TEXTURES)]
+    if foreign:
+        some = ", ".join(foreign[:3]) + (f" and {len(foreign) - 3} more" if len(foreign) > 3 else "")
+        found = f"{out} is not replaced: {some} in it is not of an import"
+        raise ImportArgumentError(found, "Pass another folder, or remove it.")
+    if names and not _made_by_import(out / _REPORT):
+        found = f"{out} is not replaced: it is neither empty nor a folder made by an import"
+        raise ImportArgumentError(found, "Pass another folder, or remove it.")
+
+
+def _made_by_import(report: Path) -> bool:
+    try:
+        return json.loads(report.read_text()).get("made_by") == MADE_BY
+    except (OSError, ValueError, AttributeError):
+        return False

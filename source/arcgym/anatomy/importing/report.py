@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.importing.pipeline import ImportedColon
+from arcgym.anatomy.importing.preflight import MADE_BY
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage.types import ColonStage
 from arcgym.anatomy.validation.stage_checks import inspect_stage
@@ -32,6 +33,7 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
     bounds = stage.segment_bounds()
     radii = ring_radii(stage.wall)
     return {
+        "made_by": MADE_BY,
         **imported.report,
         "length_mm": _mm(stage.length),
         "segment_length_mm": {name: _mm(end - start) for name, (start, end) in bounds.items()},

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -30,12 +31,16 @@ _RANGES = {
 """Smallest and largest value of settings in meters and of counts."""
 
 
+_NAME = re.compile(r"\w[\w .-]{0,63}")
+"""What a colon, and so its folder, may be called."""
+
+
 @dataclass(frozen=True)
 class ImportSettings:
     """Settings of an import; every default suits a CT colonography."""
 
     name: str = "imported"
-    """Name of the colon."""
+    """Name of the colon: letters, digits, space, dot, minus and underscore."""
     label: int | tuple[int, ...] | None = None
     """Value of the colon in a label volume, or several, such as air's and fluid's; needed when there are several."""
     spacing: tuple[float, float, float] | None = None
@@ -93,8 +98,9 @@ class ImportSettings:
         _check_choice("units", self.units, ("auto", *UNITS))
         _check_choice("frame", self.frame, ("auto", *FRAMES))
         _check_choice("posture", self.posture, GRAVITY)
-        if not self.name or "/" in self.name:
-            raise ImportArgumentError(f"name is '{self.name}'", "Pass one or more letters, no slash.")
+        if not _NAME.fullmatch(self.name):
+            expected = "Pass letters, digits, space, dot, minus and underscore, a letter or digit first, 64 at most."
+            raise ImportArgumentError(f"name is '{self.name}'", expected)
         if 0 in (self.label if isinstance(self.label, tuple) else (self.label,)):
             raise ImportArgumentError("label is 0, the background", "Pass the value of the colon.")
         if self.spacing is not None and not (_is_point(self.spacing) and min(self.spacing) > 0):

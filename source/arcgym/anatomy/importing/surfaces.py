@@ -12,8 +12,9 @@ import numpy as np
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.formats import UNITS
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.size_limits import check_voxels
 
-_COLON_EXTENT = (0.18, 0.80)
+_COLON_EXTENT = (0.20, 0.70)
 """Least and largest extent of a colon [m], by which the unit is chosen."""
 
 _LARGEST_HOLE = 0.08
@@ -92,7 +93,7 @@ def _guess_unit(path: Path, points: np.ndarray) -> str:
         if low <= extent * meters <= high:
             return unit
     raise ColonImportError(
-        f"{path} is {extent:.4g} units long, which is no colon's size in mm, cm or m",
+        f"{path} is {extent:.4g} units long, which is no colon's size in mm, cm or m ({low:g} to {high:g} m)",
         "Pass --units, or --spacing X Y Z if the surface is in voxels.",
     )
 
@@ -104,6 +105,7 @@ def fill_surface(points: np.ndarray, faces: np.ndarray, voxel: float) -> Grid:
     from vtkmodules.vtkImagingStencil import vtkImageStencilToImage, vtkPolyDataToImageStencil
 
     origin = points.min(0) - _MARGIN
+    check_voxels(np.ptp(points, axis=0) + 2 * _MARGIN, voxel)
     size = np.ceil((points.max(0) + _MARGIN - origin) / voxel).astype(int) + 1
     frame = vtkImageData()
     frame.SetDimensions(*size.tolist())

@@ -16,6 +16,8 @@ import numpy as np
 
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.headers import check_header
+from arcgym.anatomy.importing.size_limits import check_filling, check_voxels
 
 _PLAUSIBLE_SPACING = (0.2, 6.0)
 """Least and largest voxel spacing of a CT [mm]."""
@@ -44,6 +46,7 @@ def read_volume(
     Raises:
         ColonImportError: The file is damaged, empty, has several labels, or impossible spacing.
     """
+    check_header(path, spacing is not None)
     image = _read_image(path)
     if image.GetDimension() != 3:
         raise ColonImportError(f"{path} has {image.GetDimension()} dimensions", "Pass a 3-D label volume.")
@@ -115,6 +118,7 @@ def _binarise(image: Any, path: Path, label: int | tuple[int, ...] | None) -> An
     start = [max(0, int(r[0]) - 1) for r in ranges]
     stop = [min(size, int(r[-1]) + 2) for r, size in zip(ranges, image.GetSize(), strict=True)]
     part = lumen[start[2] : stop[2], start[1] : stop[1], start[0] : stop[0]].astype(np.float32)
+    check_filling(part)
     cut = sitk.GetImageFromArray(part)
     cut.SetSpacing(image.GetSpacing())
     cut.SetDirection(image.GetDirection())
@@ -154,6 +158,7 @@ def _resample(image: Any, voxel: float) -> Grid:
     step, margin = 1e3 * voxel, 1e3 * _MARGIN
     low = corners.min(0) - margin
     size = np.ceil((corners.max(0) + margin - low) / step).astype(int) + 1
+    check_voxels(1e-3 * (corners.max(0) + margin - low), voxel)
     identity = sitk.Transform()
     resampled = sitk.Resample(
         image, size.tolist(), identity, sitk.sitkLinear, low.tolist(), [step] * 3, np.eye(3).ravel().tolist(), 0.0

@@ -69,6 +69,8 @@ def fit_wall(curve: Curve, s: np.ndarray, radius: np.ndarray, settings: ImportSe
     """
     arc = ring_arcs(curve.length, settings.ring_spacing)
     measured = _on_rings(s, radius, arc, settings.sectors)
+    corner = 2.0 * np.pi / settings.sectors
+    measured *= np.sqrt(corner / np.sin(corner))
     wanted = bounded(curve, arc, measured, settings.wall_thickness, _BEND_LIMIT)
     inner = np.maximum(wanted, settings.min_lumen_radius)
     wall = _build(curve, arc, inner, settings.wall_thickness)

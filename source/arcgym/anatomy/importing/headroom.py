@@ -1,0 +1,115 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Widen a lumen where a scope's stiff head does not pass: collapsed stretches, folds and tight bends."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+from scipy.spatial import cKDTree
+
+from arcgym.anatomy.importing.cleaning import in_millimeters
+from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.importing.tubes import WALL, box_near, draw_tube
+from arcgym.anatomy.polyline import arc_lengths
+from arcgym.anatomy.validation.passage import HEAD_LENGTH, HEAD_RADIUS, Passage, find_passage
+
+_GROUP = 8
+"""Heads that are drawn at once."""
+
+LOOP = 0.080
+"""How much farther along the lumen another loop is [m]."""
+
+
+def signed_clearance(grid: Grid) -> Grid:
+    """Return the distance to the wall at each voxel [m], negative outside the lumen.
+
+    Maurer's distance is that to the middle of the lumen's last voxel; the wall is half a voxel beyond.
+    """
+    import SimpleITK as sitk
+
+    image = sitk.GetImageFromArray(grid.mask.astype(np.uint8))
+    distance = sitk.SignedMaurerDistanceMap(image, insideIsPositive=True, squaredDistance=False)
+    to_edge = sitk.GetArrayFromImage(distance) + 0.5
+    return Grid(grid.spacing * to_edge, grid.origin, grid.spacing)
+
+
+def room_for_head(grid: Grid, line: np.ndarray, radius: float = HEAD_RADIUS) -> Passage:
+    """Return the room for a head in a lumen on voxels; one thicker than the scopes' has longer round ends.
+
+    Args:
+        grid: The lumen.
+        line: Its centerline [m], shape (n, 3).
+        radius: Radius of the head [m].
+    """
+    field = signed_clearance(grid)
+
+    def clearance(points: np.ndarray) -> np.ndarray:
+        index = np.moveaxis(field.index(points), -1, 0)
+        return map_coordinates(field.values, index, order=1, mode="nearest")
+
+    return find_passage(clearance, line, arc_lengths(line), radius, HEAD_LENGTH + 2.0 * (radius - HEAD_RADIUS))
+
+
+def widen_for_head(grid: Grid, line: np.ndarray, radius: float) -> tuple[Grid, dict[str, Any]]:
+    """Draw the head where it does not pass, in the pose in which it needs least; a wall is left between two loops.
+
+    Args:
+        grid: The lumen.
+        line: Its centerline [m], evenly spaced, shape (n, 3).
+        radius: Radius of the head with what it is to be spared [m].
+
+    Returns:
+        The widened lumen, and figures: the share of the way, the least room before, and the volume that was added.
+    """
+    found = room_for_head(grid, line, radius)
+    poor = np.flatnonzero(found.room < radius)
+    out = Grid(grid.values.copy(), grid.origin, grid.spacing)
+    half = 0.5 * HEAD_LENGTH - HEAD_RADIUS
+    beads = np.linspace(-half, half, round(2 * half / grid.spacing) + 1)[:, None]
+    for part in _groups(poor):
+        axis = _beads(found, part, beads)
+        keep_off = other_loops(grid, line, axis, radius, found.arc[part])
+        draw_tube(out, axis, np.full(len(axis), radius), keep_off)
+    added = float((out.values > 0.5).sum() - (grid.values > 0.5).sum()) * grid.spacing**3
+    tightest = line[np.searchsorted(arc_lengths(line), found.tightest)]
+    return out, {
+        "share": round(len(poor) / len(found.arc), 3),
+        "least_room_mm": round(1e3 * found.least, 2),
+        "least_room_at_mm": round(1e3 * found.tightest),
+        "place_mm": in_millimeters(tightest),
+        "added_ml": round(1e6 * added, 1),
+    }
+
+
+def _groups(places: np.ndarray) -> list[np.ndarray]:
+    """Return stretches of consecutive places, none longer than a group."""
+    runs = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
+    return [run[k : k + _GROUP] for run in runs for k in range(0, len(run), _GROUP)]
+
+
+def _beads(found: Passage, part: np.ndarray, beads: np.ndarray) -> np.ndarray:
+    """Return points along the heads at some places and half-way to the next ones [m], shape (n, 3)."""
+    after = np.minimum(part + 1, len(found.arc) - 1)
+    axis = found.axis[part] + found.axis[after]
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    middle = np.concatenate([found.middle[part], 0.5 * (found.middle[part] + found.middle[after])])
+    return (middle[:, None] + beads * np.concatenate([found.axis[part], axis])[:, None]).reshape(-1, 3)
+
+
+def other_loops(grid: Grid, line: np.ndarray, points: np.ndarray, radius: float, arc: np.ndarray) -> np.ndarray:
+    """Return the lumen near points that belongs to other loops than a stretch of the centerline [m], shape (m, 3).
+
+    Args:
+        grid: The lumen.
+        line: Its centerline [m], shape (n, 3).
+        points: Where to look [m], shape (k, 3).
+        radius: How far round them, apart from two walls [m].
+        arc: Arc lengths of the stretch [m].
+    """
+    box = box_near(grid, points, radius + WALL + grid.spacing)
+    lumen = grid.points(np.argwhere(grid.values[box] > 0.5) + [part.start for part in box])
+    at = arc_lengths(line)[cKDTree(line).query(lumen)[1]]
+    return lumen[(at < arc.min() - LOOP) | (at > arc.max() + LOOP)]

@@ -1,0 +1,243 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Room for a stiff head along a lumen: the thickest one of a length that can lie, and be moved on, at every place.
+
+A least radius says nothing about bends: in a bend of 15 mm radius a straight head of 43 mm needs a lumen of 10 mm
+radius to be 6.6 mm thick itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import binary_dilation, label, minimum
+from scipy.spatial import cKDTree
+
+from arcgym.anatomy.measures import face_normals, inner_faces
+from arcgym.anatomy.stage.types import ColonStage
+
+HEAD_RADIUS = 0.0066
+"""Radius of the shipped scopes' heads [m]."""
+
+HEAD_LENGTH = 0.043
+"""Length of that head with its round ends [m]."""
+
+Clearance = Callable[[np.ndarray], np.ndarray]
+"""Function that returns the distance to the wall [m], negative outside the lumen, of points (..., 3)."""
+
+_STATION = 0.004
+"""Distance of the places at which the head is laid [m]."""
+
+_SAMPLE = 0.002
+"""Distance of the samples of the wall [m]; at a head's radius the wall seems 0.1 mm farther at most."""
+
+_SAME = 1e-7
+"""Distance below which samples are one [m]."""
+
+_BLIND = 0.014
+"""Distance of the blind end from the head's axis at the last place [m]."""
+
+_BEADS = 7
+"""Points along the head's axis at which the distance to the wall is taken."""
+
+_ATTEMPTS = 10
+"""How often heads that do not pass are laid anew."""
+
+_AROUND = 6
+"""Places on either side that are laid anew with one that does not pass."""
+
+_ROUNDS = 48, 100
+"""Random moves of a head: alone, and between its neighbors."""
+
+_MOVES = ((0.004, 0.30), (0.002, 0.15), (0.001, 0.06), (0.0004, 0.03))
+"""Size of the moves [m] and turns [rad], each in a quarter of the rounds."""
+
+_ENOUGH = 0.0005
+"""Room beyond what is asked for from which a place is not improved any more [m]."""
+
+_CENTERED = 1.8, 1.0
+"""Room that is looked for with each head alone, over what is enough, in turn."""
+
+_ALONG = 0.95, 0.8, 0.6, 0.3
+"""Least cosine between a head alone and the course, in turn; between its neighbors it is the last."""
+
+
+@dataclass(frozen=True)
+class Passage:
+    """How thick a head of a length may be."""
+
+    arc: np.ndarray
+    """Arc length of the middle of the head [m], shape (n,)."""
+    room: np.ndarray
+    """Largest radius of the head there that was found [m], at most 0.5 mm above what is asked for, shape (n,)."""
+    middle: np.ndarray
+    """Middle of the head there [m], shape (n, 3)."""
+    axis: np.ndarray
+    """Unit vector along it, shape (n, 3)."""
+
+    @property
+    def least(self) -> float:
+        """Least room along the lumen [m]."""
+        return float(self.room.min())
+
+    @property
+    def tightest(self) -> float:
+        """Arc length of the least room [m]."""
+        return float(self.arc[self.room.argmin()])
+
+
+def head_passage(stage: ColonStage, radius: float = HEAD_RADIUS, length: float = HEAD_LENGTH) -> Passage:
+    """Return the room for a stiff head in a stage's wall at rest, from the anal verge to the dome of the caecum.
+
+    Args:
+        stage: The colon.
+        radius: Radius of the head [m].
+        length: Its length with both round ends [m].
+    """
+    faces = inner_faces(stage.wall.tets, stage.wall.layer)
+    surface = _WallSamples(stage.wall.points.astype(float), faces)
+    line = stage.centerline
+    return find_passage(surface.clearance, line.points.astype(float), line.arc.astype(float), radius, length)
+
+
+class _WallSamples:
+    """Signed distance to a triangulated wall, by samples of it.
+
+    The side is that of the nearest sample's normal; on edges it is the mean of the faces' (Baerentzen and Aanaes, IEEE
+    TVCG 2005), for at a fold's edge the nearest face alone would tell the wrong side.
+    """
+
+    def __init__(self, points: np.ndarray, faces: np.ndarray) -> None:
+        corners, normals = points[faces], face_normals(points, faces)
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-18)
+        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(1)
+        found, sides = [], []
+        for parts in range(1, int(np.ceil(longest.max() / _SAMPLE)) + 1):
+            here = np.ceil(longest / _SAMPLE).astype(int) == parts
+            a, b = np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij")
+            share = np.stack([a, b, parts - a - b], -1)[a + b <= parts] / parts
+            found.append(np.einsum("kc,fcd->fkd", share, corners[here]).reshape(-1, 3))
+            sides.append(np.repeat(normals[here], len(share), axis=0))
+        samples, same = np.unique(np.round(np.concatenate(found) / _SAME), axis=0, return_inverse=True)
+        normals = np.concatenate(sides)
+        sums = [np.bincount(same.ravel(), normals[:, k], len(samples)) for k in range(3)]
+        self.samples, self.normals = _SAME * samples, np.stack(sums, 1)
+        self._tree = cKDTree(self.samples)
+
+    def clearance(self, points: np.ndarray) -> np.ndarray:
+        """Return the distance to the wall [m], negative outside the lumen, shape (...,) of points (..., 3)."""
+        distance, nearest = self._tree.query(points)
+        outwards = np.einsum("...i,...i->...", points - self.samples[nearest], self.normals[nearest])
+        return np.where(outwards > 0.0, -distance, distance)
+
+
+class _Heads:
+    """Heads at all places, each between its neighbors."""
+
+    def __init__(self, clearance: Clearance, points: np.ndarray, arc: np.ndarray, half: float) -> None:
+        self.clearance, self.half = clearance, half
+        self.arc = np.arange(half, max(arc[-1] - half - _BLIND, half + _STATION), _STATION)
+        at = lambda s: np.stack([np.interp(s, arc, points[:, k]) for k in range(3)], 1)  # noqa: E731
+        self.tangent = _unit(at(self.arc + half) - at(self.arc - half))
+        self.course = 0.25 * (at(self.arc + half) + 2.0 * at(self.arc) + at(self.arc - half))
+        self.middle, self.axis = self.course.copy(), self.tangent.copy()
+        self.room = self.worst(np.arange(len(self.arc)))
+
+    def worst(self, index: np.ndarray) -> np.ndarray:
+        """Return the least distance to the wall [m] of heads at some places, and half-way to both neighbors."""
+        middle, axis = self.middle[index], self.axis[index]
+        poses = [(middle, axis)]
+        for step in (-1, 1):
+            other = np.clip(index + step, 0, len(self.arc) - 1)
+            poses.append((0.5 * (middle + self.middle[other]), _unit(axis + self.axis[other])))
+        return self._least(poses)
+
+    def _least(self, poses: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+        beads = self.half * np.linspace(-1.0, 1.0, _BEADS)[:, None]
+        points = np.stack([middle[:, None] + beads * axis[:, None] for middle, axis in poses], 1)
+        return self.clearance(points).min((1, 2))
+
+    def search(self, rng: np.random.Generator, enough: float) -> None:
+        """Lay heads anew wherever there is less room than ``enough`` [m]: each alone first, then with its neighbors."""
+        for attempt in range(_ATTEMPTS):
+            poor = self.room < enough
+            if not poor.any():
+                return
+            stretch, count = label(binary_dilation(poor, iterations=_AROUND))
+            before = self.middle.copy(), self.axis.copy(), self.room.copy()
+            index = np.flatnonzero(stretch)
+            if attempt:
+                self.middle[index], self.axis[index] = self.course[index], self.tangent[index]
+            self._spread_out(index, rng, _CENTERED[attempt % 2] * enough, _ALONG[attempt % len(_ALONG)])
+            self._fit_in(index, rng, enough)
+            least = [minimum(room, stretch, np.arange(1, count + 1)) for room in (before[2], self.room)]
+            failed = np.isin(stretch, 1 + np.flatnonzero(np.asarray(least[1]) <= np.asarray(least[0])))
+            for now, then in zip((self.middle, self.axis, self.room), before, strict=True):
+                now[failed] = then[failed]
+
+    def _spread_out(self, index: np.ndarray, rng: np.random.Generator, enough: float, along: float) -> None:
+        """Move each head alone to where it has most room, but no more than ``enough`` [m]."""
+        own = np.full(len(self.arc), np.inf)
+        own[index] = self._least([(self.middle[index], self.axis[index])])
+        for k in range(_ROUNDS[0]):
+            chosen = np.flatnonzero(own < enough)
+            if not len(chosen):
+                break
+            middle, axis = self._moved(chosen, rng, *_MOVES[len(_MOVES) * k // _ROUNDS[0]], along)
+            room = self._least([(middle, axis)])
+            better = room > own[chosen]
+            chosen = chosen[better]
+            self.middle[chosen], self.axis[chosen], own[chosen] = middle[better], axis[better], room[better]
+        self.room[index] = self.worst(index)
+
+    def _fit_in(self, index: np.ndarray, rng: np.random.Generator, enough: float) -> None:
+        """Move heads where they, or the way to their neighbors, have less room than ``enough`` [m]."""
+        for k in range(_ROUNDS[1]):
+            poor = index[self.room[index] < enough]
+            if not len(poor):
+                break
+            for parity in (0, 1):
+                self._improve(poor[poor % 2 == parity], rng, *_MOVES[len(_MOVES) * k // _ROUNDS[1]])
+
+    def _improve(self, index: np.ndarray, rng: np.random.Generator, move: float, turn: float) -> None:
+        """Try a random move of heads of which no two are neighbors, and keep what gives more room."""
+        before = self.middle[index], self.axis[index], self.worst(index)
+        self.middle[index], self.axis[index] = self._moved(index, rng, move, turn)
+        worse = self.worst(index) <= before[2]
+        self.middle[index[worse]], self.axis[index[worse]] = before[0][worse], before[1][worse]
+        near = np.unique(np.clip(index[~worse, None] + [-1, 0, 1], 0, len(self.arc) - 1))
+        self.room[near] = self.worst(near)
+
+    def _moved(
+        self, index: np.ndarray, rng: np.random.Generator, move: float, turn: float, least: float = _ALONG[-1]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return middles shifted across the course by some way [m] and axes turned by some angle [rad].
+
+        Axes keep a least cosine to the course.
+        """
+        shift = rng.normal(0.0, move, (len(index), 3))
+        shift -= (shift * self.tangent[index]).sum(1, keepdims=True) * self.tangent[index]
+        axis = _unit(self.axis[index] + rng.normal(0.0, turn, (len(index), 3)))
+        along = (axis * self.tangent[index]).sum(1, keepdims=True) > least
+        return self.middle[index] + shift, np.where(along, axis, self.axis[index])
+
+
+def find_passage(clearance: Clearance, points: np.ndarray, arc: np.ndarray, radius: float, length: float) -> Passage:
+    """Lay a head along a line and move it about until it has most room, seeded so that results repeat.
+
+    Args:
+        clearance: Distance to the wall.
+        points: Centerline [m], shape (n, 3).
+        arc: Its arc length [m], shape (n,).
+        radius: Radius of the head [m].
+        length: Its length with both round ends [m].
+    """
+    heads = _Heads(clearance, points, arc, 0.5 * length - radius)
+    heads.search(np.random.default_rng(0), radius + _ENOUGH)
+    return Passage(heads.arc, np.minimum(heads.room, radius + _ENOUGH), heads.middle, heads.axis)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)

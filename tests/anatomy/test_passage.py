@@ -1,0 +1,52 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Room for a stiff head, in tubes where it can be worked out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from tiny import tiny_colon_stage
+
+from arcgym.anatomy.validation.passage import HEAD_LENGTH, HEAD_RADIUS, find_passage, head_passage
+
+HALF = 0.5 * HEAD_LENGTH - HEAD_RADIUS
+"""Half the length of the head's straight axis: 14.9 mm."""
+
+
+def test_straight_tube_takes_a_head_as_thick_as_itself() -> None:
+    arc = np.linspace(0.0, 0.2, 101)
+    line = np.stack([0.0 * arc, 0.0 * arc, arc], 1)
+    found = find_passage(lambda p: 0.0068 - np.linalg.norm(p[..., :2], axis=-1), line, arc, HEAD_RADIUS, HEAD_LENGTH)
+    assert found.least == pytest.approx(0.0068, abs=1e-6)
+
+
+def test_bend_takes_a_thinner_head_than_its_least_radius() -> None:
+    """A chord fits best with its ends as far outside of the tube's axis as its middle is inside: h^2 / 4 R."""
+    bend, radius = 0.020, 0.009
+    angle = np.linspace(0.0, np.pi, 200)
+    line = bend * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], 1)
+
+    def clearance(points: np.ndarray) -> np.ndarray:
+        return radius - np.hypot(np.hypot(points[..., 0], points[..., 1]) - bend, points[..., 2])
+
+    found = find_passage(clearance, line, bend * angle, HEAD_RADIUS, HEAD_LENGTH)
+    assert np.median(found.room) == pytest.approx(radius - HALF**2 / (4 * bend), abs=2e-4)
+    assert found.least < HEAD_RADIUS
+
+
+def test_heads_lie_along_the_way_and_do_not_jump() -> None:
+    stage = tiny_colon_stage(length=0.2, radius=0.012, bend=1.5)
+    found = head_passage(stage)
+    assert found.least > HEAD_RADIUS
+    assert (found.axis[1:] * found.axis[:-1]).sum(1).min() > 0.8
+    assert np.linalg.norm(np.diff(found.middle, axis=0), axis=1).max() < 0.012
+
+
+def test_ring_that_is_drawn_in_stops_the_head() -> None:
+    stage = tiny_colon_stage(length=0.2, radius=0.012, rings=41)
+    waist = stage.wall.ring == 20
+    stage.wall.points[waist, :2] *= 0.4
+    found = head_passage(stage)
+    assert found.least == pytest.approx(0.0048 * np.cos(np.pi / 8), abs=2e-4)
+    assert abs(found.tightest - 0.1) < HALF + 0.004
