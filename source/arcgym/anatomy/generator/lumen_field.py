@@ -81,6 +81,9 @@ class LumenField:
         self._s = np.arange(-LEAD, curve.length, _CURVE_STEP)
         tangent = curve.frame(np.array(0.0))[0]
         self._line = curve.position(self._s) + np.minimum(self._s, 0.0)[:, None] * tangent
+        self._tangent = np.gradient(self._line, axis=0)
+        self._tangent /= np.linalg.norm(self._tangent, axis=1, keepdims=True)
+        self._bend = np.gradient(self._tangent, _CURVE_STEP, axis=0)
         self._radius = surface.lumen_radius(self._s)
         self._tree = cKDTree(self._line)
         self._chunks = _Chunks(self._line, self._s, self._radius, septum)
@@ -91,12 +94,19 @@ class LumenField:
 
     def places(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return arc length [m] and angle about the centreline [rad] of points, shape (n,) each, of (n, 3)."""
-        _, near = self._tree.query(points)
-        s = np.clip(self._s[near], 0.0, self._surface.curve.length)
+        s, offset = self._foot(points, self._tree.query(points)[1])
         _, normal, binormal = self._surface.curve.frame(s)
-        offset = points - self._line[near]
         angle = np.arctan2(np.einsum("ij,ij->i", offset, binormal), np.einsum("ij,ij->i", offset, normal))
         return s, np.mod(angle, 2 * np.pi)
+
+    def _foot(self, points: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the arc length of the centreline's foot point near a sample, and the way from it to each point."""
+        offset, tangent = points - self._line[near], self._tangent[near]
+        ahead = np.einsum("ij,ij->i", offset, tangent)
+        reach = 0.5 * _CURVE_STEP
+        ahead = np.clip(ahead / np.maximum(1.0 - np.einsum("ij,ij->i", offset, self._bend[near]), 0.2), -reach, reach)
+        s = np.clip(self._s[near] + ahead, 0.0, self._surface.curve.length)
+        return s, offset - ahead[:, None] * tangent
 
     def sample(self, spacing: float = VOXEL) -> FieldGrid:
         """Return the field on a grid; away from the wall it is that of the plain tube, or the bounds of the band."""
@@ -142,9 +152,8 @@ class LumenField:
     def _detailed(self, points: np.ndarray, distance: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the field with folds, and the marks of creases, both of shape (n,)."""
         curve = self._surface.curve
-        s = np.clip(self._s[near], 0.0, curve.length)
+        s, offset = self._foot(points, near)
         _, normal, binormal = curve.frame(s)
-        offset = points - self._line[near]
         angle = np.arctan2(np.einsum("ij,ij->i", offset, binormal), np.einsum("ij,ij->i", offset, normal))
         bend = np.einsum("ij,ij->i", curve.interpolate(s, curve.curvature_vector), offset)
         crease = smooth_step(*_CREASE, bend)

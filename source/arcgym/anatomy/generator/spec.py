@@ -163,7 +163,7 @@ class ColonSpec:
     """Least distance from the centreline to folds [m]; lets a 13 mm scope through everywhere."""
     material: TissueMaterial = TissueMaterial()
     """Tissue of the wall."""
-    visual_refinements: int = 3
+    visual_refinements: int = 2
     """How often triangles on lesions are split for the fine surface. 2 makes smaller files of many lesions."""
     max_attempts: int = 40
     """How many draws from the seed are tried before the spec is given up; most are rejected by their course in 1 s."""

@@ -4,7 +4,8 @@
 
 From any lumen's surface, in reading order:
 
-- :mod:`triangle_surface`: a closed surface, cut from a field; :mod:`conformal_map`: coordinates along and round it;
+- :mod:`triangle_surface`: a closed surface, cut from a field; :mod:`voxel_surface`: from the voxels of an image, with
+  walls between loops that touch; :mod:`conformal_map`: coordinates along and round it;
 - :mod:`level_curves`: rings on it; :mod:`lumen_grid`: a grid of them, of a fixed :mod:`arcgym.anatomy.grid_shape`;
 - :mod:`coarse_wall`: the wall's two layers from the grid; :mod:`mending`: mends them where they are bad;
 - :mod:`grid_surfaces`: what the scope touches and what the camera sees, from the grid, finer near lesions
