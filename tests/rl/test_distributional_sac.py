@@ -46,7 +46,7 @@ def test_target_mean_is_that_of_plain_sac(monkeypatch):
         target.mlp[-1].weight.data.zero_()
         target.mlp[-1].bias.data.zero_()
     monkeypatch.setattr(alg, "_sample", lambda obs: (torch.zeros(2, 2), torch.full((2,), -1.0)))
-    batch = make_batch([0.0, 1.0])
+    batch = make_batch([0.0, 1.0], gamma=0.5)
     torch.testing.assert_close(alg.target_distribution(batch) @ alg.support, torch.tensor([2.25, 1.0]))
     torch.testing.assert_close(alg.targets_of(batch), torch.tensor([2.25, 1.0]))
 

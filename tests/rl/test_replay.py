@@ -150,3 +150,57 @@ def test_stack_must_divide_the_channels():
 def test_empty_memory_says_so():
     with pytest.raises(ValueError, match="no complete transition"):
         make_replay(Episodes()).sample(1)
+
+
+def numbered(number: float) -> TensorDict:
+    return TensorDict({"policy": torch.full((1, 1), float(number))}, batch_size=[1])
+
+
+def n_step_by_number(ends: dict[int, str], num_steps: int = 3) -> dict[float, tuple]:
+    """What transitions over several steps are like that start at observation 0, 1, ... of six steps of reward 1."""
+    torch.manual_seed(0)
+    replay = ReplayBuffer(numbered(0), 1, 20, "cpu")
+    for step in range(6):
+        end = torch.tensor([step in ends])
+        time_out = torch.tensor([ends.get(step) == "time-out"])
+        replay.add(
+            numbered(step), torch.zeros(1, 1), torch.ones(1), end, time_out, {"policy": torch.full((1, 1), 99.0)}
+        )
+    batch = replay.sample(200, num_steps, gamma=0.5)
+    following = torch.where(batch.terminated > 0, -1.0, batch.next_observations["policy"][:, 0])
+    columns = (batch.observations["policy"][:, 0], batch.rewards, batch.discounts, following)
+    return {row[0]: row[1:] for row in zip(*(column.tolist() for column in columns), strict=True)}
+
+
+def test_several_steps_add_up_and_end_at_the_newest_observation():
+    """1 + 0.5 + 0.25 over three steps; fewer where nothing newer is stored."""
+    assert n_step_by_number({}) == {
+        0.0: (1.75, 0.125, 3.0),
+        1.0: (1.75, 0.125, 4.0),
+        2.0: (1.75, 0.125, 5.0),
+        3.0: (1.5, 0.25, 5.0),
+        4.0: (1.0, 0.5, 5.0),
+    }
+
+
+def test_several_steps_end_with_the_episode():
+    """Step 1 ends the task; step 3 is cut short, so that its final observation, 99, follows."""
+    found = n_step_by_number({1: "end", 3: "time-out"})
+    assert found == {
+        0.0: (1.5, 0.25, -1.0),
+        1.0: (1.0, 0.5, -1.0),
+        2.0: (1.5, 0.25, 99.0),
+        3.0: (1.0, 0.5, 99.0),
+        4.0: (1.0, 0.5, 5.0),
+    }
+
+
+def test_images_are_stored_small():
+    """A block of 4x4 pixels with values 0 to 15 becomes one of 7.5, rounded to 8."""
+    image = torch.arange(16, dtype=torch.uint8).view(1, 1, 4, 4)
+    obs = TensorDict({"policy": image}, batch_size=[1])
+    replay = ReplayBuffer(obs, 1, 10, "cpu", shrink={"policy": 4})
+    for _ in range(3):
+        replay.add(obs, torch.zeros(1, 1), torch.zeros(1), torch.zeros(1), torch.zeros(1), None)
+    assert replay.num_bytes == 10
+    assert replay.sample(1).observations["policy"].tolist() == [[[[8]]]]

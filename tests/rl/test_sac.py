@@ -44,10 +44,11 @@ def make_runner(num_envs: int = 8, log_dir=None, seed: int = 0, **changes) -> Of
     return OffPolicyRunner(env, runner_cfg(**changes).to_dict(), log_dir=log_dir, device="cpu")
 
 
-def make_batch(terminated: list[float]) -> ReplayBatch:
+def make_batch(terminated: list[float], gamma: float = 0.8) -> ReplayBatch:
     env = SteerToDot(len(terminated))
     obs = env.get_observations()
-    return ReplayBatch(obs, torch.zeros(len(terminated), 2), torch.ones(len(terminated)), obs, torch.tensor(terminated))
+    ones = torch.ones(len(terminated))
+    return ReplayBatch(obs, torch.zeros(len(terminated), 2), ones, obs, torch.tensor(terminated), gamma * ones)
 
 
 def test_target_by_hand(monkeypatch):
@@ -208,3 +209,18 @@ def test_compiled_networks_make_the_same_step():
         alg.step_on(batch)
     for eager, compiled in zip(algs[0].critics.parameters(), algs[1].critics.parameters(), strict=True):
         torch.testing.assert_close(compiled, eager, rtol=1e-4, atol=1e-5)
+
+
+@one_thread()
+def test_several_steps_solve_the_dot_too():
+    runner = make_runner(algorithm={"num_steps": 3})
+    runner.learn(50)
+    assert mean_reward(SteerToDot(64, seed=1), runner.get_inference_policy(), 80) > 0.6
+
+
+def test_models_that_share_images_agree_on_their_size():
+    actor = AugmentedCnnModelCfg(cnn_cfg=ENCODER, shrink=2, distribution_cfg=SquashedGaussianDistributionCfg())
+    critic = CnnQModelCfg(cnn_cfg=ENCODER)
+    groups = {"actor": ["policy"], "critic": ["policy"]}
+    with pytest.raises(UsageError, match="shrink is 2 and agent.critic.shrink 1"):
+        make_runner(actor=actor, critic=critic, obs_groups=groups)

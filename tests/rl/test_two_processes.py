@@ -51,7 +51,8 @@ def sac_step(worlds: slice, processes: int) -> list[torch.Tensor]:
     alg._sample = lambda obs: ((actions := alg.actor(obs)), actions.sum(dim=1))
     obs = SteerToDot(NUM_ENVS).get_observations()[worlds]
     rewards, terminated = torch.arange(float(NUM_ENVS))[worlds], torch.zeros(NUM_ENVS)[worlds]
-    alg.step_on(ReplayBatch(obs, torch.zeros(len(rewards), 2), rewards, obs, terminated))
+    discounts = torch.full_like(rewards, 0.8)
+    alg.step_on(ReplayBatch(obs, torch.zeros(len(rewards), 2), rewards, obs, terminated, discounts))
     return [p.detach() for model in (alg.actor, alg.critics) for p in model.parameters()]
 
 

@@ -87,11 +87,18 @@ def _check_groups(env_cfg: Any, agent_cfg: Any) -> None:
 
 def _check_images(env_cfg: Any, agent_cfg: Any, name: str) -> None:
     """Raise if the images that a model reads are too small for its encoder."""
-    cnn_cfg = getattr(getattr(agent_cfg, name, None), "cnn_cfg", None)
+    model = getattr(agent_cfg, name, None)
+    cnn_cfg, shrink = getattr(model, "cnn_cfg", None), getattr(model, "shrink", 1)
     if cnn_cfg is None:
         return
     for group in agent_cfg.obs_groups.get(name, ()):
-        for camera, height, width in _images(env_cfg, group):
+        for camera, full_height, full_width in _images(env_cfg, group):
+            if full_height % shrink or full_width % shrink:
+                raise UsageError(
+                    f"agent.{name}.shrink is {shrink}, which does not divide the {full_height}x{full_width} px images "
+                    f"of env.scene.{camera}."
+                )
+            height, width = full_height // shrink, full_width // shrink
             try:
                 with torch.device("meta"):
                     CNN((height, width), 1, **cnn_cfg.to_dict())(torch.empty(1, 1, height, width))

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Random changes to images that keep their meaning."""
+"""Changes to images that keep their meaning: random ones, and a smaller size."""
 
 from __future__ import annotations
 
@@ -34,3 +34,38 @@ def random_shift(images: torch.Tensor, pixels: int) -> torch.Tensor:
     """
     offsets = torch.randint(-pixels, pixels + 1, (images.shape[0], 2), device=images.device)
     return shift_images(images, offsets)
+
+
+def jitter_colors(images: torch.Tensor, strength: float) -> torch.Tensor:
+    """Change brightness, contrast and saturation of each image at random.
+
+    In this order each is multiplied by a factor of its own between ``1 - strength`` and ``1 + strength``: the values,
+    their distance from the image's mean, and their distance from the pixel's grey.
+
+    Args:
+        images: uint8, shape (N, 3 K, H, W): RGB images, K of them stacked, which change alike.
+        strength: Largest change, in [0, 1).
+
+    Returns:
+        uint8 images of the same shape.
+    """
+    count, channels, height, width = images.shape
+    values = images.view(count, channels // 3, 3, height, width).float()
+    low, high = 1.0 - strength, 1.0 + strength
+    factors = torch.empty(3, count, 1, 1, 1, 1, device=images.device).uniform_(low, high)
+    values = values * factors[0]
+    mean = values.mean(dim=(1, 2, 3, 4), keepdim=True)
+    values = mean + (values - mean) * factors[1]
+    grey = values.mean(dim=2, keepdim=True)
+    values = grey + (values - grey) * factors[2]
+    return values.round_().clamp_(0.0, 255.0).to(torch.uint8).view_as(images)
+
+
+def shrink_images(images: torch.Tensor, factor: int) -> torch.Tensor:
+    """Return images of which each pixel is the mean of a square block, rounded to bytes.
+
+    Args:
+        images: uint8, shape (N, C, H, W).
+        factor: Edge of the blocks [px]; divides height and width.
+    """
+    return torch.nn.functional.avg_pool2d(images.float(), factor).round().to(torch.uint8)

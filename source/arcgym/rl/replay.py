@@ -11,6 +11,7 @@ from typing import Any, cast
 import torch
 from tensordict import TensorDict
 
+from arcgym.rl.augmentation import shrink_images
 from arcgym.utils.errors import UsageError
 
 
@@ -25,13 +26,17 @@ class ReplayBatch:
     """Actions, shape (B, A)."""
 
     rewards: torch.Tensor
-    """Rewards, shape (B,)."""
+    """Rewards, shape (B,); of several steps their discounted sum."""
 
     next_observations: TensorDict
     """What came after; after a time-out the episode's final observation. Meaningless where ``terminated``."""
 
     terminated: torch.Tensor
     """1 where nothing follows, 0 elsewhere, also after a time-out, float32, shape (B,)."""
+
+    discounts: torch.Tensor
+    """What the value of ``next_observations`` is multiplied by, shape (B,): the discount of a step to the power of the
+    steps in between."""
 
 
 class ReplayBuffer:
@@ -49,6 +54,7 @@ class ReplayBuffer:
         capacity: int,
         device: str,
         frame_stacks: dict[str, int] | None = None,
+        shrink: dict[str, int] | None = None,
     ):
         """Plan the memory; images and vectors take theirs with the first transition, so that playing needs none.
 
@@ -58,12 +64,15 @@ class ReplayBuffer:
             capacity: Observations to keep, of all worlds together.
             device: Where they are kept and sampled.
             frame_stacks: Frames in the channels of each stacked image group, oldest first; others count one.
+            shrink: Edge of the blocks of pixels that become one in each image group, see
+                :func:`arcgym.rl.augmentation.shrink_images`; others are stored as they are.
 
         Raises:
             UsageError: If a stack does not divide the channels of its group, or the memory is too small for one.
         """
         self.device, self.num_envs = device, int(obs.batch_size[0])
         self.frame_stacks = _check_stacks(obs, frame_stacks or {})
+        self.shrink = shrink or {}
         self.num_rows = capacity // self.num_envs
         self._history = max([1, *self.frame_stacks.values()]) - 1
         if self.num_rows < self._history + 3:
@@ -138,20 +147,35 @@ class ReplayBuffer:
         self._is_start[newest, self._worlds] = False
         self._steps.zero_()
 
-    def sample(self, batch_size: int) -> ReplayBatch:
+    def sample(self, batch_size: int, num_steps: int = 1, gamma: float = 1.0) -> ReplayBatch:
         """Return transitions drawn uniformly, with replacement, from all whose observations are complete.
+
+        Args:
+            batch_size: Number of transitions B.
+            num_steps: Steps that a transition leads over; fewer where the episode ends or nothing newer is stored.
+            gamma: Discount of a step.
 
         Raises:
             ValueError: If there is none yet.
         """
         world, index = self._draw(batch_size)
         row = index % self.num_rows
+        rewards, last = self._rewards[row, world].clone(), index.clone()
+        discounts = torch.full_like(rewards, gamma)
+        for _ in range(num_steps - 1):
+            following = (last + 1) % self.num_rows
+            goes_on = ~self._terminated[last % self.num_rows, world] & self._is_start[following, world]
+            goes_on &= last + 2 < self._count[world]
+            rewards += torch.where(goes_on, discounts * self._rewards[following, world], 0.0)
+            discounts = torch.where(goes_on, gamma * discounts, discounts)
+            last += goes_on
         return ReplayBatch(
             observations=self._observations(index, world),
             actions=self._actions[row, world],
-            rewards=self._rewards[row, world],
-            next_observations=self._observations(index + 1, world),
-            terminated=self._terminated[row, world].float(),
+            rewards=rewards,
+            next_observations=self._observations(last + 1, world),
+            terminated=self._terminated[last % self.num_rows, world].float(),
+            discounts=discounts,
         )
 
     def state_dict(self) -> dict[str, Any]:
@@ -191,7 +215,7 @@ class ReplayBuffer:
         is_known = self._steps >= self._history
         rebuilt = self._observations(self._count, self._worlds)
         for name, stack in self.frame_stacks.items():
-            if not torch.equal(rebuilt[name][is_known], obs[name].to(self.device)[is_known]):
+            if not torch.equal(rebuilt[name][is_known], self._stored(name, obs[name]).to(self.device)[is_known]):
                 raise UsageError(
                     f"Group '{name}' is not its last {stack} frames, oldest first: set agent.algorithm.frame_stacks as "
                     "the task's history_length, or leave the group out to store it whole."
@@ -211,9 +235,13 @@ class ReplayBuffer:
         self._count[world] += 1
 
     def _newest(self, name: str, value: torch.Tensor) -> torch.Tensor:
-        """Return the newest frame of a stacked group, the whole of another."""
+        """Return the newest frame of a stacked group, the whole of another, in the size that is stored."""
         stack = self.frame_stacks.get(name, 1)
-        return value if stack == 1 else value[:, -(value.shape[1] // stack) :]
+        return self._stored(name, value if stack == 1 else value[:, -(value.shape[1] // stack) :])
+
+    def _stored(self, name: str, value: torch.Tensor) -> torch.Tensor:
+        """Return observations of a group in the size that is stored."""
+        return shrink_images(value, self.shrink[name]) if self.shrink.get(name, 1) > 1 else value
 
     def _draw(self, batch_size: int) -> tuple[torch.Tensor, torch.Tensor]:
         """Worlds and indices (rows counted from the first ever written) of transitions, each of shape (B,)."""

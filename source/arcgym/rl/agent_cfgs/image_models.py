@@ -7,18 +7,26 @@ from __future__ import annotations
 
 from arcgym.rl.runner_cfg import RslRlCnnModelCfg
 from arcgym.utils.configclass import configclass
-from arcgym.utils.validation import require, require_at_least
+from arcgym.utils.validation import Range, require, require_at_least
 
 
 @configclass
 class AugmentedCnnModelCfg(RslRlCnnModelCfg):
-    """CNN whose images move at random while it learns."""
+    """CNN whose images change at random while it learns."""
 
     class_name: str = "arcgym.rl.networks.augmented_cnn:AugmentedCnnModel"
     """Model class."""
 
     shift: int = 4
     """Largest random shift [px]; 0 switches it off. A twentieth of the image's edge is usual."""
+
+    color_jitter: float = 0.0
+    """Largest random change of brightness, contrast and saturation, as a factor's distance from one; the frames of a
+    stack change alike, and each must be RGB. 0 switches it off; 0.2 makes a policy less of one lamp and one mucosa."""
+
+    shrink: int = 1
+    """Edge of the square blocks of pixels that are averaged into one before the encoder; must divide the image. Soft
+    actor-critic stores images of that size, which makes its memory smaller by the square. Fit ``cnn_cfg`` to it."""
 
     def validate_config(self) -> None:
         """Check names and bounds.
@@ -28,6 +36,8 @@ class AugmentedCnnModelCfg(RslRlCnnModelCfg):
         """
         super().validate_config()
         require_at_least(self, 0, "shift", unit="px")
+        require(self, "color_jitter", Range(0.0, 1.0, below=True))
+        require_at_least(self, 1, "shrink", unit="px")
 
 
 @configclass

@@ -101,6 +101,10 @@ class RslRlSacAlgorithmCfg:
     max_grad_norm: float = 10.0
     """Gradient clipping by norm."""
 
+    num_steps: int = 1
+    """Steps whose rewards a target adds up before it bootstraps. 3 spreads rewards faster, and is off-policy: the steps
+    in between are those of older policies, and their entropy does not count."""
+
     use_mixed_precision: bool = False
     """Whether the networks compute in bfloat16 in updates; losses and distributions stay in float32. Turn on where
     ``arcgym bench learner`` shows that it pays."""
@@ -111,7 +115,7 @@ class RslRlSacAlgorithmCfg:
         Raises:
             ValueError: If a value is out of its bounds or a name is unknown.
         """
-        require_at_least(self, 1, "replay_size", "frame_stacks", "batch_size", "actor_interval")
+        require_at_least(self, 1, "replay_size", "frame_stacks", "batch_size", "actor_interval", "num_steps")
         require(self, "gamma", Range(0.0, 1.0, above=True))
         require_positive(self, "learning_rate", "updates_per_transition", "init_temperature", "max_grad_norm")
         require_at_least(self, 0, "learning_starts")

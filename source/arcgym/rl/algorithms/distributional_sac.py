@@ -80,7 +80,7 @@ class DistributionalSAC(SAC):
             smaller = (both @ self.support).argmin(dim=0)
             chosen = both[smaller, torch.arange(len(smaller), device=both.device)]
             soft = self.support - (self.temperature * log_prob).unsqueeze(1)
-            alive = self.gamma * (1.0 - batch.terminated).unsqueeze(1)
+            alive = (batch.discounts * (1.0 - batch.terminated)).unsqueeze(1)
             return project(batch.rewards.unsqueeze(1) + alive * soft, chosen, self.support)
 
     def critic_loss(self, batch: ReplayBatch) -> torch.Tensor:

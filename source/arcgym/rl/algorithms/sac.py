@@ -31,6 +31,8 @@ class SAC:
 
         y = r + gamma (1 - terminated) (min_i Q'_i(s', a') - alpha log p(a' | s')),  a' ~ p(. | s')
 
+    where r, gamma and s' may lead over several steps,
+
     the critics minimise ``(Q_i(s, a) - y)^2``, the actor ``alpha log p(a | s) - min_i Q_i(s, a)``, the temperature
     ``-log alpha (log p(a | s) + target entropy)``. A time-out is not an end: its ``s'`` is the episode's last state.
     """
@@ -53,6 +55,7 @@ class SAC:
         learn_temperature: bool = True,
         target_entropy: float | None = None,
         max_grad_norm: float = 10.0,
+        num_steps: int = 1,
         use_mixed_precision: bool = False,
         device: str = "cpu",
         multi_gpu_cfg: dict | None = None,
@@ -75,6 +78,7 @@ class SAC:
             learn_temperature: Whether the temperature keeps the entropy at ``target_entropy``.
             target_entropy: In nats; None is minus the size of the action.
             max_grad_norm: Gradient clipping by norm.
+            num_steps: Steps whose rewards a target adds up before it bootstraps.
             use_mixed_precision: Whether networks compute in bfloat16 in updates.
             device: Device of the networks.
             multi_gpu_cfg: Rank and number of processes, from the runner.
@@ -83,7 +87,8 @@ class SAC:
         self.device, self.replay, self.learning_rate = device, replay, learning_rate
         self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
         self.gpu_world_size = multi_gpu_cfg["world_size"] if multi_gpu_cfg else 1
-        self.gamma, self.batch_size, self.learning_starts = gamma, batch_size, learning_starts
+        self.num_steps, self.gamma = num_steps, gamma
+        self.batch_size, self.learning_starts = batch_size, learning_starts
         self.updates_per_transition, self.actor_interval = updates_per_transition, actor_interval
         self.target_step, self.max_grad_norm = target_step, max_grad_norm
         self.learn_temperature, self.use_mixed_precision = learn_temperature, use_mixed_precision
@@ -119,7 +124,7 @@ class SAC:
         critics = [critic_class(with_actions, groups, "critic", outputs, **critic_cfg) for _ in range(2)]
         size, stacks = alg_cfg.pop("replay_size"), alg_cfg.pop("frame_stacks", None)
         read = {group for groups_of_set in groups.values() for group in groups_of_set}
-        replay = ReplayBuffer(obs.select(*read), env.num_actions, size, device, stacks)
+        replay = ReplayBuffer(obs.select(*read), env.num_actions, size, device, stacks, _shrink(actor, critics))
         alg = alg_class(actor, critics, replay, device=device, **alg_cfg, multi_gpu_cfg=cfg["multi_gpu"])
         if cfg.get("torch_compile_mode"):
             alg.compile(cfg["torch_compile_mode"])
@@ -183,10 +188,14 @@ class SAC:
         counts: dict[str, int] = {}
         while self._owed >= 1.0:
             self._owed -= 1.0
-            for name, value in self.step_on(self.replay.sample(self.batch_size)).items():
+            for name, value in self.step_on(self._draw()).items():
                 sums[name] = sums.get(name, torch.zeros((), device=self.device)) + value
                 counts[name] = counts.get(name, 0) + 1
         return {name: float(total) / counts[name] for name, total in sums.items()}
+
+    def _draw(self) -> ReplayBatch:
+        """Return a batch of the memory."""
+        return self.replay.sample(self.batch_size, self.num_steps, self.gamma)
 
     def step_on(self, batch: ReplayBatch) -> dict[str, torch.Tensor]:
         """Make one gradient step on ``batch`` and return the losses."""
@@ -205,7 +214,7 @@ class SAC:
             actions, log_prob = self._sample(batch.next_observations)
             following = with_action(batch.next_observations, actions)
             value = self._values(self.targets, following).amin(dim=0) - self.temperature * log_prob
-            return batch.rewards + self.gamma * (1.0 - batch.terminated) * value
+            return batch.rewards + batch.discounts * (1.0 - batch.terminated) * value
 
     def critic_loss(self, batch: ReplayBatch) -> torch.Tensor:
         """Return the mean squared error of each critic, added up."""
@@ -329,3 +338,17 @@ class SAC:
 
     def _optimizers(self) -> tuple[torch.optim.Optimizer, ...]:
         return self.actor_optimizer, self.critic_optimizer, self.temperature_optimizer
+
+
+def _shrink(*models: Any) -> dict[str, int]:
+    """Return by how much images of each group are made smaller, which all models that read it must agree on."""
+    factors: dict[str, int] = {}
+    for model in (models[0], *models[1]):
+        for group in getattr(model, "obs_groups_2d", ()):
+            factor = getattr(model, "shrink", 1)
+            if factors.setdefault(group, factor) != factor:
+                raise UsageError(
+                    f"agent.actor.shrink is {factors[group]} and agent.critic.shrink {factor}; both read '{group}', "
+                    "which is stored once: set them alike."
+                )
+    return factors
