@@ -15,13 +15,18 @@ import numpy as np
 
 from arcgym.assets.materials import tissue_preset
 from arcgym.benchmarks.fidelity.solid_indentation import QuarterTube, press
-from arcgym.benchmarks.fidelity.tubes import HELD_SPACINGS, wall_measures
+from arcgym.benchmarks.fidelity.tubes import HELD_SPACINGS, Tube, wall_measures
 from arcgym.sim.simulation_cfg import ContactCfg
 
 FILE = Path(__file__).with_name("solid_curves.json")
 """Curves by tissue and mesh: {"paper 10x10": {"depth": [m], "force": [N]}}."""
-LENGTH, TIP = 0.20, 0.0066
-"""Length of the tube of :mod:`~.indenter` and radius of its indenter [m]."""
+RADIUS, LENGTH = 0.0166456, 0.1625
+"""Inner radius and free length of the tube [m]: those of :mod:`~.indenter` when the kept curves were made. They stay
+what they are when the shipped colon changes."""
+STAGE_THICKNESS = 0.002
+"""Thickness of the wall where the tissue has none of its own [m]."""
+TIP = 0.0066
+"""Radius of the indenter [m]."""
 DEPTHS = {"paper": np.arange(1.0e-3, 1.05e-2, 1.0e-3), "in_situ": np.arange(5.0e-4, 1.32e-2, 5.0e-4)}
 """Depths from the first touch [m]: up to 17 N and 1.9 N."""
 
@@ -32,16 +37,25 @@ def solid_curve(material: str, mesh: str) -> tuple[np.ndarray, np.ndarray]:
     return np.r_[0.0, kept["depth"]], np.r_[0.0, kept["force"]]
 
 
+def thickness(material: str) -> float:
+    """Return the thickness of the wall [m]."""
+    return tissue_preset(material).thickness or STAGE_THICKNESS
+
+
+def shipped_tube() -> Tube:
+    """Return a tube of these measures with rings and sectors of the shipped mesh."""
+    free = round(LENGTH / wall_measures().spacing)
+    return Tube(LENGTH * (free + sum(HELD_SPACINGS)) / free, radius=RADIUS)
+
+
 def measure(material: str, around: int, along: int) -> np.ndarray:
     """Return the forces on the tip at :data:`DEPTHS` [N].
 
-    The tube has the sigmoid's radius and is held as :func:`~.tubes.tube_stage` holds it; the tip's radius includes the
-    skin that contact adds to a link.
+    The tip's radius includes the skin that contact adds to a link.
     """
-    measures, preset = wall_measures(), tissue_preset(material)
+    preset = tissue_preset(material)
     assert preset.youngs_modulus is not None and preset.poissons_ratio is not None
-    length = LENGTH - sum(HELD_SPACINGS) * measures.spacing
-    tube = QuarterTube(length, measures.radius, preset.thickness or measures.thickness, around, along)
+    tube = QuarterTube(LENGTH, RADIUS, thickness(material), around, along)
     sphere = TIP + ContactCfg().wall_radius
     return press(tube, preset.youngs_modulus, preset.poissons_ratio, sphere, DEPTHS[material])
 

@@ -51,6 +51,10 @@ class Tube:
     radius: float | None = None
     """Radius of the lumen [m]; the shipped colon's by default."""
 
+    def spacing(self) -> float:
+        """Return the distance of its rings on the shipped mesh [m], which divides the length."""
+        return self.length / round(self.length / wall_measures().spacing)
+
     def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the points of the centerline [m], shape (n, 3), and its angle from the Z axis [rad], shape (n,)."""
         angle = np.clip((s - self.bend_start) / self.bend_radius, 0.0, self.bend)
@@ -107,7 +111,7 @@ def tube_stage(tube: Tube) -> ColonStage:
     """Return a tube with the ring spacing, sectors, radius and thickness of the shipped colon."""
     measures = wall_measures()
     sectors = measures.sectors * tube.refine
-    arc = np.linspace(0.0, tube.length, round(tube.length / measures.spacing) * tube.refine + 1)
+    arc = np.linspace(0.0, tube.length, round(tube.length / tube.spacing()) * tube.refine + 1)
     theta = 2.0 * np.pi * np.arange(sectors) / sectors
     radius = measures.radius if tube.radius is None else tube.radius
     radii = (radius, radius + measures.thickness)
@@ -115,7 +119,7 @@ def tube_stage(tube: Tube) -> ColonStage:
     codes = np.full(len(arc), segment_index(SEGMENT), np.int32)
     shipped = shipped_stage()
     visual = grid_visual(tube.surface(arc, theta, radius), arc)
-    held = (HELD_SPACINGS[0] * measures.spacing, tube.length - HELD_SPACINGS[1] * measures.spacing)
+    held = (HELD_SPACINGS[0] * tube.spacing(), tube.length - HELD_SPACINGS[1] * tube.spacing())
     return ColonStage(
         name="tube",
         wall=hold(build_wall(layers, codes, arc, capped=False), *held),

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import math
 
-from arcgym.benchmarks.fidelity.indenter import PLACES, TOUCH, TUBE, Curve, indent
+from arcgym.benchmarks.fidelity.indenter import PLACES, TOUCH, Curve, indent
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, relative
-from arcgym.benchmarks.fidelity.solid_curves import solid_curve
+from arcgym.benchmarks.fidelity.solid_curves import shipped_tube, solid_curve, thickness
 
 LOADS = {"paper": (5.0, 10.0, 15.0), "in_situ": (0.5, 1.0, 1.5)}
 """Forces whose depths are compared, by tissue [N]."""
@@ -18,7 +18,7 @@ MESH = "14x12"
 
 def indentation(run: Run, material: str) -> list[Row]:
     """Measure the depth of the tip under a load, mean of the places; the row is of the load with the largest error."""
-    ours = indent(run, TUBE, material)
+    ours = indent(run, shipped_tube(), material, thickness(material))
     depth, force = solid_curve(material, MESH)
     solid = Curve(depth[None], force[None])
     solid = Curve(solid.depth - solid.depth_at(TOUCH)[:, None], solid.force)
