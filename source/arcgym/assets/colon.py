@@ -21,7 +21,8 @@ from arcgym.assets.anchors import AnchorSprings, anchor_springs
 from arcgym.assets.colon_cfg import ColonCfg
 from arcgym.assets.colon_data import ColonData
 from arcgym.assets.materials import Value, anchor_scale, shell_moduli, solid_moduli, tissue_preset
-from arcgym.assets.patient import Patient, read_patient
+from arcgym.assets.patient import Patient
+from arcgym.assets.patient_cache import load_patients
 from arcgym.assets.patient_checks import check_patients
 from arcgym.assets.patient_files import find_stages
 from arcgym.assets.shell_loading import add_shell
@@ -62,7 +63,7 @@ class Colon:
         chosen = (cfg.wall_thickness, self.tissue.thickness if shell else None)
         thickness = next((value for value in chosen if value is not None), None)
         paths = find_stages(cfg.usd_path, cfg.num_patients)
-        self.patients: tuple[Patient, ...] = tuple(read_patient(path, thickness, shell) for path in paths)
+        self.patients: tuple[Patient, ...] = load_patients(paths, thickness, shell)
         """Colons, of which each world has one."""
         tissue = ("youngs_modulus", "poissons_ratio", "density")
         own = [name for name in tissue if getattr(cfg, name) is None and getattr(self.tissue, name) is None]

@@ -44,6 +44,8 @@ class Patient:
     """Colour of the mucosa."""
     detail_texture: Path
     """Relief of the mucosa."""
+    content: str = ""
+    """Hash of the stage's files, empty if it was not asked for."""
 
     @property
     def name(self) -> str:

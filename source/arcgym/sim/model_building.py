@@ -55,11 +55,6 @@ def wall_parameters(colon: Colon, patient: int = 0) -> WallParameters:
     )
 
 
-def all_walls(colon: Colon) -> list[WallParameters]:
-    """Return the wall of every patient."""
-    return [wall_parameters(colon, patient) for patient in range(len(colon.patients))]
-
-
 def _solid(builder: newton.ModelBuilder, points: np.ndarray) -> SolidParameters:
     tets = np.array(builder.tet_indices, dtype=np.int32).reshape(-1, 4)
     shear, dilation = tet_stiffness(points, tets)

@@ -19,6 +19,7 @@ from arcgym.assets.endoscope import Endoscope
 from arcgym.sim import model_building
 from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.coupling.two_level_coupling import Coupling, TwoLevelCoupling
+from arcgym.sim.patient_walls import patient_walls
 from arcgym.sim.scope.actuation import Actuation
 from arcgym.sim.scope.scope_readout import ScopeReadout
 from arcgym.sim.simulation_cfg import SimulationCfg
@@ -89,7 +90,7 @@ class Simulation:
     def _build_wall(self) -> None:
         """Wall positions and velocities, contact search, wall solver and its readout."""
         cfg, colon, scope = self.cfg, self.colon, self.endoscope
-        walls, lumen = model_building.all_walls(colon), model_building.wall_lumen(colon.wall)
+        (walls, modes), lumen = patient_walls(colon), model_building.wall_lumen(colon.wall)
         rest = [wall.points for wall in walls]
         points = np.stack(rest, axis=1).astype(np.float32)[:, self.patient.numpy()]
         self.nodal_pos = wp.array(points, dtype=wp.vec3, device=self.device)
@@ -104,7 +105,7 @@ class Simulation:
             self.num_envs,
             self.device,
         )
-        modes, slots = [model_building.wall_modes(wall) for wall in walls], len(self.contact.records.face)
+        slots = len(self.contact.records.face)
         self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
         self.wall_readout = WallReadout(lumen, rest, colon.wall.ring, anchors, scale, self.patient, self.device)
