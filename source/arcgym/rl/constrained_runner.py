@@ -14,8 +14,8 @@ from tensordict import TensorDict
 from torch import nn
 
 from arcgym.rl.action_constraints import ActionConstraint, ConstraintRules, action_axes
-from arcgym.rl.depth_estimators import DepthSource, EstimatedDepth, SimulatorDepth, TransformersDepth
 from arcgym.rl.runner import OnPolicyRunner
+from arcgym.sensors.depth_estimators import DepthSource, EstimatedDepth, SimulatorDepth, TransformersDepth
 
 
 class ConstrainedVecEnv(VecEnv):

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
+from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores, resolve_lumen, score_depth
+from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import ManagerTermBase, RewardTermCfg
+from arcgym.sensors.depth_estimators import EstimatedDepth, TransformersDepth
 from arcgym.utils.validation import expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 __all__ = [
     "action_l2",
     "action_rate_l2",
+    "estimated_lumen_reward",
     "is_terminated",
     "lumen_centering",
     "lumen_reward",
@@ -60,6 +63,46 @@ def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) ->
         lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
     """
     return lumen_scores(env, lumen).reward
+
+
+class estimated_lumen_reward(ManagerTermBase):
+    """The paper's reward on depth that a network estimates from the color image, shape (N,).
+
+    Costs, terminations and metrics keep the simulator's depth, so that results stay comparable. In place of
+    ``lumen_reward`` it shows whether a reward that a real endoscope could give is enough to learn from.
+    """
+
+    def __init__(self, cfg: RewardTermCfg, env: ManagerBasedRLEnv) -> None:
+        """Load the network.
+
+        Raises:
+            UsageError: The folder or the package ``transformers`` is missing.
+        """
+        super().__init__(cfg, env)
+        values = dict(cfg.params)
+        network = TransformersDepth(values["weights"], env.device, gives_depth=values.get("gives_depth", False))
+        ranges = {name: values[name] for name in ("near", "far") if name in values}
+        self._depth = EstimatedDepth(env, network, **ranges)
+
+    def __call__(
+        self,
+        env: ManagerBasedRLEnv,
+        weights: str,
+        gives_depth: bool = False,
+        near: float = 0.003,
+        far: float = 0.1,
+        lumen: str | LumenCfg | None = None,
+    ) -> torch.Tensor:
+        """Score the estimate of the current images.
+
+        Args:
+            weights: Folder with the network in the format of transformers; read once at construction.
+            gives_depth: Whether it answers with depth, as metric variants do, and not with its inverse; read once.
+            near: Depth that the nearest pixel of every frame is given [m], since estimates have no scale; read once.
+            far: Depth that the farthest pixel of every frame is given [m]; read once.
+            lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
+        """
+        return score_depth(self._depth(), resolve_lumen(task_setting(env, "lumen", lumen))).reward
 
 
 class progress(ManagerTermBase):

@@ -9,7 +9,7 @@ from types import ModuleType, SimpleNamespace
 import pytest
 import torch
 
-from arcgym.rl.depth_estimators import (
+from arcgym.sensors.depth_estimators import (
     EstimatedDepth,
     SimulatorDepth,
     TransformersDepth,
@@ -74,3 +74,19 @@ def test_pipeline_result_has_the_size_of_the_image(tmp_path, monkeypatch):
 def test_missing_weights_are_named(tmp_path):
     with pytest.raises(ValueError, match="nowhere"):
         TransformersDepth(tmp_path / "nowhere")
+
+
+def test_the_reward_scores_the_estimate(tmp_path, monkeypatch):
+    """Whatever the simulator's depth, it is the network's that is scored: here the inverse of a tube's depth."""
+    from arcgym.envs import mdp
+    from arcgym.managers import RewardTermCfg
+
+    far = torch.full((1, 9, 9), 0.01)
+    far[:, 3:6, 3:6] = 0.08
+    monkeypatch.setattr(mdp.rewards, "TransformersDepth", lambda *_, **__: lambda images: 1.0 / far)
+    camera = SimpleNamespace(output={"depth": torch.zeros(1, 9, 9), "rgb": torch.zeros(1, 9, 9, 3, dtype=torch.uint8)})
+    env = SimpleNamespace(device="cpu", num_envs=1, scene={"camera": SimpleNamespace(data=camera)})
+    env.unwrapped, env.cfg = env, SimpleNamespace(lumen="paper")
+    params = {"weights": "anywhere", "near": 0.01, "far": 0.08}
+    term = mdp.estimated_lumen_reward(RewardTermCfg(func=mdp.estimated_lumen_reward, weight=1.0, params=params), env)
+    torch.testing.assert_close(term(env, **params), mdp.score_depth(far, mdp.PAPER).reward)
