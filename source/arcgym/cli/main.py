@@ -18,6 +18,8 @@ COMMANDS = {
     "train": ("arcgym.cli.train", "train a policy with rsl_rl"),
     "play": ("arcgym.cli.play", "run a trained policy, record it and export it"),
     "evaluate": ("arcgym.cli.evaluate", "evaluate an agent on the trials of a suite"),
+    "teleop": ("arcgym.cli.teleop", "steer a robot by hand in the browser"),
+    "view": ("arcgym.cli.view", "look at a recording, a colon or a policy in the browser"),
     "record": ("arcgym.cli.record", "make a data set of episodes, with pictures if wanted"),
     "convert": ("arcgym.cli.convert", "turn recordings into LeRobot's or robomimic's layout"),
     "results compare": ("arcgym.cli.results_compare", "compare two agents on the same trials"),

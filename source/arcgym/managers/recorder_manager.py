@@ -59,6 +59,8 @@ class RecorderManager(ManagerBase):
         if self.active:
             allow_files(len(self._worlds))
         self._ignored: frozenset[int] = frozenset()
+        self.notes: dict[str, Any] = {}
+        """Further facts for ``info`` of the episodes that end from now on: plain values by name."""
         self.paths: list[Path] = []
         """Episodes written by this manager."""
 
@@ -193,7 +195,7 @@ class RecorderManager(ManagerBase):
             if writer is None:
                 continue
             info = {"length": writer.length, "step_dt": self._env.step_dt, "env_id": world}
-            info |= {**self._env.episode_facts(world), **self._info(world)}
+            info |= {**self._env.episode_facts(world), **self._info(world), **self.notes}
             if writer.length == 0 or (self._settings.dataset_export_mode == "succeeded_only" and not info["success"]):
                 writer.discard()
                 continue

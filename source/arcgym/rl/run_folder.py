@@ -131,6 +131,18 @@ def find_newest_checkpoint(run: Path) -> Path | None:
     return numbered[-1] if numbered else None
 
 
+def newest_checkpoint(run: Path) -> Path:
+    """Return the newest numbered checkpoint in the folder of a run.
+
+    Raises:
+        UsageError: If there is none.
+    """
+    found = _checkpoints(run)
+    if not found:
+        raise UsageError(f"{run} has no checkpoint model_<number>.pt.")
+    return found[-1]
+
+
 def _select(run: Path, checkpoint: str) -> Path | None:
     if checkpoint == "latest":
         return find_newest_checkpoint(run)

@@ -168,10 +168,7 @@ class EndoscopeCamera(SensorBase):
         Returns:
             Colour, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
         """
-        patient = self._colon.patient_of(env_id)
-        if patient is not self._fine_patient:
-            self._fine_patient, self._fine = patient, self._fine_surface(patient)
-            self._snapshots.clear()
+        self._show(env_id)
         renderer = self._snapshot_renderer(size, samples)
         renderer.gain.zero_()
         renderer.surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
@@ -179,6 +176,18 @@ class EndoscopeCamera(SensorBase):
         drawn = wp.full(1, True, dtype=wp.bool, device=self._device)
         renderer.draw(pose, self._looks.of_world(env_id), drawn)
         return renderer.rgb.numpy()[0].copy(), renderer.depth.numpy()[0].copy()
+
+    def still_renderer(self, env_id: int, size: int, samples: int = 1) -> SurfaceRenderer:
+        """Return a renderer of its own of the fine surface of a world's patient, for pictures of copied states."""
+        visual, surface, textures = self._fine_surface(self._colon.patient_of(env_id))
+        return SurfaceRenderer(surface, [visual], [textures], self._optics(), (size, size), samples)
+
+    def _show(self, env_id: int) -> None:
+        """Make the fine surface of a world's patient if it is not there."""
+        patient = self._colon.patient_of(env_id)
+        if patient is not self._fine_patient:
+            self._fine_patient, self._fine = patient, self._fine_surface(patient)
+            self._snapshots.clear()
 
     def _snapshot_renderer(self, size: int, samples: int) -> SurfaceRenderer:
         """Return the renderer of one world's fine surface at this size, making it at first use."""

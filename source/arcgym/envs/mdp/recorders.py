@@ -231,3 +231,5 @@ class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
     """Progress, view of the lumen and looping ratio of every step."""
     images: PostStepImagesRecorderCfg | None = None
     """Off: ``PostStepImagesRecorderCfg()`` records pictures with depth, normals and labels."""
+    hand: RecorderTermCfg | None = None
+    """Who chose the action; set by teleoperation."""

@@ -1,0 +1,124 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Steer a robot by hand in the browser, let a policy drive and take over, and record it.
+
+    arcgym teleop --task ARC-Sigmoid-Proximal
+    arcgym teleop --task ARC-Cecum-Proximal --start rest --host 0.0.0.0
+
+The page is open to this machine alone, at the address that is printed. --host opens it to others, with a token in the
+address; the connection is not encrypted, so prefer an SSH tunnel. Recordings go to --out as they are made.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields, whole
+from arcgym.utils.errors import UsageError
+
+TAKES_OVERRIDES = True
+SCRIPTED = ("expert", "zero", "random")
+"""Drivers without a checkpoint."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TeleopArguments(RunArguments):
+    """Arguments of ``arcgym teleop``."""
+
+    driver: str = argument("who drives at first: hand (default), expert, zero, random or policy", "hand")
+    patient: str | None = argument("colon: colon_1 or a stage file (default: the task's)", None)
+    tissue: str | None = argument("preset of the tissue (default: the task's)", None)
+    start: str | None = argument("where to begin (default: the task's)", None, choices=("segment", "rest"))
+    out: str = argument("folder of the recordings (default: logs/teleop)", "logs/teleop")
+    host: str = argument("address to listen at (default: 127.0.0.1, this machine alone)", "127.0.0.1", group="page")
+    port: int = argument("port (default: 8080; 0 takes a free one)", 8080, type=whole(0), group="page")
+    size: int = argument(
+        "width and height of the endoscope's view [px] (default: 320)", 320, type=positive, group="page"
+    )
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_fields(parser, TeleopArguments)
+
+
+def run(namespace: argparse.Namespace) -> None:
+    """Open the page until Ctrl-C.
+
+    Raises:
+        UsageError: Something is wrong that can be known before.
+    """
+    args = read_fields(TeleopArguments, namespace)
+    from arcgym.rl.agent_checks import check_installed
+
+    check_installed("viser", "teleoperation", extra="teleop")
+    if args.driver not in ("hand", "policy", *SCRIPTED):
+        raise UsageError(f"--driver is '{args.driver}', expected hand, policy, {', '.join(SCRIPTED)}.")
+    drivers = make_drivers(args)
+    serve(args, drivers, steers=True)
+
+
+def make_drivers(args: Any) -> dict[str, Any]:
+    """Return makers of policies by name; ``policy`` is there where a checkpoint was asked for."""
+    from arcgym.rl.rollout import UNTRAINED
+
+    drivers: dict[str, Any] = {name: UNTRAINED[name] for name in SCRIPTED if name in UNTRAINED}
+    if args.driver == "policy" or args.checkpoint or args.load_run:
+        from arcgym.cli.task import load_run_cfgs
+        from arcgym.rl.device import choose_device
+        from arcgym.rl.playing import load_policy
+
+        _, agent_cfg, checkpoint = load_run_cfgs(args)
+        device = choose_device(args.device)
+        drivers["policy"] = lambda env: load_policy(env, agent_cfg, checkpoint, device)
+    return drivers
+
+
+def serve(args: Any, drivers: dict[str, Any], steers: bool) -> None:
+    """Run a session and its page until Ctrl-C; without a hand it goes on by itself."""
+    from arcgym.rl.device import choose_device
+    from arcgym.rl.preflight import check_environment
+    from arcgym.teleop.choices import Choice, make_cfg
+    from arcgym.teleop.session import Session
+
+    patient = args.patient
+    if patient is not None and not patient.endswith(".usda"):
+        patient = f"{patient}/colon.usda"
+    choice = Choice(
+        args.task, patient, args.tissue, args.start, args.driver, choose_device(args.device), args.seed or 0,
+        overrides=tuple(text for text in args.overrides if text.startswith("env.")),
+    )  # fmt: skip
+    out = Path(args.out)
+    check_environment(make_cfg(choice, out)[1], args.device, [out])
+    session = Session(choice, out, drivers)
+    session.needs_page = session.starts_paused = steers
+    show(session, args, steers)
+
+
+def show(session: Any, args: Any, steers: bool) -> None:
+    """Show a session, or a player, until Ctrl-C."""
+    import secrets
+    import time
+
+    from arcgym.teleop.gate import LOOPBACK
+    from arcgym.teleop.page import Page
+
+    token = None if args.host in LOOPBACK else secrets.token_urlsafe(16)
+    try:
+        page = Page(session, args.host, args.port, token, args.size, steers)
+    except OSError as error:
+        raise UsageError(f"--port {args.port} at {args.host} cannot be opened: {error}.") from error
+    session.start()
+    print(f"page: {page.gate.url}", flush=True)
+    try:
+        while True:
+            time.sleep(0.5)
+    except KeyboardInterrupt:
+        print("closing; what is under way is saved")
+    finally:
+        page.close()
+        session.close()

@@ -1,0 +1,106 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""What a session can be started with: task, patient, tissue, start and driver."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from arcgym.envs import mdp
+from arcgym.managers import RecorderTerm, RecorderTermCfg
+from arcgym.managers.recorder_term import Record
+from arcgym.utils.errors import UsageError
+from arcgym.utils.hydra import apply_overrides
+from arcgym.utils.paths import assets_dir
+from arcgym.utils.registry import list_tasks, load_cfg_from_registry
+
+PLAY = "-Play"
+"""End of the names of tasks in which nothing is randomized."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Choice:
+    """What a session runs."""
+
+    task: str
+    """Registered task, without ``-Play``."""
+    patient: str | None = None
+    """Stage of the colon; None for the task's."""
+    tissue: str | None = None
+    """Preset of the tissue; None for the task's."""
+    start: str | None = None
+    """``segment``, or ``rest`` to begin in the anus; None for the task's."""
+    driver: str = "hand"
+    """``hand``, or the name of what drives until a hand takes over."""
+    device: str = "cpu"
+    """Where it runs."""
+    seed: int = 0
+    """Seed of the environment."""
+    overrides: tuple[str, ...] = ()
+    """Texts ``env.path=value``, applied last."""
+
+
+class HandRecorder(RecorderTerm):
+    """``hand/leads``: whether a person chose the action, uint8, shape (T,): the steps of an intervention."""
+
+    def record_pre_step(self) -> Record:
+        """Return who chose the action that is about to be applied."""
+        env: Any = self._env
+        return "hand/leads", env.hand_leads
+
+
+def tasks() -> list[str]:
+    """Return the tasks that can be chosen."""
+    return [name for name in list_tasks() if not name.endswith(PLAY)]
+
+
+def patients() -> list[str]:
+    """Return the colons that come along, as ``colon_1/colon.usda``."""
+    root = assets_dir()
+    return sorted(str(path.relative_to(root)) for path in root.glob("*/colon.usda"))
+
+
+def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
+    """Return the task's name and its configuration for one world, recorded to a folder.
+
+    Raises:
+        UsageError: If the task is unknown, or an override is wrong.
+    """
+    name = f"{choice.task}{PLAY}" if f"{choice.task}{PLAY}" in list_tasks(prefix="") else choice.task
+    try:
+        cfg = load_cfg_from_registry(name, "env_cfg_entry_point")
+        cfg.scene.num_envs, cfg.sim.device, cfg.seed = 1, choice.device, choice.seed
+        _choose(cfg, choice)
+        recorders = mdp.TrajectoryRecorderCfg(dataset_export_dir_path=str(out), dataset_filename="teleop")
+        recorders.wall = mdp.PostStepWallRecorderCfg(positions=True)
+        recorders.hand = RecorderTermCfg(class_type=HandRecorder)
+        cfg.recorders = recorders
+        apply_overrides({"env": cfg}, list(choice.overrides))
+    except (TypeError, ValueError) as error:
+        raise UsageError(str(error)) from error
+    return name, cfg
+
+
+def _choose(cfg: Any, choice: Choice) -> None:
+    if choice.patient is not None:
+        cfg.scene.colon.usd_path = choice.patient
+    if choice.tissue is not None:
+        cfg.scene.colon.material = choice.tissue
+    if choice.start is not None:
+        cfg.start = choice.start
+
+
+def axes_of(env: Any) -> tuple[Sequence[str], Sequence[str]]:
+    """Return name and unit of each action of an environment."""
+    names: list[str] = []
+    units: list[str] = []
+    for term_name in env.action_manager.active_terms:
+        term = env.action_manager.get_term(term_name)
+        own = list(getattr(term, "axis_names", [f"{term_name}_{k}" for k in range(term.action_dim)]))
+        names += own
+        units += list(getattr(term, "axis_units", [""] * len(own)))
+    return names, units

@@ -1,0 +1,217 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A real Chromium, without a window, opens the page of a real session and steers it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+from small_session import until
+
+from arcgym.cli.main import main
+from arcgym.managers import Episode
+
+CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not (CHROMIUM and DRIVER), reason="needs Debian's chromium and chromium-driver"),
+]
+FLAGS = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1200,700", "--use-gl=angle")
+FLAGS += ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+TOKEN = "a-token-of-the-test"
+FAR = 120.0
+"""Longest wait on a machine that others use too [s]."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    pytest.importorskip("selenium")
+    from selenium import webdriver
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = CHROMIUM
+    for flag in FLAGS:
+        options.add_argument(flag)
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+    driver.set_page_load_timeout(FAR)
+    driver.set_script_timeout(FAR)
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture(scope="module")
+def page(make_session) -> Iterator[Any]:
+    pytest.importorskip("viser")
+    from arcgym.teleop.page import Page
+
+    session = make_session()
+    session.needs_page, session.speed = True, 1.0
+    page = Page(session, "127.0.0.1", 0, TOKEN, size=96)
+    page.session = session
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def tab(browser, page) -> Any:
+    """The browser on the page, alone; the session at a fresh start."""
+    for handle in browser.window_handles[1:]:
+        browser.switch_to.window(handle)
+        browser.close()
+    browser.switch_to.window(browser.window_handles[0])
+    browser.get(page.gate.url)
+    until(lambda: state(browser).get("connected") and numbers(browser), FAR)
+    page.session.start_anew(keep=False).result()
+    return browser
+
+
+def state(browser: Any) -> dict[str, Any]:
+    return browser.execute_script("return window.arcgym || {}")
+
+
+def numbers(browser: Any) -> str:
+    return browser.execute_script("const e = document.getElementById('arcgym-readouts'); return e ? e.innerText : ''")
+
+
+def key(browser: Any, kind: str, code: str) -> None:
+    script = "document.body.dispatchEvent(new KeyboardEvent(arguments[0], {code: arguments[1], bubbles: true}))"
+    browser.execute_script(script, kind, code)
+
+
+def click(browser: Any, text: str) -> None:
+    """Press the button, or open the folder, with a text."""
+    script = """const all = [...document.querySelectorAll('button, label, legend, div, span, p')];
+        const one = all.reverse().find((b) => (b.innerText || '').trim() === arguments[0]);
+        if (!one) return false; one.scrollIntoView(); one.click(); return true;"""
+    until(lambda: browser.execute_script(script, text), FAR)
+
+
+def shot(browser: Any, name: str, folder: Path) -> np.ndarray:
+    path = Path(os.environ.get("ARCGYM_SHOTS", folder)) / f"{name}.png"
+    browser.save_screenshot(str(path))
+    return np.asarray(Image.open(path).convert("RGB")).astype(int)
+
+
+def test_page_loads_and_shows_the_world(tab, page, tmp_path) -> None:
+    assert tab.title == "ARCGym" and "token" not in tab.current_url
+    until(lambda: "force on tip" in numbers(tab) and "paused" in numbers(tab), FAR)
+    source = (
+        "const i = [...document.images].find((i) => i.naturalWidth == 96); return i ? i.getBoundingClientRect() : 0"
+    )
+    until(lambda: tab.execute_script(source), FAR)
+    place = tab.execute_script(source)
+    picture = shot(tab, "loaded", tmp_path)
+    x, y = int(place["x"] + place["width"] / 2), int(place["y"] + place["height"] / 2)
+    red, green, blue = picture[y - 40 : y + 40, x - 40 : x + 40].reshape(-1, 3).mean(axis=0)
+    assert place["width"] > 400 and red > 1.3 * blue and red > green  # large, and of mucosa
+
+
+def test_a_wrong_token_is_refused(browser, page) -> None:
+    browser.delete_all_cookies()
+    browser.get(page.gate.url.replace(TOKEN, "wrong"))
+    assert "needs the address" in browser.page_source
+    browser.get(f"http://localhost:{page.gate.port}/")
+    assert "needs the address" in browser.page_source
+
+
+def test_keys_move_the_scope_while_they_are_held(tab, page) -> None:
+    session = page.session
+    start = session.frame.info.inserted
+    key(tab, "keydown", "Space")
+    until(lambda: session.status.state == "running", FAR)
+    key(tab, "keydown", "KeyW")
+    until(lambda: session.frame.info.inserted > start + 0.02, FAR)
+    key(tab, "keyup", "KeyW")
+    until(lambda: not session.hand.value().any(), FAR)
+    key(tab, "keydown", "Space")
+    until(lambda: session.status.state == "paused", FAR)
+    steps = session.status.steps
+    time.sleep(0.5)
+    assert session.status.steps == steps
+    assert "KeyW" not in str(state(tab)) and state(tab)["steps"] >= 1
+
+
+def test_held_buttons_and_a_gamepad_command(tab, page) -> None:
+    session = page.session
+    click(tab, "Buttons to hold")
+    press = """const b = [...document.querySelectorAll('button')].find((b) => b.innerText.trim() === '+ insertion');
+        if (!b) return false; b.dispatchEvent(new PointerEvent('pointerdown', {bubbles: true, button: 0}));
+        b.dispatchEvent(new MouseEvent('mousedown', {bubbles: true, button: 0})); return true;"""
+    until(lambda: tab.execute_script(press), FAR)
+    until(lambda: session.hand.value()[0] > 0.5, FAR)
+    tab.execute_script("""for (const kind of ['pointerup', 'mouseup'])
+        window.dispatchEvent(new MouseEvent(kind, {bubbles: true, button: 0}));
+        const b = [...document.querySelectorAll('button')].find((b) => b.innerText.trim() === '+ insertion');
+        for (const kind of ['pointerup', 'mouseup', 'mouseleave'])
+        b.dispatchEvent(new MouseEvent(kind, {bubbles: true, button: 0}));""")
+    until(lambda: not session.hand.value().any(), FAR)
+    pad = "({connected: true, axes: [0, -0.8, 0, 0], buttons: []})"
+    tab.execute_script(f"navigator.getGamepads = () => [{pad}]")
+    until(lambda: session.hand.value()[0] == pytest.approx(0.8), FAR)
+    tab.execute_script("navigator.getGamepads = () => []")
+    until(lambda: not session.hand.value().any(), FAR)
+
+
+def test_a_second_tab_and_a_lost_connection_lose_nothing(tab, page) -> None:
+    session, first = page.session, tab.current_window_handle
+    key(tab, "keydown", "Space")
+    key(tab, "keydown", "KeyW")
+    until(lambda: session.status.steps >= 4, FAR)
+    tab.switch_to.new_window("tab")
+    tab.get(page.gate.url)
+    until(lambda: state(tab).get("connected"), FAR)
+    until(lambda: page.hand_server.tabs == 2, FAR)
+    tab.close()
+    tab.switch_to.window(first)
+    until(lambda: page.hand_server.tabs == 1, FAR)
+    before = session.status.steps
+    tab.get("about:blank")
+    until(lambda: page.hand_server.tabs == 0 and session.status.state == "waiting", FAR)
+    held = session.status.steps
+    assert held >= before and not session.hand.value().any()
+    time.sleep(1.0)
+    assert session.status.steps == held
+    tab.get(page.gate.url)
+    until(lambda: state(tab).get("connected") and session.status.steps > held, FAR)
+    session.pause(True).result()
+
+
+def test_marks_undo_and_save_by_buttons_and_the_file_replays(tab, page, tmp_path) -> None:
+    session = page.session
+    click(tab, "Go")
+    key(tab, "keydown", "KeyW")
+    until(lambda: session.status.steps >= 6, FAR)
+    click(tab, "Mark")
+    until(lambda: len(session.status.marks) == 2, FAR)
+    until(lambda: session.status.steps >= 14, FAR)
+    key(tab, "keyup", "KeyW")
+    click(tab, "Undo")
+    until(lambda: session.status.undone == 1 and session.status.state == "paused", FAR)
+    click(tab, "Go")
+    key(tab, "keydown", "KeyI")
+    steps = session.status.steps
+    until(lambda: session.status.steps >= steps + 5, FAR)
+    key(tab, "keyup", "KeyI")
+    click(tab, "Pause")
+    until(lambda: session.status.state == "paused", FAR)
+    click(tab, "Save")
+    until(lambda: session.status.message.startswith("saved: "), FAR)
+    until(lambda: "saved: " in numbers(tab), FAR)
+    shot(tab, "saved", tmp_path)
+    path = session.status.message.removeprefix("saved: ")
+    assert Episode.load(path).info["undone"] == 1
+    assert main(["replay", path, "--device", "cpu"]) == 0
+
+
+def test_latency_is_measured(tab, page) -> None:
+    until(lambda: state(tab).get("latency") is not None, FAR)
+    assert 0.0 < float(np.median([state(tab)["latency"] for _ in range(5)])) < 1.0
+    print(f"\nlatency of the hand's messages: {1000 * page.hand_server.latency:.1f} ms")
