@@ -123,6 +123,16 @@ def test_a_cell_goes_on_with_its_own_settings_alone(tmp_path):
         launch(StudyCfg(name="s", task=TASK, num_envs=8), tmp_path, LaunchOptions())
 
 
+def test_a_cell_that_cannot_be_started_fails_alone(tmp_path, monkeypatch):
+    original = Cell.command
+    monkeypatch.setattr(
+        Cell, "command", lambda self, device: ["/nowhere"] if self.seed == 1 else original(self, device)
+    )
+    cells = launch(StudyCfg(name="s", task=TASK, grid={"seed": [1, 2]}), tmp_path, LaunchOptions())
+    assert [cell.read_state()["state"] for cell in cells] == ["failed", "finished"]
+    assert "/nowhere" in cells[0].read_state()["log"]
+
+
 def test_cells_share_the_devices(tmp_path):
     cfg = StudyCfg(name="s", task=TASK, grid={"seed": [1, 2, 3, 4]})
     cells = launch(cfg, tmp_path, LaunchOptions(devices=("cuda:0", "cuda:1")))

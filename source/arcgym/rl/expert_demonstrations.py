@@ -58,9 +58,8 @@ def ask_expert(
             count += sum(len(actions) for _, actions in found)
             show(min(count, num_steps))
         env.reset()
-    with torch.inference_mode(False):
-        observations: Any = torch.cat([obs for obs, _ in kept]).clone()  # type: ignore[arg-type]
-        return Demonstrations(observations, torch.cat([actions for _, actions in kept]).clone(), episodes)
+    observations: Any = torch.cat([obs for obs, _ in kept])  # type: ignore[arg-type]
+    return Demonstrations(observations, torch.cat([actions for _, actions in kept]), episodes)
 
 
 def _round(

@@ -9,6 +9,7 @@ import fcntl
 import re
 import subprocess
 import time
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -38,7 +39,11 @@ def run_cell(cfg: DictConfig) -> dict[str, Any]:
     values: Any = OmegaConf.to_container(cfg, resolve=True)
     cell = make_cell(values, Path(values["folder"]))
     with _alone(cell) as is_mine:
-        state = _run(cell, values["device"], values["stop_at"]) if is_mine else "running"
+        try:
+            state = _run(cell, values["device"], values["stop_at"]) if is_mine else "running"
+        except Exception:  # of this process: the other cells go on
+            state = "failed"
+            cell.write_state(state, status="none", log=traceback.format_exc())
     return {"name": cell.name, "state": state}
 
 
