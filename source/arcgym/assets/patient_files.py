@@ -16,7 +16,7 @@ Resolver = Callable[[str, int | None], Sequence[Path]]
 STAGE_NAMES = ("colon.usda", "colon.usdc", "colon.usd", "colon.usdz")
 """Names of stage files in the folders of patients, the first that is there."""
 
-_POPULATIONS: dict[str, str | Resolver] = {}
+_POPULATIONS: dict[str, str | Resolver] = {"population": "arcgym.anatomy.generator.stored_patients:population_stages"}
 
 
 def register_population(name: str, resolver: str | Resolver) -> None:

@@ -29,6 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("--task", default="ARC-Sigmoid-Proximal", help="task name; `arcgym list` shows them")
     parser.add_argument("--num_envs", type=counts, help="numbers of worlds (default: 1,16,64,256,1024,4096; CPU: 1,4)")
+    patients = "numbers of patients in a batch: the first of the colons that are configured, or variants of the one"
+    parser.add_argument("--patients", type=counts, help=patients)
     parser.add_argument("--steps", type=positive, default=20, help="timed control steps (default: 20)")
     parser.add_argument("--device", help="cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)")
     parser.add_argument("--start", choices=("end", "entry"), default="end", help="where in the segment the tip is")
@@ -60,7 +62,7 @@ def run(args: argparse.Namespace) -> None:
     print(report.headings(), flush=True)
     with tempfile.TemporaryDirectory() as folder:
         cache = Path(folder) if args.cold else None
-        rows = launch.run_all(settings, num_envs, args.overrides, show, cache)
+        rows = launch.run_all(settings, num_envs, args.overrides, show, cache, args.patients or (0,))
     if args.stages:
         console.print(report.stage_table(rows))
     if args.json:

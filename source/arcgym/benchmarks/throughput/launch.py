@@ -10,7 +10,8 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from itertools import product
 from pathlib import Path
 
 from arcgym.benchmarks.throughput.settings import Row, Settings
@@ -27,12 +28,14 @@ def run_all(
     overrides: Sequence[str],
     report: Callable[[Row], None],
     cache: Path | None = None,
+    patients: Sequence[int] = (0,),
 ) -> list[Row]:
-    """Measure every number of worlds.
+    """Measure every number of worlds, and of patients in them.
 
     Args:
         settings: What is measured.
         num_envs: Numbers of worlds.
+        patients: Numbers of patients; 0 for those of the configuration.
         overrides: Texts ``env.path=value``.
         report: Called with each row as it comes.
         cache: Empty folder for kernels; with it, the first number is started twice, cold and cached.
@@ -40,8 +43,8 @@ def run_all(
     environment = {} if cache is None else kernel_cache(cache)
     cold = {} if cache is None else run_worker(settings, num_envs[0], overrides, environment)
     rows: list[Row] = []
-    for count in num_envs:
-        row = run_worker(settings, count, overrides, environment)
+    for count, kinds in product(num_envs, patients):
+        row = run_worker(replace(settings, patients=kinds), count, overrides, environment)
         if not rows:
             row |= {f"{name}_cold": cold[name] for name in ("compile_s", "first_step_s") if name in cold}
         rows.append(row)

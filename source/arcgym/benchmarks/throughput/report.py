@@ -12,6 +12,7 @@ from arcgym.benchmarks.throughput.settings import Row
 
 COLUMNS = {
     "num_envs": ("worlds", "{}"),
+    "patients": ("patients", "{}"),
     "env_steps_per_s": ("env steps/s", "{:.1f}"),
     "sim_s_per_wall_s": ("sim s/wall s", "{:.2f}"),
     "total": ("ms/step", "{:.2f}"),
@@ -33,7 +34,7 @@ def describe(row: Row) -> str:
     """Return one line of the table of results."""
     if "error" in row:
         return f"{row['num_envs']:>14d}  {row['error']}"
-    values = {**row, **row["ms"]}
+    values = {"patients": 1, **row, **row["ms"]}
     cells = ["-" if values[key] is None else form.format(values[key]) for key, (_, form) in COLUMNS.items()]
     return "".join(f"{cell:>14s}" for cell in cells)
 
@@ -45,7 +46,7 @@ def stage_table(rows: Sequence[Row]) -> Table:
     done = [row for row in rows if "error" not in row]
     table = Table("stage", "what", title="ms per control step")
     for row in done:
-        table.add_column(f"N = {row['num_envs']}", justify="right")
+        table.add_column(f"N = {row['num_envs']}, P = {row.get('patients', 1)}", justify="right")
     for name, what in {"total": "env.step, from the loop", **STAGES}.items():
         if any(name in row["ms"] for row in done):
             table.add_row(name, what, *(f"{row['ms'].get(name, float('nan')):.3f}" for row in done))

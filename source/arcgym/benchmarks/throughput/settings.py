@@ -31,5 +31,8 @@ class Settings:
     """Whether to time each part of a control step alone, too."""
     bandwidth: bool = False
     """Whether to estimate the memory traffic beside a measured copy's."""
+    patients: int = 0
+    """Patients in the batch; 0 for those of the configuration. Where it has one colon, the others stand in for a
+    population: see :mod:`arcgym.benchmarks.throughput.stand_ins`."""
     timeout: float = 1800.0
     """Longest run of one number of worlds [s]."""

@@ -32,7 +32,27 @@ def main(num_envs: str, settings: str, *overrides: str) -> None:
     """Measure and print the row."""
     chosen = Settings(**json.loads(settings))
     env_cfg = load_env_cfg(chosen.task, overrides, chosen.seed, int(num_envs), chosen.device)
+    choose_patients(chosen, env_cfg)
     print(json.dumps(measure(chosen, env_cfg)))
+
+
+def choose_patients(settings: Settings, env_cfg: Any) -> None:
+    """Give the configuration as many patients as are wanted: the first of its own, or stand-ins for its one colon."""
+    colon = env_cfg.scene.colon
+    if not settings.patients:
+        return
+    from arcgym.assets.patient_files import find_stages
+    from arcgym.benchmarks.throughput.stand_ins import stand_ins
+
+    if is_one_stage(colon.usd_path):
+        colon.usd_path = list(map(str, stand_ins(find_stages(colon.usd_path)[0], settings.patients)))
+        env_cfg.start = "rest"
+    colon.num_patients = settings.patients
+
+
+def is_one_stage(usd_path: Any) -> bool:
+    """Return whether a configuration names one stage file."""
+    return isinstance(usd_path, str) and usd_path.endswith((".usda", ".usdc", ".usd", ".usdz"))
 
 
 def measure(settings: Settings, env_cfg: Any) -> Row:
@@ -40,7 +60,9 @@ def measure(settings: Settings, env_cfg: Any) -> Row:
     from arcgym.benchmarks.timing import time_ms
 
     device, num_envs = env_cfg.sim.device, env_cfg.scene.num_envs
+    began = time.perf_counter()
     env, used_before = build(settings.task, env_cfg)
+    build_s = time.perf_counter() - began
 
     def step() -> None:
         env.step(random_actions(env))
@@ -55,6 +77,8 @@ def measure(settings: Settings, env_cfg: Any) -> Row:
     total = statistics.median(durations)
     row = {
         "num_envs": num_envs,
+        "patients": len(env.scene["colon"].patients),
+        "build_s": build_s,
         "env_steps_per_s": 1.0e3 * num_envs / total,
         "sim_s_per_wall_s": 1.0e3 * num_envs * env.step_dt / total,
         "ms": {"total": total},
@@ -86,12 +110,13 @@ def fill_segment(env: Any) -> None:
     """Put every world into the start state of the next segment and withdraw the tip into the task's."""
     import torch
 
-    snapshots = env.sim.snapshots
-    following = snapshots.names[snapshots.index(env.cfg.segment) + 1 :]
+    segments = env.scene["colon"].segments
+    following = segments[segments.index(env.cfg.segment) + 1 :]
     if not following:
-        sys.exit(f"{env.cfg.segment} is the last segment with a start state; take --start entry")
+        sys.exit(f"{env.cfg.segment} is the last segment of the colon; take --start entry")
     end = env.scene["colon"].data.segment_spans[:, SEGMENTS.index(env.cfg.segment), 1]
-    env.sim.write_snapshot(snapshots.index(following[0]))
+    env.sim.load_snapshots(states_at(env, following[0]))
+    env.sim.write_snapshot(env.sim.snapshots.index(following[0]))
     env.sim.forward()
     actions = torch.zeros(env.num_envs, env.action_manager.total_action_dim, device=env.device)
     actions[:, forward_axis(env)] = -1.0
@@ -99,6 +124,23 @@ def fill_segment(env: Any) -> None:
         advance(env, actions)
         if bool((env.scene["endoscope"].data.tip_arc_length < end - BEFORE_END).all()):
             return
+
+
+def states_at(env: Any, segment: str) -> list[Any]:
+    """Return the start states of the task's segment and of ``segment`` in every patient."""
+    from arcgym.benchmarks.throughput.stand_ins import moved_states
+    from arcgym.sim.snapshot import fingerprint
+    from arcgym.start_states.find import ensure, ensure_all
+
+    patients = env.scene["colon"].patients
+    if "stand_ins" not in patients[-1].path.parts:
+        found = ensure_all(env.scene, segment)
+    else:
+        rests = [patient.wall.points for patient in patients]
+        found = moved_states(
+            ensure(env.scene, segment), rests, [fingerprint(env.sim, index) for index in range(len(patients))]
+        )
+    return [states.only([env.cfg.segment, segment]) for states in found]
 
 
 def situation(env: Any) -> Row:

@@ -1,0 +1,119 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stages of the population's patients in the cache folder; missing ones are generated, on all cores.
+
+As a program, ``python -m arcgym.anatomy.generator.stored_patients FOLDER SEED ...``, it generates patients one by one.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from arcgym.anatomy.generator.splits import read_splits, split_seeds
+from arcgym.utils.paths import cache_dir
+from arcgym.utils.progress import report
+
+MOST = 1024
+"""Patients that are generated without being asked for by number."""
+LOOK_EVERY = 0.5
+"""Time between two looks at how many are there [s]."""
+
+
+def population_stages(split: str, count: int | None) -> list[Path]:
+    """Return the stages of a split's patients by ascending seed; those that are missing are generated.
+
+    Args:
+        split: Name of a split, see :mod:`arcgym.anatomy.generator.splits`.
+        count: Number of patients, from the first; None for all of a split that is not large.
+
+    Raises:
+        ValueError: If there is no such split, it has fewer patients, it is large and no number is given, or a patient
+            cannot be generated.
+    """
+    seeds = split_seeds(split)
+    if count is None and len(seeds) > MOST:
+        raise ValueError(
+            f"population:{split} has {len(seeds)} patients, which would take hours to generate: say how many with "
+            "env.scene.colon.num_patients."
+        )
+    if count is not None and count > len(seeds):
+        raise ValueError(f"ColonCfg.num_patients is {count}, but population:{split} has {len(seeds)} patients.")
+    folder = cache_dir() / "population" / f"generator_{read_splits().generator}"
+    stages = {seed: stage_of(folder, seed) for seed in seeds[:count]}
+    missing = [seed for seed, stage in stages.items() if not stage.is_file()]
+    if missing:
+        _generate(folder, missing)
+    return list(stages.values())
+
+
+def stage_of(folder: Path, seed: int) -> Path:
+    """Return where the stage of a seed lies."""
+    return folder / f"patient_{seed:05d}" / "colon.usda"
+
+
+def main(folder: str, *seeds: str) -> None:
+    """Generate patients that are not there."""
+    from arcgym.anatomy.generator.output import make_to_folder
+    from arcgym.anatomy.generator.population import draw_spec
+
+    for seed in map(int, seeds):
+        out = stage_of(Path(folder), seed).parent
+        if not out.exists():
+            make_to_folder(draw_spec(seed), out)
+
+
+def _generate(folder: Path, seeds: Sequence[int]) -> None:
+    """Generate patients in as many processes as there are cores.
+
+    Raises:
+        ValueError: If one cannot be generated; with what the generator says.
+    """
+    workers = min(len(seeds), len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1)
+    command = [sys.executable, "-m", __name__, str(folder)]
+    with contextlib.ExitStack() as stack:
+        said = [stack.enter_context(tempfile.TemporaryFile("w+")) for _ in range(workers)]
+        processes = [
+            subprocess.Popen(
+                [*command, *map(str, seeds[k::workers])],
+                stdout=subprocess.DEVNULL,
+                stderr=said[k],
+                env={**os.environ, "OMP_NUM_THREADS": "1"},
+            )
+            for k in range(workers)
+        ]
+        try:
+            failed = _wait(processes, folder, seeds)
+        finally:
+            for process in processes:
+                process.kill()
+                process.wait()
+        if failed is not None:
+            said[failed].seek(0)
+            lines = said[failed].read().strip().splitlines() or ["no message"]
+            raise ValueError(f"A patient of the population cannot be generated: {lines[-1]}")
+
+
+def _wait(processes: Sequence[subprocess.Popen], folder: Path, seeds: Sequence[int]) -> int | None:
+    """Wait until all have ended or one has failed, whose number is returned, and report how far it is."""
+    shown = -1
+    while True:
+        codes = [process.poll() for process in processes]
+        failed = next((k for k, code in enumerate(codes) if code), None)
+        if failed is not None or None not in codes:
+            return failed
+        done = sum(stage_of(folder, seed).is_file() for seed in seeds)
+        if done != shown:
+            report(f"generating patients: {done} of {len(seeds)} in {folder}; this happens once")
+            shown = done
+        time.sleep(LOOK_EVERY)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

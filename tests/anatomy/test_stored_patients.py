@@ -1,0 +1,84 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stages of the population's splits: what is there is taken, what is missing is generated once."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from arcgym.anatomy.generator import stored_patients
+from arcgym.anatomy.generator.splits import read_splits
+from arcgym.anatomy.generator.stored_patients import population_stages, stage_of
+from arcgym.assets.patient_files import find_stages
+
+PYTHON = sys.executable
+WORKER = """
+import sys
+from pathlib import Path
+folder, *seeds = sys.argv[3:]
+for seed in map(int, seeds):
+    if seed == {bad}:
+        sys.exit("Traceback\\nAnatomyError: seed 10001 gave no usable anatomy")
+    out = Path(folder) / f"patient_{{seed:05d}}"
+    out.mkdir(parents=True)
+    (out / "colon.usda").write_text(str(seed))
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty cache, and a generator that writes its seed."""
+    monkeypatch.setenv("ARCGYM_CACHE", str(tmp_path))
+    use_worker(tmp_path, monkeypatch)
+    return tmp_path / "population" / f"generator_{read_splits().generator}"
+
+
+def use_worker(folder: Path, monkeypatch: pytest.MonkeyPatch, bad: int = -1) -> None:
+    """Put a script in the interpreter's place, which gets the arguments of the real one."""
+    script = folder / "python"
+    script.write_text(f"#!{PYTHON}\n{WORKER.format(bad=bad)}")
+    script.chmod(0o755)
+    monkeypatch.setattr(stored_patients.sys, "executable", str(script))
+
+
+def test_the_first_patients_of_a_split_are_generated_once(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stages = find_stages("population:validation", 3)
+    assert stages == [stage_of(folder, seed) for seed in (10000, 10001, 10002)]
+    assert [stage.read_text() for stage in stages] == ["10000", "10001", "10002"]
+    monkeypatch.setattr(stored_patients, "_generate", lambda folder, seeds: pytest.fail(f"{seeds} made again"))
+    assert population_stages("validation", 2) == stages[:2]
+
+
+def test_a_patient_that_cannot_be_generated_is_told(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_worker(tmp_path, monkeypatch, bad=10001)
+    with pytest.raises(ValueError, match="cannot be generated: AnatomyError: seed 10001 gave no usable anatomy"):
+        population_stages("validation", 2)
+
+
+@pytest.mark.parametrize(
+    ("split", "count", "message"),
+    [
+        ("train", None, "population:train has 10000 patients.*env.scene.colon.num_patients"),
+        ("validation", 101, "num_patients is 101, but population:validation has 100"),
+        ("valid", 1, "Unknown split 'valid'.*validation"),
+    ],
+)
+def test_what_a_split_does_not_have_is_refused(folder: Path, split: str, count: int | None, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        population_stages(split, count)
+    assert not folder.exists()
+
+
+def test_the_program_makes_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = []
+    monkeypatch.setattr(
+        "arcgym.anatomy.generator.output.make_to_folder", lambda spec, out: made.append((spec.seed, out))
+    )
+    stage_of(tmp_path, 7).parent.mkdir(parents=True)
+    stored_patients.main(str(tmp_path), "7", "8")
+    assert made == [(8, stage_of(tmp_path, 8).parent)]
