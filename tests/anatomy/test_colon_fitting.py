@@ -23,6 +23,7 @@ from arcgym.anatomy.meshing.mending import mend_wall
 from arcgym.anatomy.meshing.triangle_surface import TriangleSurface, cut_surface
 from arcgym.anatomy.stage import StageError
 from arcgym.anatomy.validation.checks import failed
+from arcgym.anatomy.validation.stage_checks import inspect_stage
 from arcgym.anatomy.validation.wall_checks import WallBounds, check_wall
 
 SHAPE = GridShape(rings=14)
@@ -148,3 +149,17 @@ def test_wall_that_stays_inverted_is_named() -> None:
     layers = np.stack([inner, inner * 1.1])
     with pytest.raises(ValueError, match="folds over itself at rings"):
         mend_wall(layers, 0.002, 0.0075)
+
+
+def test_validation_checks_the_contact_surface(fitted: FittedColon, tmp_path: Path) -> None:
+    """A contact surface moved by 1 cm is too far from the fine one; turned inside out it is wound inwards."""
+    stage = replace(
+        tiny_colon_stage(texture_folder=tmp_path), wall=fitted.wall, visual=fitted.visual, contact=fitted.contact
+    )
+    about = [check for check in inspect_stage(stage) if "contact" in check.name]
+    assert len(about) == 4 and failed(about) == []
+    moved = replace(fitted.contact, points=fitted.contact.points + np.float32(0.01))
+    assert "distance to the fine one" in str(failed(inspect_stage(replace(stage, contact=moved))))
+    flipped = fitted.contact.points.reshape(-1, 36, 3)[:, ::-1].reshape(-1, 3)
+    inside_out = replace(stage, contact=replace(fitted.contact, points=flipped))
+    assert "contact surface: wound outwards" in str(failed(inspect_stage(inside_out)))

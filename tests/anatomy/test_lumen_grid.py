@@ -76,6 +76,28 @@ def test_rings_of_a_straight_tube_are_circles(tube: tuple[ConformalMap, np.ndarr
     assert center[1] == pytest.approx([0, 0.04, 0], abs=3e-4)
 
 
+def test_rings_take_the_wide_way_where_the_cut_takes_a_hole() -> None:
+    """A plate across a tube of 10 mm radius has a wide hole at one side and one of 2 mm radius at the other.
+
+    The shortest path along the surface goes through the small one; the rings go through the wide one.
+    """
+    low, count = np.array([-0.013, -0.013, -0.013]), (27, 107, 27)
+    x, y, z = np.moveaxis(low + 0.001 * np.stack(np.meshgrid(*map(np.arange, count), indexing="ij"), -1), -1, 0)
+    tube = np.minimum(0.010 - np.hypot(x, z), np.minimum(y + 0.010, 0.090 - y))
+    plate = 0.0015 - np.abs(y - 0.040)
+    holes = np.maximum(0.005 - np.hypot(x + 0.004, z), 0.002 - np.hypot(x - 0.0065, z))
+    surface = cut_surface(np.minimum(tube, np.maximum(-plate, holes)), low, 0.001)
+    mapped = map_surface(surface, np.array([0.0095, 0.0, 0.0]), np.array([0.0095, 0.08, 0.0]))
+    at_plate = mapped.points[mapped.cut][np.abs(mapped.points[mapped.cut][:, 1] - 0.040) < 0.001]
+    assert (at_plate[:, 0] > 0.004).all(), "the cut goes through the small hole"
+    u = mapped.u[np.abs(mapped.points[:, 1] - 0.040) < 0.0008]
+    rings, angle, found = level_rings(mapped, np.linspace(u.min(), u.max(), 7)[1:-1], 36)
+    center, radius = ring_centers(rings)
+    assert found.all() and (radius > 0.004).all()
+    assert (np.diff(angle, axis=1) > 0).all()
+    assert np.linalg.norm(np.diff(rings, axis=0), axis=2).max() < 0.006, "neighbouring rings fit each other"
+
+
 def test_grid_begins_at_the_verge_and_ends_at_the_pole(tube: tuple[ConformalMap, np.ndarray]) -> None:
     mapped, way = tube
     grid = fit_grid(mapped, way, GridShape(rings=8))

@@ -12,8 +12,9 @@ from scipy.sparse.csgraph import connected_components
 
 from arcgym.anatomy.meshing.conformal_map import ConformalMap
 
-_ROUND = 0.1
-"""By how much the turns of a main loop may differ from one."""
+_ROUND = 0.5
+"""By how much the turns of a main loop in v may differ from one. Where they do, v's cut runs through a handle beside
+it, such as a hole in a fold; the ring then goes by its own flux and is turned to fit its neighbour."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +31,14 @@ class _Crossings:
     """Point where each piece begins, shape (m,)."""
     end: np.ndarray
     """Point where it ends, shape (m,)."""
+    flux: np.ndarray
+    """Gradient of u along each piece times its length, shape (m,): its share of a full turn."""
 
 
 def level_rings(
     mapped: ConformalMap, levels: np.ndarray, sectors: int, by_length: float = 0.5
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the loop of each level curve that winds once round the lumen, as points.
+    """Return the main loop of each level curve, the one through which most of the flux of u goes, as points.
 
     Args:
         mapped: Map of the surface.
@@ -49,16 +52,34 @@ def level_rings(
         and whether each level has such a loop, shape (R,).
     """
     found = _find_crossings(mapped, np.asarray(levels, float))
-    following = np.full(len(found.level), -1)
-    following[found.start] = found.end
+    following, flux = np.full(len(found.level), -1), np.zeros(len(found.level))
+    following[found.start], flux[found.start] = found.end, found.flux
     chain_to = following.tolist()
-    rings = np.full((len(levels), sectors, 4), np.nan)
-    for first, turns in _main_loops(found, len(levels)):
+    rings, placed = np.full((len(levels), sectors, 4), np.nan), np.zeros(len(levels), bool)
+    main = _main_loops(found, len(levels))
+    forward = np.sign(sum(turns for _, turns in main)) or 1.0
+    for first, turns in main:
         loop = _walk(chain_to, first)
-        if loop:
-            loop = loop[:: 1 if turns > 0 else -1]
-            rings[found.level[first]] = _resample(found.position[loop], found.angle[loop], sectors, by_length)
-    return rings[..., :3], rings[..., 3], np.isfinite(rings[:, 0, 0])
+        if len(loop) < 3:
+            continue
+        level, share = found.level[first], flux[loop]
+        angle, placed[level] = found.angle[loop], abs(turns * forward - 1.0) < _ROUND
+        if not placed[level]:
+            angle = forward * 2 * np.pi * (np.cumsum(share) - share) / share.sum()
+        step = 1 if forward > 0 else -1
+        rings[level] = _resample(found.position[loop][::step], angle[::step], sectors, by_length)
+    return *_aligned(rings, placed), np.isfinite(rings[:, 0, 0])
+
+
+def _aligned(rings: np.ndarray, placed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and v of rings; those without a place on the scale of v are turned to fit the nearest one."""
+    have = np.flatnonzero(placed)
+    for k in np.flatnonzero(~placed & np.isfinite(rings[:, 0, 0])):
+        if len(have):
+            near = rings[have[np.abs(have - k).argmin()], :, :3]
+            apart = [((np.roll(rings[k, :, :3], j, 0) - near) ** 2).sum() for j in range(rings.shape[1])]
+            rings[k, :, :3] = np.roll(rings[k, :, :3], int(np.argmin(apart)), 0)
+    return rings[..., :3], rings[..., 3]
 
 
 def wrapped(angle: np.ndarray) -> np.ndarray:
@@ -83,23 +104,32 @@ def _find_crossings(mapped: ConformalMap, levels: np.ndarray) -> _Crossings:
     number, ends = node // len(edge), edge[node % len(edge)]
     share = (levels[number] - u[ends[:, 0]]) / (u[ends[:, 1]] - u[ends[:, 0]])
     a, b = mapped.points[ends[:, 0]], mapped.points[ends[:, 1]]
+    position = a + share[:, None] * (b - a)
+    first, last = place.reshape(2, -1)
+    flux = _slopes(mapped)[face] * np.linalg.norm(position[last] - position[first], axis=1)
     angle = mapped.v[ends[:, 0]] + share * wrapped(mapped.v[ends[:, 1]] - mapped.v[ends[:, 0]])
-    return _Crossings(number, a + share[:, None] * (b - a), angle, *place.reshape(2, -1))
+    return _Crossings(number, position, angle, first, last, flux)
+
+
+def _slopes(mapped: ConformalMap) -> np.ndarray:
+    """Return the length of the gradient of u on each triangle [1/m], shape (F,)."""
+    corner, u = mapped.points[mapped.faces], mapped.u[mapped.faces]
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    rising = sum(u[:, k, None] * (corner[:, (k + 2) % 3] - corner[:, (k + 1) % 3]) for k in range(3))
+    return np.linalg.norm(rising, axis=1) / np.maximum(area, 1e-18)
 
 
 def _main_loops(found: _Crossings, count: int) -> list[tuple[int, float]]:
-    """Return a point and the turns of the longest loop of each level that winds once round."""
+    """Return a point of the loop of each level that has the largest flux, and its turns in v."""
     size = len(found.level)
     graph = coo_array((np.ones(len(found.start), np.int8), (found.start, found.end)), shape=(size, size))
     loops, loop = connected_components(graph, directed=False)
     along = loop[found.start]
     turns = np.bincount(along, wrapped(found.angle[found.end] - found.angle[found.start]), loops) / (2 * np.pi)
-    length = np.linalg.norm(found.position[found.end] - found.position[found.start], axis=1)
-    length = np.bincount(along, length, loops)
+    flux = np.bincount(along, found.flux, loops)
     first, level = np.zeros(loops, int), np.zeros(loops, int)
     first[loop], level[loop] = np.arange(size), found.level
-    once = np.flatnonzero(np.abs(np.abs(turns) - 1.0) < _ROUND)
-    order = once[np.lexsort((-length[once], level[once]))]
+    order = np.lexsort((-flux, level))
     chosen = order[np.unique(level[order], return_index=True)[1]]
     return [(int(first[k]), float(turns[k])) for k in chosen]
 

@@ -30,6 +30,12 @@ _OUTSIDE = 0.080
 _LAST_RADIUS = 0.55
 """Mean radius of the last ring before the dome of the caecum over the largest within :data:`_CECUM`."""
 
+_AROUND = 3.0
+"""Standard deviation, in rows and columns, of the surroundings from which points may stand out."""
+
+_FARTHEST = 0.020
+"""How far they may [m]."""
+
 _CECUM = 0.060
 """Length of colon before its end in which the caecum's radius is taken [m]."""
 
@@ -91,6 +97,7 @@ def fit_grid(mapped: ConformalMap, path: np.ndarray, shape: GridShape | None = N
     level = np.interp(travel, chart.travel, chart.level)
     points, angle, found = level_rings(mapped, level, shape.columns)
     points, angle = _oriented(_filled(points, found), _filled(angle, found))
+    points = _without_spikes(points)
     points = np.concatenate([points, np.broadcast_to(points[-1].mean(0), (1, shape.columns, 3))])
     angle = np.concatenate([angle, angle[-1:]])
     arc = np.interp(travel, chart.travel, chart.arc)
@@ -147,6 +154,14 @@ def _monotone(values: np.ndarray) -> np.ndarray:
 def _ascending(values: np.ndarray) -> np.ndarray:
     """Return ascending values made strictly so by less than a micrometre."""
     return _monotone(values) + 1e-9 * np.arange(len(values))
+
+
+def _without_spikes(rings: np.ndarray) -> np.ndarray:
+    """Draw points in that stand far out of their surroundings, where level curves run up narrow side pouches."""
+    soft = gaussian_filter1d(gaussian_filter1d(rings, _AROUND, axis=0, mode="nearest"), _AROUND, axis=1, mode="wrap")
+    way = rings - soft
+    size = np.maximum(np.linalg.norm(way, axis=2, keepdims=True), 1e-9)
+    return soft + way * np.minimum(1.0, _FARTHEST / size)
 
 
 def _filled(rings: np.ndarray, found: np.ndarray) -> np.ndarray:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 from pxr import Usd, UsdValidation
+from scipy.spatial import cKDTree
 
 from arcgym.anatomy.measures import flipped_normal_fraction, inner_faces, winds_outwards
 from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
@@ -74,6 +75,7 @@ def _check_meshes(stage: ColonStage) -> list[Check]:
         *check_wall(stage.wall),
         *_check_visual("render surface", stage.visual, stage.wall),
         *_check_visual("proxy surface", stage.visual_proxy, stage.wall),
+        *_check_contact(stage),
         Check("least distance of landmarks [m]", float(arcs.min()), 0.0, at_least=True),
         *_check_sides(stage),
     ]
@@ -99,6 +101,23 @@ def _check_visual(name: str, visual: VisualMesh, wall: WallMesh) -> list[Check]:
         Check(f"{name}: distance to its carriers [m]", _largest_distance(visual.points, anchor), 0.04, at_least=False),
         Check(f"{name}: faces wound outwards", float(winds_outwards(visual.points, visual.faces)), 0.0, False),
         Check(f"{name}: share of flipped normals", flipped_normal_fraction(visual), 0.01, at_least=False),
+    ]
+
+
+def _check_contact(stage: ColonStage) -> list[Check]:
+    """Check what the scope touches against wall and fine surface; empty where it touches the wall."""
+    contact, wall = stage.contact, stage.wall
+    if contact is None:
+        return []
+    anchor = np.einsum("mk,mkd->md", contact.skin_weights, wall.points[contact.skin_indices])
+    off = cKDTree(stage.visual.points).query(contact.points)[0]
+    return [
+        Check(
+            "contact surface: wall layer it is skinned to", float(wall.layer[contact.skin_indices].max()), 0.0, False
+        ),
+        Check("contact surface: distance to its carriers [m]", _largest_distance(contact.points, anchor), 0.04, False),
+        Check("contact surface: distance to the fine one, 95 % [m]", float(np.percentile(off, 95)), 0.003, False),
+        Check("contact surface: wound outwards", winds_outwards(contact.points, contact.faces()), 1.0, True),
     ]
 
 
