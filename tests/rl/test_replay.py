@@ -8,7 +8,7 @@ import torch
 from tensordict import TensorDict
 
 from arcgym.managers.buffers import FrameBuffer
-from arcgym.rl.replay import ReplayBuffer
+from arcgym.rl.replay import ReplayBatch, ReplayBuffer
 
 NUM_ENVS, STACK = 3, 3
 
@@ -204,3 +204,12 @@ def test_images_are_stored_small():
         replay.add(obs, torch.zeros(1, 1), torch.zeros(1), torch.zeros(1), torch.zeros(1), None)
     assert replay.num_bytes == 10
     assert replay.sample(1).observations["policy"].tolist() == [[[[8]]]]
+
+
+def test_a_batch_splits_into_batches() -> None:
+    numbers = torch.arange(6.0)
+    whole = TensorDict({"policy": numbers[:, None]}, batch_size=[6])
+    batch = ReplayBatch(whole, numbers[:, None], numbers, whole, numbers, numbers)
+    parts = batch.split(3)
+    assert [part.rewards.tolist() for part in parts] == [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]
+    assert parts[1].next_observations["policy"].flatten().tolist() == [3.0, 4.0, 5.0]

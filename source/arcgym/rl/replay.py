@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, cast
 
 import torch
@@ -37,6 +37,11 @@ class ReplayBatch:
     discounts: torch.Tensor
     """What the value of ``next_observations`` is multiplied by, shape (B,): the discount of a step to the power of the
     steps in between."""
+
+    def split(self, size: int) -> list[ReplayBatch]:
+        """Return batches of ``size`` transitions, without copies."""
+        values = {field.name: getattr(self, field.name).split(size) for field in fields(self)}
+        return [ReplayBatch(**dict(zip(values, parts, strict=True))) for parts in zip(*values.values(), strict=True)]
 
 
 class ReplayBuffer:
@@ -275,8 +280,10 @@ class ReplayBuffer:
         values = {}
         for name, store in self._obs.items():
             stack = self.frame_stacks.get(name, 1)
-            frames = [store[(index - age.clamp(max=back)) % self.num_rows, world] for back in reversed(range(stack))]
-            values[name] = frames[0] if stack == 1 else torch.cat(frames, dim=1)
+            back = torch.arange(stack - 1, -1, -1, device=self.device)
+            rows = (index.unsqueeze(1) - torch.minimum(age.unsqueeze(1), back)) % self.num_rows
+            frames = store[rows, world.unsqueeze(1)]
+            values[name] = frames.squeeze(1) if stack == 1 else frames.flatten(1, 2)
         return TensorDict(values, batch_size=[len(index)], device=self.device)
 
 

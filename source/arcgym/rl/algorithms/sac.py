@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -18,9 +19,13 @@ from rsl_rl.utils import reduce_gradients_in_buckets, resolve_class, resolve_obs
 from tensordict import TensorDict
 from torch import nn
 
+from arcgym.rl.algorithms.graphed_step import GraphedStep
 from arcgym.rl.networks.q_models import with_action
 from arcgym.rl.replay import ReplayBatch, ReplayBuffer
 from arcgym.utils.errors import UsageError
+
+DRAWN_TOGETHER = 8
+"""Batches that are drawn from the memory at a time: drawing waits for the device."""
 
 
 class SAC:
@@ -57,6 +62,7 @@ class SAC:
         max_grad_norm: float = 10.0,
         num_steps: int = 1,
         use_mixed_precision: bool = False,
+        use_cuda_graphs: bool = True,
         device: str = "cpu",
         multi_gpu_cfg: dict | None = None,
         grad_reduce_bucket_mb: float = 25,
@@ -80,6 +86,7 @@ class SAC:
             max_grad_norm: Gradient clipping by norm.
             num_steps: Steps whose rewards a target adds up before it bootstraps.
             use_mixed_precision: Whether networks compute in bfloat16 in updates.
+            use_cuda_graphs: Whether gradient steps on a GPU are CUDA graphs, where one process learns alone.
             device: Device of the networks.
             multi_gpu_cfg: Rank and number of processes, from the runner.
             grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
@@ -97,15 +104,18 @@ class SAC:
         num_actions = actor.distribution.output_dim
         self.target_entropy = -float(num_actions) if target_entropy is None else target_entropy
         self.log_temperature = torch.tensor(math.log(init_temperature), device=device, requires_grad=learn_temperature)
-        self.actor_optimizer = torch.optim.Adam(self.actor.parameters(), lr=learning_rate)
-        self.critic_optimizer = torch.optim.Adam(self.critics.parameters(), lr=learning_rate)
-        self.temperature_optimizer = torch.optim.Adam([self.log_temperature], lr=learning_rate)
+        self.uses_graphs = use_cuda_graphs and torch.device(device).type == "cuda" and not self.is_multi_gpu
+        adam = partial(torch.optim.Adam, lr=learning_rate, capturable=self.uses_graphs)
+        self.actor_optimizer = adam(self.actor.parameters())
+        self.critic_optimizer = adam(self.critics.parameters())
+        self.temperature_optimizer = adam([self.log_temperature])
         self.num_updates = 0
         self._owed = 0.0
         self._obs: TensorDict | None = None
         self._actions = torch.empty(0)
         self._fresh: list[TensorDict] = []
         self._compiled: dict[Any, Callable[[TensorDict], torch.Tensor]] = {}
+        self._graphs: dict[bool, GraphedStep] = {}
         models = [self.actor, *self.critics]
         self._vector_groups = sorted(
             {group for model in models if model.obs_normalization for group in model.obs_groups}
@@ -186,26 +196,36 @@ class SAC:
             return {}
         sums: dict[str, torch.Tensor] = {}
         counts: dict[str, int] = {}
-        while self._owed >= 1.0:
-            self._owed -= 1.0
-            for name, value in self.step_on(self._draw()).items():
+        for batch in self._batches():
+            for name, value in self.step_on(batch).items():
                 sums[name] = sums.get(name, torch.zeros((), device=self.device)) + value
                 counts[name] = counts.get(name, 0) + 1
         return {name: float(total) / counts[name] for name, total in sums.items()}
 
-    def _draw(self) -> ReplayBatch:
-        """Return a batch of the memory."""
-        return self.replay.sample(self.batch_size, self.num_steps, self.gamma)
-
     def step_on(self, batch: ReplayBatch) -> dict[str, torch.Tensor]:
-        """Make one gradient step on ``batch`` and return the losses."""
+        """Make one gradient step on ``batch`` and return the losses, which the next step may overwrite."""
+        moves_actor = self.num_updates % self.actor_interval == 0
+        self.num_updates += 1
+        if not self.uses_graphs or self._compiled:
+            return self._step(batch, moves_actor)
+        if moves_actor not in self._graphs:
+            self._graphs[moves_actor] = GraphedStep(partial(self._step, moves_actor=moves_actor))
+        return self._graphs[moves_actor](batch)
+
+    def _batches(self) -> Iterator[ReplayBatch]:
+        """Yield the batches of the gradient steps that are owed, several drawn at a time."""
+        while self._owed >= 1.0:
+            count = min(int(self._owed), DRAWN_TOGETHER)
+            self._owed -= count
+            yield from self.replay.sample(count * self.batch_size, self.num_steps, self.gamma).split(self.batch_size)
+
+    def _step(self, batch: ReplayBatch, moves_actor: bool) -> dict[str, torch.Tensor]:
         critic_loss = self.critic_loss(batch)
         self._descend(critic_loss, self.critic_optimizer, self.critics.parameters())
         losses = {"critic": critic_loss.detach()}
-        if self.num_updates % self.actor_interval == 0:
+        if moves_actor:
             losses |= self._step_actor(batch.observations)
         self._follow()
-        self.num_updates += 1
         return losses
 
     def targets_of(self, batch: ReplayBatch) -> torch.Tensor:
@@ -309,7 +329,9 @@ class SAC:
     def _precision(self) -> torch.autocast:
         """Return the context that networks compute in."""
         kind = torch.device(self.device).type
-        return torch.autocast(kind, dtype=torch.bfloat16, enabled=self.use_mixed_precision)
+        return torch.autocast(
+            kind, dtype=torch.bfloat16, enabled=self.use_mixed_precision, cache_enabled=not self.uses_graphs
+        )
 
     def _descend(self, loss: torch.Tensor, optimizer: torch.optim.Optimizer, parameters: Any) -> None:
         parameters = list(parameters)
@@ -323,8 +345,8 @@ class SAC:
     def _follow(self) -> None:
         """Move the targets' weights towards the critics', and copy their normalizers."""
         with torch.no_grad():
-            for target, source in zip(self.targets.parameters(), self.critics.parameters(), strict=True):
-                target.lerp_(source, self.target_step)
+            targets, sources = tuple(self.targets.parameters()), tuple(self.critics.parameters())
+            torch._foreach_lerp_(targets, sources, self.target_step)
             for statistic, learned in zip(self.targets.buffers(), self.critics.buffers(), strict=True):
                 statistic.copy_(learned)
 

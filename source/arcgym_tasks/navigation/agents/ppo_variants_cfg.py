@@ -91,9 +91,14 @@ class NavigationLagrangianPPORunnerCfg(NavigationPPORunnerCfg, RslRlPpoLagrangia
 
 @configclass
 class NavigationA2CRunnerCfg(NavigationPPORunnerCfg):
-    """A2C with five steps a rollout, as in the paper's code, and the discount of the other agents."""
+    """A2C with five steps a rollout, as in the paper's code, and the discount of the other agents.
+
+    Raw actions are cut at 1: the mean drifted far beyond what the action terms carry out, at no loss but the penalty on
+    changes of the raw action, which then was hundreds of times the reward.
+    """
 
     num_steps_per_env: int = 5
+    clip_actions: float | None = 1.0
     max_iterations: int = 2500
     save_interval: int = 100
     algorithm: RslRlPpoAlgorithmCfg = RslRlA2cAlgorithmCfg(gamma=0.97, entropy_coef=0.003)

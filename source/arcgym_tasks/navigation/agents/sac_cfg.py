@@ -28,7 +28,7 @@ class NavigationSACRunnerCfg(RslRlSacRunnerCfg):
     max_iterations: int = 1500
     save_interval: int = 100
     experiment_name: str = "arc_navigation"
-    algorithm: Any = RslRlSacAlgorithmCfg(frame_stacks={"policy": 5})
+    algorithm: Any = RslRlSacAlgorithmCfg(frame_stacks={"policy": 5}, updates_per_transition=0.125, num_steps=3)
 
 
 @configclass
@@ -48,7 +48,7 @@ class SquintSACRunnerCfg(NavigationSACRunnerCfg):
         color_jitter=0.2,
         distribution_cfg=SquashedGaussianDistributionCfg(),  # type: ignore[arg-type]
     )
-    algorithm: Any = RslRlDistributionalSacAlgorithmCfg(frame_stacks={"policy": 5}, replay_size=1_000_000)
+    algorithm: Any = RslRlDistributionalSacAlgorithmCfg(frame_stacks={"policy": 5}, replay_size=1_000_000, num_steps=3)
 
 
 @configclass
