@@ -20,6 +20,7 @@ AGENTS: dict[str, str] = {
     "rsl_rl_ppo_teacher_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationTeacherRunnerCfg",
     "rsl_rl_distillation_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationDistillationRunnerCfg",
     "rsl_rl_bc_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationBehaviorCloningRunnerCfg",
+    "rsl_rl_bc_small_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationSmallBehaviorCloningRunnerCfg",
 }
 """Agent configurations of every navigation task by registry key (``--agent KEY``, where ``sac`` is enough for
 ``rsl_rl_sac_cfg_entry_point``). A line here is for all tasks."""

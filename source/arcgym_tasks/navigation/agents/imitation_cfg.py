@@ -5,9 +5,15 @@
 
 from __future__ import annotations
 
-from arcgym.rl import GaussianDistributionCfg, RslRlMlpModelCfg
+from typing import Any
+
+from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlMlpModelCfg
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
-from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningRunnerCfg, RslRlDistillationRunnerCfg
+from arcgym.rl.agent_cfgs.imitation import (
+    RslRlBehaviorCloningAlgorithmCfg,
+    RslRlBehaviorCloningRunnerCfg,
+    RslRlDistillationRunnerCfg,
+)
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
 
@@ -40,7 +46,7 @@ class NavigationDistillationRunnerCfg(RslRlDistillationRunnerCfg):
 
 @configclass
 class NavigationBehaviorCloningRunnerCfg(RslRlBehaviorCloningRunnerCfg):
-    """From recorded episodes, ``agent.algorithm.demonstrations=logs/episodes``, or ``expert``.
+    """From the scripted expert, or from recorded episodes: ``agent.algorithm.demonstrations=logs/episodes``.
 
     Its checkpoints start the other agents with a CNN: ``--agent ppo agent.init_policy=...``.
     """
@@ -51,3 +57,18 @@ class NavigationBehaviorCloningRunnerCfg(RslRlBehaviorCloningRunnerCfg):
     actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(
         hidden_dims=[256], distribution_cfg=GaussianDistributionCfg(init_std=0.6)
     )
+    algorithm: Any = RslRlBehaviorCloningAlgorithmCfg(demonstrations="expert")
+
+
+@configclass
+class NavigationSmallBehaviorCloningRunnerCfg(NavigationBehaviorCloningRunnerCfg):
+    """The same with the network of ``ppo_small``, which its checkpoints start, and fewer steps of the expert."""
+
+    max_iterations: int = 30
+    actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(
+        hidden_dims=[128],
+        cnn_cfg=CnnCfg(output_channels=[16, 32], kernel_size=[5, 3], stride=[3, 2]),
+        shift=2,
+        distribution_cfg=GaussianDistributionCfg(init_std=0.6),
+    )
+    algorithm: Any = RslRlBehaviorCloningAlgorithmCfg(demonstrations="expert", expert_steps=3_000)
