@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.viewers.palette import VISIBLE_FORCE
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -30,6 +31,10 @@ class FrameInfo:
     """Wall force on the tip [N]."""
     max_force: float = 0.0
     """Largest wall force on a window of the scope [N]."""
+    max_force_arc: float | None = None
+    """Distance of that window's middle from the front of the tip, along the scope [m]; None where nothing presses."""
+    looping: float | None = None
+    """Length of scope inside over the way to the tip; None if the task does not measure it."""
     reward: float | None = None
     """Reward of the last step; None if the environment has none."""
     task_range: tuple[float, float] | None = None
@@ -55,13 +60,17 @@ def read_info(
     if reward is None and hasattr(env, "reward_buf"):
         reward = float(env.reward_buf[env_id])
     steps = getattr(env, "episode_length_buf", None)
+    window = data.window_force_norm[env_id]
+    max_force = float(window.max())
     return FrameInfo(
         time=0.0 if steps is None else float(steps[env_id]) * env.step_dt,
         segment=SEGMENTS[int(data.tip_segment[env_id])],
         tip_arc=float(data.tip_arc_length[env_id]),
         inserted=float(data.inserted_length[env_id]),
         tip_force=float(data.tip_force[env_id]),
-        max_force=float(data.window_force_norm[env_id].max()),
+        max_force=max_force,
+        max_force_arc=float(data.window_arc[int(window.argmax())]) if max_force > VISIBLE_FORCE else None,
+        looping=_metrics(env, env_id, ("looping_ratio",)).get("looping_ratio"),
         reward=reward,
         task_range=_task_range(env, env_id),
         terms=terms,

@@ -87,14 +87,14 @@ def draw_panel(
     """
     left, top, right, bottom = box
     draw_segment_bar(draw, (left, top, right, top + 30), bounds, info.tip_arc, info.task_range)
-    chart_width = 0.16 * (right - left)
+    chart_width = 0.115 * (right - left)
     chart_top = top + 40
     draw_cells(draw, (left, chart_top, right - 2 * chart_width - 24, bottom), cells(info, tiers), tiers)
     first = (right - 2 * chart_width - 8, chart_top, right - chart_width - 8, bottom)
     draw_sparkline(draw, first, rewards, "reward", _REWARD_COLOR, (0.0, 0.1))
     limits = [(tier.start, tier.color) for tier in tiers[1:]]
     second = (right - chart_width, chart_top, right, bottom)
-    draw_sparkline(draw, second, forces, "largest shaft force [N]", INK, (0.0, tiers[1].start + 0.5), limits)
+    draw_sparkline(draw, second, forces, "shaft force [N]", INK, (0.0, tiers[1].start + 0.5), limits)
 
 
 def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
@@ -106,7 +106,10 @@ def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
         Cell("inserted", f"{100 * info.inserted:.1f} cm", "000.0 cm"),
         Cell("tip force", f"{info.tip_force:.1f} N", "000.0 N", tip.color, tip.label, info.tip_force),
         Cell("shaft force", f"{info.max_force:.1f} N", "000.0 N", top.color, force=info.max_force),
+        Cell("from the tip", "–" if info.max_force_arc is None else f"{100 * info.max_force_arc:.0f} cm", "000 cm"),
     ]
+    if info.looping is not None:
+        shown.append(Cell("loop ratio", f"{info.looping:.2f}", "0.00"))
     if info.reward is not None:
         shown.append(Cell("reward", f"{info.reward:+.2f}", "+0.00"))
     return shown + [Cell(name, f"{value:+.2f}", "+0.00") for name, value in info.terms.items()]
