@@ -50,3 +50,17 @@ def test_a_mistake_is_answered_in_one_line(tube: str, words: list[str], message:
         main([*TASK, tube, *words])
     lines = [line for line in capsys.readouterr().err.splitlines() if "error:" in line]
     assert end.value.code == 2 and len(lines) == 1 and message in lines[0]
+
+
+def test_every_patient_of_a_list_has_its_states_made(tube: str, tmp_path: Path, capsys) -> None:
+    for name, segments in (("whole", ("rectum", "sigmoid")), ("short", ("rectum",))):
+        (tmp_path / name).mkdir()
+        write_tiny_colon(tmp_path / name, segments=segments)
+    folder = f"env.scene.colon.usd_path=[{tmp_path}/short/colon.usda,{tmp_path}/whole/colon.usda]"
+    with pytest.raises(SystemExit):
+        main([*TASK, folder, "--until", "sigmoid", "--speed", "0.06"])
+    error = capsys.readouterr().err
+    assert "patient 2 of 2" in error and "does not arrive in 1 of 2 patients" in error
+    assert "short/colon.usda" in error.splitlines()[-1] and "whole/colon.usda" not in error.splitlines()[-1]
+    made = list((tmp_path / "cache" / "start_states").rglob("*.npz"))
+    assert [path.parent.name for path in made] == ["whole"]

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 import torch
+from tiny import write_tiny_colon
 from tiny_sim import TinySim
 
 from arcgym import start_states
@@ -208,3 +209,36 @@ def test_the_cache_is_the_users(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
     assert cache_dir() == Path.home() / ".cache" / "arcgym"
     monkeypatch.setenv("ARCGYM_CACHE", "~/elsewhere")
     assert cache_dir() == Path.home() / "elsewhere"
+
+
+def test_every_patient_starts_from_states_of_its_own(tmp_path: Path, cache: Path) -> None:
+    tube, paths = TinySim(tmp_path), []
+    for name, length in (("short", 0.20), ("long", 0.22)):
+        (tmp_path / name).mkdir()
+        paths.append(str(write_tiny_colon(tmp_path / name, length=length)))
+    colon = tube.colon_cfg(usd_path=paths, rigid=True)
+    cfg = InteractiveSceneCfg(num_envs=2, colon=colon, endoscope=tube.scope_cfg("capsule"))
+    scene = InteractiveScene(cfg, SimulationCfg())
+    sets = find.ensure_all(scene, "sigmoid")
+    assert sets[0].fingerprint != sets[1].fingerprint
+    scene.sim.load_snapshots([states.only(["sigmoid"]) for states in sets])
+    scene.sim.write_snapshot(0)
+    scene.sim.forward()
+    starts = scene["colon"].data.segment_spans[:, 1, 0]
+    assert starts.tolist() == pytest.approx([0.20 / 5, 0.22 / 5], abs=0.006)
+    assert (scene["endoscope"].data.tip_arc_length - starts).abs().max() < 0.01
+    assert sorted(path.parent.name for path in (cache / "start_states").rglob("*.npz")) == ["long", "short"]
+
+
+def test_patients_in_which_the_expert_does_not_arrive_are_named(tmp_path: Path, cache: Path, monkeypatch) -> None:
+    def fail(scene, segment, patient) -> None:
+        if patient != 1:
+            raise StartStateError(f"not in {patient}")
+
+    patients = [SimpleNamespace(name=f"p{k}") for k in range(3)]
+    scene = SimpleNamespace(
+        colon=SimpleNamespace(patients=patients), endoscope=SimpleNamespace(path=Path("robot.usda"))
+    )
+    monkeypatch.setattr(find, "ensure", fail)
+    with pytest.raises(StartStateError, match=r"robot.usda does not reach the sigmoid of 2 of 3 patients \(p0, p2\)"):
+        find.ensure_all(scene, "sigmoid")

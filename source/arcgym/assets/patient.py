@@ -13,7 +13,15 @@ import numpy as np
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
-from arcgym.anatomy.stage import Centerline, ColonStage, TissueMaterial, VisualMesh, WallMesh, read_colon
+from arcgym.anatomy.stage import (
+    Centerline,
+    ColonStage,
+    ContactSurface,
+    TissueMaterial,
+    VisualMesh,
+    WallMesh,
+    read_colon,
+)
 
 THICKNESS_DIGITS = 6
 """Decimals to which the thickness of a stage's wall [m] counts: the rest is noise of single precision."""
@@ -22,7 +30,7 @@ Bounds = dict[str, tuple[float, float]]
 """Arc length at start and end [m] of each segment that a colon has."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Patient:
     """One colon. Its stage, with the fine surface, is read when it is first asked for."""
 
@@ -44,6 +52,8 @@ class Patient:
     """Colour of the mucosa."""
     detail_texture: Path
     """Relief of the mucosa."""
+    contact: ContactSurface | None = None
+    """Fine surface that the scope may touch; None if the stage has none."""
     content: str = ""
     """Hash of the stage's files, empty if it was not asked for."""
 
@@ -88,6 +98,7 @@ def patient_of_stage(
         visual=stage.visual_proxy,
         albedo_texture=stage.albedo_texture,
         detail_texture=stage.detail_texture,
+        contact=stage.contact,
     )
     patient.__dict__["stage"] = stage
     return patient

@@ -51,10 +51,46 @@ def run(namespace: argparse.Namespace) -> None:
             raise UsageError(f"--{name} is {getattr(args, name):g}, expected more than 0")
     cfg = _env_cfg(args)
 
-    from arcgym.start_states.ahead import make_ahead
+    _make_all(args, cfg, _stages(cfg.scene.colon))
 
-    until = args.until or cfg.segment
-    make_ahead(cfg.scene, cfg.sim, until, args.speed, args.max_time, force=args.force, beside_colon=args.beside_colon)
+
+def _stages(colon: Any) -> list[str]:
+    """Return the stages of the patients that a configuration names."""
+    from arcgym.assets.patient_files import find_stages
+
+    try:
+        return list(map(str, find_stages(colon.usd_path, colon.num_patients)))
+    except (ValueError, OSError) as error:
+        raise UsageError(str(error)) from error
+
+
+def _make_all(args: SnapshotArguments, cfg: Any, stages: list[str]) -> None:
+    """Make the states of every patient; where the expert does not arrive, the others are made all the same.
+
+    Raises:
+        UsageError: If the expert does not arrive in some patients; names them.
+    """
+    from arcgym.start_states import StartStateError
+    from arcgym.start_states.ahead import make_ahead
+    from arcgym.start_states.progress import say
+
+    until, failures = args.until or cfg.segment, []
+    for number, stage in enumerate(stages):
+        cfg.scene.colon.usd_path, cfg.scene.colon.num_patients = stage, None
+        if len(stages) > 1:
+            say(f"patient {number + 1} of {len(stages)}: {stage}")
+        try:
+            options = {"force": args.force, "beside_colon": args.beside_colon}
+            make_ahead(cfg.scene, cfg.sim, until, args.speed, args.max_time, **options)
+        except StartStateError as error:
+            if len(stages) == 1:
+                raise
+            say(str(error))
+            failures.append(stage)
+    if failures:
+        raise UsageError(
+            f"the expert does not arrive in {len(failures)} of {len(stages)} patients: {', '.join(failures)}"
+        )
 
 
 def _env_cfg(args: SnapshotArguments) -> Any:

@@ -51,11 +51,11 @@ def read_images(albedo: Path, detail: Path) -> tuple[np.ndarray, np.ndarray]:
 
 def load_textures(files: Sequence[tuple[Path, Path]], device: str) -> list[MucosaTextures]:
     """Load pairs of images, see :func:`read_images`; pairs of the same content share their memory."""
-    with ThreadPoolExecutor() as pool:
+    with ThreadPoolExecutor() as pool:  # pyramids take most of the time, in NumPy, which lets other threads run
         contents = list(pool.map(_content, files))
         distinct = dict(zip(contents, files, strict=True))
-        images = dict(zip(distinct, pool.map(lambda pair: read_images(*pair), distinct.values()), strict=True))
-    loaded = {content: MucosaTextures(*pair, device) for content, pair in images.items()}
+        textures = pool.map(lambda pair: MucosaTextures(*read_images(*pair), device), distinct.values())
+        loaded = dict(zip(distinct, textures, strict=True))
     return [loaded[content] for content in contents]
 
 

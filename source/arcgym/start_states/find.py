@@ -49,17 +49,18 @@ def ensure_all(scene: InteractiveScene, segment: str) -> list[SnapshotSet]:
     Raises:
         StartStateError: If the robot's expert does not get there in some patients; names them.
     """
-    states, failures = [], {}
+    states: list[SnapshotSet] = []
+    failures: dict[str, StartStateError] = {}
     for index, patient in enumerate(scene.colon.patients):
         report(f"start states of {patient.name} ({index + 1} of {len(scene.colon.patients)})")
         try:
             states.append(ensure(scene, segment, index))
         except StartStateError as error:
-            failures[patient] = error
+            failures[patient.name] = error
     if len(failures) == 1:
         raise next(iter(failures.values()))
     if failures:
-        names = ", ".join(patient.name for patient in list(failures)[:5])
+        names = ", ".join(list(failures)[:5])
         raise StartStateError(
             f"The expert of {scene.endoscope.path.name} does not reach the {segment} of {len(failures)} of "
             f"{len(scene.colon.patients)} patients ({names}{', ...' if len(failures) > 5 else ''}). Leave them out of "

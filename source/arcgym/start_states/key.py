@@ -58,9 +58,12 @@ def state_key(colon: Colon, endoscope: Endoscope, sim: SimulationCfg, patient: i
         sim: Settings of the simulation.
         patient: Which of the colon's patients.
     """
-    wall, line = colon.patients[patient].wall, colon.patients[patient].centerline
+    one = colon.patients[patient]
+    wall, line = one.wall, one.centerline
     mesh = {name: getattr(wall, name) for name in ("points", "ring", "layer", "segment", "anchor", "ring_arc")}
     mesh |= {f"line_{name}": getattr(line, name) for name in ("points", "arc", "segment")}
+    if one.contact is not None:
+        mesh["contact"] = one.contact.points
     stage = {f.name: getattr(endoscope.stage, f.name) for f in dataclasses.fields(endoscope.stage)}
     stage = {name: value for name, value in stage.items() if name not in ("path", "name", "camera", "lights")}
     return StateKey(
