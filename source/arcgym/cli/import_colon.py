@@ -20,12 +20,21 @@ if TYPE_CHECKING:
 PACKAGES = {"SimpleITK": "SimpleITK", "skimage": "scikit-image", "vtkmodules": "vtk", "matplotlib": "matplotlib"}
 """Modules of the extra ``importer`` and the packages that have them."""
 
+UNCERTAIN = 40.0
+"""Half the range of a border above which there is a warning [mm]: a third of a flexure's length."""
+
+LONG_POUCH = 30.0
+"""Length of a pouch above which there is a warning [mm]: haustra are shorter."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the input, the folder to make and the settings of the import."""
     parser.add_argument("input", type=Path, help=".mha .mha.gz .nii .nii.gz .nrrd, or .stl .obj .ply .vtk .vtp .glb")
     parser.add_argument("out", type=Path, help="folder that receives colon.usda, textures and report")
     parser.add_argument("--overwrite", action="store_true", help="replace the folder if it exists")
+    parser.add_argument(
+        "--keep-doubtful", action="store_true", help="make the folder although it is doubtful; exits with 1"
+    )
     parser.add_argument("--preview", action="store_true", help="draw and open preview.png: outside, unrolled, inside")
     parser.add_argument(
         "--label", type=int, nargs="+", help="value or values of the colon, if there are several labels"
@@ -73,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
         show_preview(args.out)
     stage, radius = args.out / "colon.usda", figures["least_wall_radius_mm"]
     print(f"{stage}: {figures['length_mm']:.0f} mm, least wall radius {radius} mm")
-    return 0
+    return 1 if figures["doubts"] else 0
 
 
 def check_packages() -> None:
@@ -88,15 +97,23 @@ def check_packages() -> None:
 
 
 def report(figures: dict[str, Any]) -> None:
-    """Print the checks that are not kept and the warnings."""
-    for check in figures["checks"]:
-        if not check["ok"]:
-            print(f"check not kept: {check['name']} is {check['value']:.4g}, bound {check['bound']:.4g}")
+    """Print the doubts and the warnings."""
+    for doubt in figures["doubts"]:
+        print(f"doubtful: {doubt}")
     if figures["orientation"]["mirrored"]:
         print("warning: the mirror image is more like a colon; left and right may be exchanged in the file")
+    if figures["anus"] == "only opening":
+        print("the only opening of the surface was taken for the anus; if it is not, pass --anus")
     guessed = figures["guessed_landmarks"]
     if guessed:
         print(f"warning: landmarks at typical places: {', '.join(guessed)}; correct with --landmark")
+    for name, half in figures["landmark_uncertainty_mm"].items():
+        if half is not None and half > UNCERTAIN:
+            at = figures["landmark_mm"][name]
+            print(f"warning: {name} at {at:.0f} mm may be {half:.0f} mm off; correct with --landmark {name}=MM")
+    for pouch in figures["cleaning"]["pouches"]:
+        if pouch["length_mm"] > LONG_POUCH:
+            print(f"warning: left at {pouch['place_mm']} mm: a pouch or a leak, {pouch['length_mm']} mm long")
 
 
 def show_preview(folder: Path) -> None:
@@ -131,6 +148,7 @@ def import_settings(args: argparse.Namespace) -> ImportSettings:
         posture=args.posture,
         licence=args.licence,
         patient=args.patient,
+        keep_doubtful=args.keep_doubtful,
         max_gap=1e-3 * args.max_gap,
         voxel=1e-3 * args.voxel,
         min_lumen_radius=1e-3 * args.min_lumen,

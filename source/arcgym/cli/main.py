@@ -33,6 +33,7 @@ COMMANDS = {
     "random": ("arcgym.cli.random_actions", "run a task with uniform random actions"),
     "make-colon": ("arcgym.cli.make_colon", "generate a colon from a spec file or a seed"),
     "import-colon": ("arcgym.cli.import_colon", "turn a CT segmentation or a surface into a colon"),
+    "import-dataset": ("arcgym.cli.import_dataset", "turn a folder of masks into a folder of colons"),
     "validate": ("arcgym.cli.validate", "check colons"),
     "preview": ("arcgym.cli.preview", "draw a colon on one page"),
     "bench throughput": ("arcgym.cli.bench_throughput", "measure how fast a task runs"),

@@ -3,17 +3,23 @@
 """Check colon stages: schema, units, meshes, lumen, landmarks, anchors, skinning, and that the wall holds still.
 
 Prints one line a check with its figure and bound; the exit status is 0 if all checks of all stages pass, else 1.
-``--json`` adds a last line ``{"stages": [{"path", "ok", "checks": [{"name", "value", "bound", "ok"}]}]}``.
+``--experts`` adds how far each robot's scripted expert gets; that is no check, for it takes minutes and tells as much
+about the expert as about the colon. ``--json`` adds a last line
+``{"stages": [{"path", "ok", "checks": [{"name", "value", "bound", "ok"}], "experts": [{"robot", "reached_m"}]}]}``.
 """
 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from arcgym.cli.arguments import positive
+from arcgym.cli.expert_reach import ROBOTS, expert_reach
 
 if TYPE_CHECKING:
     from arcgym.anatomy.validation.checks import Check
@@ -23,19 +29,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the stages and how far to check them."""
     parser.add_argument("stage", type=Path, nargs="+", help="stage files (colon.usda)")
     parser.add_argument("--json", action="store_true", help="print all figures as JSON in the last line")
+    parser.add_argument(
+        "--experts", nargs="*", choices=ROBOTS, metavar="ROBOT", help=f"drive experts up: {', '.join(ROBOTS)} (all)"
+    )
+    parser.add_argument(
+        "--expert-time", type=positive, default=120, help="simulated time after which an expert gives up [s] (120)"
+    )
     parser.add_argument("--no-physics", action="store_true", help="leave out the simulated second")
 
 
 def run(args: argparse.Namespace) -> int:
     """Check the stages and return 1 if any check fails."""
-    reports = [check_stage(path, physics=not args.no_physics) for path in args.stage]
+    robots = args.experts or (ROBOTS if args.experts is not None else ())
+    reports = [check_stage(path, not args.no_physics, robots, args.expert_time) for path in args.stage]
     if args.json:
         print(json.dumps({"stages": reports}, allow_nan=False))
     return 0 if all(report["ok"] for report in reports) else 1
 
 
-def check_stage(path: Path, physics: bool) -> dict[str, Any]:
-    """Check one stage, printing as it goes, and return its report."""
+def check_stage(path: Path, physics: bool, robots: Sequence[str] = (), expert_time: float = 120.0) -> dict[str, Any]:
+    """Check one stage, printing as it goes, and return its report.
+
+    Args:
+        path: The stage.
+        physics: Whether to simulate a second.
+        robots: Robots whose experts are driven up it, if it passes.
+        expert_time: Simulated time after which an expert gives up [s].
+    """
     print(path, flush=True)
     checks = []
     for check in all_checks(path, physics):
@@ -44,7 +64,11 @@ def check_stage(path: Path, physics: bool) -> dict[str, Any]:
     rows = [{"name": c.name, "value": finite(c.value), "bound": c.bound, "ok": c.ok} for c in checks]
     ok = all(check.ok for check in checks)
     print(f"  {'passes' if ok else 'FAILS'}", flush=True)
-    return {"path": str(path), "ok": ok, "checks": rows}
+    experts = []
+    for reach in expert_reach(path, robots if ok else (), expert_time):
+        print(f"  {reach}", flush=True)
+        experts.append(dataclasses.asdict(reach))
+    return {"path": str(path), "ok": ok, "checks": rows, "experts": experts}
 
 
 def finite(value: float) -> float | None:

@@ -29,6 +29,14 @@ class AttachedSettings:
     """Largest share of a path that may be cut off at one of its ends."""
     beyond_wall: float = 0.002
     """How far out of the colon's own lumen a side branch begins [m]."""
+    leak_length: float = 0.025
+    """Least length of a leak [m]: it leaves the colon through a neck, and is wider behind it."""
+    leak_neck: float = 0.6
+    """Largest neck of a leak over its widest place."""
+    leak_share: float = 0.7
+    """Largest radius of a leak over the colon's there; what is wider may be a loop of the colon."""
+    least_pouch: float = 0.015
+    """Length from which what is left as a pouch of the colon is reported [m]."""
 
 
 SETTINGS = AttachedSettings()
@@ -39,7 +47,7 @@ class AttachedLumen:
     """A piece of lumen that hangs on the colon."""
 
     kind: str
-    """``small bowel``, ``rectal tube`` or ``side branch``."""
+    """``small bowel``, ``rectal tube``, ``side branch``, ``leak``, or ``pouch`` for what is not cut off."""
     points: np.ndarray
     """Its middle line from the neck outwards [m], shape (n, 3)."""
     clearance: np.ndarray
@@ -84,7 +92,7 @@ def last_shared(path: np.ndarray, trunk: np.ndarray) -> int:
 
 
 def side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[AttachedLumen]) -> list[AttachedLumen]:
-    """Return branches that leave the colon in between and go further than a pouch of it would.
+    """Return branches that leave the colon in between: long ones, leaks, and pouches, which are the colon's own.
 
     Args:
         tree: The lumen.
@@ -105,12 +113,26 @@ def side_branches(tree: LumenTree, nodes: np.ndarray, attached: list[AttachedLum
         start = int(out.argmax())
         rest = np.array(branch[start:])
         thick = float(np.median(caliber(tree.clearance[rest], tree.points[rest])))
-        if not out.any() or not is_long(tree.step[rest].sum(), thick):
+        if not out.any():
             continue
-        taken |= set(branch)
         neck = float(tree.clearance[branch[: start + 6]].min())
-        found.append(AttachedLumen("side branch", tree.points[rest], tree.clearance[rest], neck))
+        thin = thick < SETTINGS.leak_share * radius[nearest[start]]
+        kind = _kind(
+            float(tree.step[rest].sum()), thick, thin and neck < SETTINGS.leak_neck * tree.clearance[rest].max()
+        )
+        if kind is not None:
+            taken |= set(branch)
+            found.append(AttachedLumen(kind, tree.points[rest], tree.clearance[rest], neck))
     return found
+
+
+def _kind(length: float, thick: float, narrow: bool) -> str | None:
+    """Return what a branch is by length, lumen radius [m] and whether its neck is narrow; None if it is short."""
+    if is_long(length, thick):
+        return "side branch"
+    if length >= SETTINGS.leak_length and narrow:
+        return "leak"
+    return "pouch" if length >= SETTINGS.least_pouch else None
 
 
 def _up_to(tree: LumenTree, tip: int, ends: set[int]) -> list[int]:

@@ -48,6 +48,9 @@ class Cleaning:
     """Volume [ml] and place [mm] of the larger pieces that were left out."""
     cut: list[dict[str, Any]] = field(default_factory=list)
     """Kind, length, calibre and neck [mm], volume [ml] and place [mm] of what hung on the colon and was cut off."""
+    pouches: list[dict[str, Any]] = field(default_factory=list)
+    """Kind, length, calibre and neck [mm] and place [mm] of what sticks out of the colon and was left: haustra,
+    or leaks as wide as they."""
 
 
 def keep_colon(grid: Grid, max_gap: float) -> tuple[Grid, Cleaning]:

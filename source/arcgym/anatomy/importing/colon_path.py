@@ -30,6 +30,10 @@ class ColonPath:
     """Nodes from one end to the other, from the anus to the cecum where that is known, shape (n,)."""
     attached: list[AttachedLumen] = field(default_factory=list)
     """Pieces to cut off."""
+    pouches: list[AttachedLumen] = field(default_factory=list)
+    """Pieces that are left: pouches of the colon, or leaks as wide as they."""
+    score: float = 0.0
+    """Likeness to a typical course, and share of the lumen that the path runs through."""
 
 
 def find_colon_path(tree: LumenTree, frame: str, fixed: tuple[int | None, int | None], prune: bool = True) -> ColonPath:
@@ -41,9 +45,9 @@ def find_colon_path(tree: LumenTree, frame: str, fixed: tuple[int | None, int | 
         fixed: Nodes of the anus and of the cecal pole where they are known.
         prune: Whether to look for attached lumen.
     """
-    nodes = _best_path(tree, frame, fixed)
+    nodes, score = _best_path(tree, frame, fixed)
     if not prune:
-        return ColonPath(nodes)
+        return ColonPath(nodes, score=score)
     attached: list[AttachedLumen] = []
     if fixed[1] is None:
         nodes, cut = without_small_bowel(tree, nodes)
@@ -51,11 +55,13 @@ def find_colon_path(tree: LumenTree, frame: str, fixed: tuple[int | None, int | 
     if fixed[0] is None:
         nodes, cut = without_tube(tree, into_the_canal(tree, nodes))
         attached += cut
-    return ColonPath(nodes, attached + side_branches(tree, nodes, attached))
+    branches = side_branches(tree, nodes, attached)
+    attached += [piece for piece in branches if piece.kind != "pouch"]
+    return ColonPath(nodes, attached, [piece for piece in branches if piece.kind == "pouch"], score)
 
 
-def _best_path(tree: LumenTree, frame: str, fixed: tuple[int | None, int | None]) -> np.ndarray:
-    """Return the path that looks most like a colon and runs through most and the widest of the lumen."""
+def _best_path(tree: LumenTree, frame: str, fixed: tuple[int | None, int | None]) -> tuple[np.ndarray, float]:
+    """Return the path that looks most like a colon and runs through most and the widest of the lumen; and its score."""
     frames = list(FRAMES) if frame == "auto" else [frame]
     firsts = tree.tips if fixed[0] is None else [fixed[0]]
     lasts = tree.tips if fixed[1] is None else [fixed[1]]
@@ -71,4 +77,4 @@ def _best_path(tree: LumenTree, frame: str, fixed: tuple[int | None, int | None]
             score = like + _VOLUME_WEIGHT * float(weight[nodes].sum()) / total
             if score > best:
                 best, found = score, nodes
-    return found
+    return found, float(best)

@@ -59,21 +59,22 @@ def cut_off(grid: Grid, attached: list[AttachedLumen], path: np.ndarray, clearan
         gone = depth < distance - width[own]
         lumen = grid.values[tuple(index[gone].T)] > 0.5
         grid.values[tuple(index[gone].T)] = 0.0
-        reports.append(_as_report(piece, float(lumen.sum()) * grid.spacing**3))
+        reports.append(as_report(piece, float(lumen.sum()) * grid.spacing**3))
     if attached:
         _keep_connected(grid, path)
     return reports
 
 
-def _as_report(piece: AttachedLumen, volume: float) -> dict[str, Any]:
-    return {
+def as_report(piece: AttachedLumen, volume: float | None = None) -> dict[str, Any]:
+    """Return kind, size, volume [m^3] if known, and place of a piece for the report."""
+    figures = {
         "kind": piece.kind,
         "length_mm": round(1e3 * piece.length),
         "caliber_mm": round(2e3 * float(np.median(caliber(piece.clearance, piece.points))), 1),
         "neck_mm": round(2e3 * piece.neck, 1),
-        "volume_ml": round(1e6 * volume, 1),
         "place_mm": in_millimeters(piece.points[0]),
     }
+    return figures if volume is None else {**figures, "volume_ml": round(1e6 * volume, 1)}
 
 
 def _keep_connected(grid: Grid, path: np.ndarray) -> None:

@@ -14,13 +14,16 @@ import numpy as np
 from scipy.ndimage import gaussian_filter
 
 from arcgym.anatomy.importing.canal import straighten_canal
-from arcgym.anatomy.importing.cleaning import Cleaning, keep_colon
+from arcgym.anatomy.importing.cecal_openings import CecalOpening, cecal_openings
+from arcgym.anatomy.importing.cleaning import keep_colon
+from arcgym.anatomy.importing.doubts import path_doubts, refuse
 from arcgym.anatomy.importing.formats import FRAMES, VOLUME_SUFFIXES
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.headroom import widen_for_head
+from arcgym.anatomy.importing.loop_windows import close_windows
 from arcgym.anatomy.importing.openings import Opening, find_openings
 from arcgym.anatomy.importing.orientation import Orientation, orient
-from arcgym.anatomy.importing.path_search import LEAST_HOLE, find_path
+from arcgym.anatomy.importing.path_search import LEAST_HOLE, FoundPath, find_path
 from arcgym.anatomy.importing.placement import turned_grid
 from arcgym.anatomy.importing.preflight import check_input
 from arcgym.anatomy.importing.settings import ImportSettings
@@ -62,6 +65,8 @@ class Lumen:
     """Its centerline from the anal verge to the caecal pole, evenly spaced; straight in the canal [m], shape (n, 3)."""
     orientation: Orientation
     """How the file's axes lie in the patient."""
+    openings: dict[str, CecalOpening] = field(default_factory=dict)
+    """Ileocaecal valve and appendix, where the scan shows them."""
     report: dict[str, Any] = field(default_factory=dict)
     """Figures of what was read, cleaned and found."""
 
@@ -89,23 +94,39 @@ def find_lumen(path: Path, settings: ImportSettings, progress: Progress) -> Lume
     progress.done(
         "clean", f"{cleaning.pieces} pieces, {len(cleaning.bridges)} bridged, {len(cleaning.dropped)} dropped"
     )
-    points, orientation = _find_path(grid, settings, source["kind"] == "surface", cleaning)
+    ends, end_source = anus_and_cecum(settings, openings)
+    found, orientation = _find_path(grid, settings, source["kind"] == "surface", ends)
+    points = found.points[::-1] if orientation.reversed else found.points
+    cleaning.cut, cleaning.pouches = found.cut, found.pouches
+    if found.filled_hole > LEAST_HOLE:
+        cleaning.cut.append({"kind": "hole in the rectum, filled", "volume_ml": round(1e6 * found.filled_hole, 1)})
     rotation = FRAMES[orientation.frame]
     grid, points = turned_grid(grid, points, rotation)
     grid = Grid(gaussian_filter(grid.values, _SMOOTHING / grid.spacing), grid.origin, grid.spacing)
     line = center_path(grid, points, settings.cecum is None, [opening.turned(rotation) for opening in openings])
     progress.done("centreline", f"likeness {orientation.likeness:.2f}, frame {orientation.frame}")
     grid, line, canal = straighten_canal(grid, line)
+    grid, windows = close_windows(grid, line)
     grid, widened = widen_for_head(grid, line, settings.min_lumen_radius)
     progress.done("passage", f"canal turned by {canal['turn_deg']:.0f} deg, {widened['share']:.0%} of the way widened")
-    report = {
+    report: dict[str, Any] = {
         "input": {"file": path.name, **source},
         "cleaning": asdict(cleaning),
         "orientation": asdict(orientation),
+        "anus": end_source,
         "canal": canal,
+        "closed_short_cuts": found.closed,
+        "lost_ml": round(1e6 * found.lost, 1),
+        "windows": windows,
         "widened_for_head": widened,
+        "volume_ml": round(1e6 * float(grid.mask.sum()) * grid.spacing**3, 1),
+        "caliber_mm": round(2e3 * found.caliber, 1),
     }
-    return Lumen(grid, line, orientation, report)
+    report["doubts"] = path_doubts(report)
+    if not settings.keep_doubtful:
+        refuse(report["doubts"])
+    valves = cecal_openings(line, cleaning.cut, rotation)
+    return Lumen(grid, line, orientation, valves, report)
 
 
 def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], dict[str, str]]:
@@ -119,15 +140,25 @@ def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], di
     return grid, find_openings(points, faces), {"kind": "surface", "units": unit}
 
 
+def anus_and_cecum(settings: ImportSettings, openings: list[Opening]) -> tuple[list[np.ndarray | None], str]:
+    """Return anus and caecal pole on the file's axes [m], None where they are to be found, and where the anus is from.
+
+    An only opening of a surface is the anus, unless it lies where the caller says that the caecum is.
+    """
+    anus, cecum = (None if end is None else 1e-3 * np.array(end) for end in (settings.anus, settings.cecum))
+    if anus is not None:
+        return [anus, cecum], "given"
+    if len(openings) == 1 and (
+        cecum is None or np.linalg.norm(openings[0].center - cecum) > 2.0 * openings[0].radius + 0.02
+    ):
+        return [openings[0].center, cecum], "only opening"
+    return [None, cecum], "found"
+
+
 def _find_path(
-    grid: Grid, settings: ImportSettings, is_surface: bool, cleaning: Cleaning
-) -> tuple[np.ndarray, Orientation]:
-    """Return the path from anus to cecum on the file's axes, and how these lie in the patient; notes what was cut."""
-    ends = [None if end is None else 1e-3 * np.array(end) for end in (settings.anus, settings.cecum)]
+    grid: Grid, settings: ImportSettings, is_surface: bool, ends: list[np.ndarray | None]
+) -> tuple[FoundPath, Orientation]:
+    """Return the path on the file's axes, and how these lie in the patient."""
     frame = settings.frame if is_surface else "ras"
     found = find_path(grid, ends, frame)
-    orientation = orient(found.points, frame, ends_known=any(end is not None for end in ends))
-    cleaning.cut = found.cut
-    if found.filled_hole > LEAST_HOLE:
-        cleaning.cut.append({"kind": "hole in the rectum, filled", "volume_ml": round(1e6 * found.filled_hole, 1)})
-    return (found.points[::-1] if orientation.reversed else found.points), orientation
+    return found, orient(found.points, frame, ends_known=any(end is not None for end in ends))

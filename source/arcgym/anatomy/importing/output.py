@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from arcgym.anatomy.importing.doubts import refuse
 from arcgym.anatomy.importing.pipeline import import_colon
 from arcgym.anatomy.importing.preflight import check_paths
 from arcgym.anatomy.importing.report import write_report
@@ -31,7 +32,7 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
 
     Raises:
         ImportArgumentError: A path cannot be right; nothing has been read or made.
-        ColonImportError: The input cannot become a colon.
+        ColonImportError: The input cannot become a colon, or what came of it is doubtful.
     """
     check_paths(path, out, overwrite)
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -41,6 +42,8 @@ def import_to_folder(path: Path, out: Path, settings: ImportSettings, overwrite:
         imported = import_colon(path, settings, made)
         write_colon(imported.stage, made / "colon.usda")
         report = write_report(imported, made)
+        if not settings.keep_doubtful:
+            refuse(report["doubts"])
         if out.exists():
             out.rename(Path(place) / "replaced")
         made.rename(out)

@@ -6,18 +6,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from scipy import ndimage
+from scipy.spatial import cKDTree
 
+from arcgym.anatomy.importing.cleaning import in_millimeters
 from arcgym.anatomy.importing.clearance import coarse_clearance
 from arcgym.anatomy.importing.colon_path import ColonPath, find_colon_path
-from arcgym.anatomy.importing.cutting import cut_off, fill_tube
+from arcgym.anatomy.importing.cutting import as_report, cut_off, fill_tube
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.poles import lead_to_pole, trim_open_end
-from arcgym.anatomy.importing.tree import LumenTree, lumen_tree
+from arcgym.anatomy.importing.short_cuts import without_short_cuts
+from arcgym.anatomy.importing.tree import LumenTree, caliber, lumen_tree
+from arcgym.anatomy.importing.tubes import box_near
 from arcgym.anatomy.polyline import resample
 
 _SHORTEST = 0.4
@@ -49,6 +54,14 @@ class FoundPath:
     """What hung on the colon and was cut off."""
     filled_hole: float
     """Volume of the holes in the rectum, such as a tube's, that were filled [m^3]."""
+    pouches: list[dict[str, Any]] = field(default_factory=list)
+    """What sticks out of the colon and was left."""
+    closed: list[dict[str, Any]] = field(default_factory=list)
+    """Windows between loops that the path would have taken as a short cut, and that were closed."""
+    caliber: float = 0.0
+    """Radius of the colon between folds, in the middle of its values [m]."""
+    lost: float = 0.0
+    """Volume of what lost its connection to the colon with what was cut off [m^3]."""
 
 
 def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPath:
@@ -63,12 +76,19 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
         ColonImportError: A given end is not in the lumen, or the lumen is too wide or too short for a colon.
     """
     tree, colon, clearance = _search(grid, ends, frame)
+    volume = _volume(grid)
     hole = fill_tube(grid, tree.points[colon.nodes[0]])
     if hole > LEAST_HOLE:
         tree, colon, clearance = _search(grid, ends, frame)
+    blocked, tree, colon, windows = without_short_cuts(
+        clearance, tree, colon, lambda other: _path_in(other, ends, frame, True)
+    )
     cut = cut_off(grid, colon.attached, tree.points[colon.nodes], tree.clearance[colon.nodes])
-    if cut:
-        tree, colon, clearance = _search(grid, ends, frame, prune=False)
+    pouches = [as_report(piece) for piece in colon.pouches]
+    walled = Grid(grid.values.copy(), grid.origin, grid.spacing) if windows else grid
+    closed = [_close(walled, window, blocked.spacing) for window in windows]
+    if cut or closed:
+        tree, colon, clearance = _search(walled, ends, frame, prune=False)
     points = resample(tree.points[colon.nodes], 2 * grid.spacing)
     points = lead_to_pole(clearance, points, _CECUM_LOOK) if ends[1] is None else points
     points = trim_open_end(clearance, points[::-1])[::-1] if ends[0] is None else points
@@ -78,7 +98,22 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
             f"No colon-like component: the lumen's centreline is only {1e3 * length:.0f} mm long",
             "Check the units (--spacing, --units), --label, --max-gap and --anus/--cecum.",
         )
-    return FoundPath(points, cut, hole)
+    wide = float(np.median(caliber(tree.clearance[colon.nodes], tree.points[colon.nodes])))
+    lost = volume + hole - _volume(grid) - 1e-6 * sum(piece["volume_ml"] for piece in cut)
+    return FoundPath(points, cut, hole, pouches, closed, wide, max(lost, 0.0))
+
+
+def _volume(grid: Grid) -> float:
+    return float(grid.mask.sum()) * grid.spacing**3
+
+
+def _close(grid: Grid, window: np.ndarray, voxel: float) -> dict[str, Any]:
+    """Put a wall into a window, in place, and return its area and place for the report."""
+    index = np.argwhere(grid.values[box := box_near(grid, window, voxel)] > 0) + [side.start for side in box]
+    points = grid.points(index)
+    wall = np.abs(points[:, None] - window[cKDTree(window).query(points)[1]][:, None]).max((1, 2)) <= 0.5 * voxel
+    grid.values[tuple(index[wall].T)] = 0.0
+    return {"area_mm2": round(1e6 * len(window) * voxel**2 / 2), "place_mm": in_millimeters(window.mean(0))}
 
 
 def _search(
@@ -92,6 +127,12 @@ def _search(
             f"{2e3 * _WIDEST:.0f} mm wide",
             "Pass the mask of the colon's lumen, and --label and the units (--spacing, --units) if they are wrong.",
         )
+    return *_path_in(clearance, ends, frame, prune), clearance
+
+
+def _path_in(clearance: Grid, ends: list[np.ndarray | None], frame: str, prune: bool) -> tuple[LumenTree, ColonPath]:
+    """Return tree and path in the part of a lumen that is connected to its given end, or in the largest part."""
+    clearance = _one_part(clearance, ends)
     given = [None if end is None else _nearest_voxel(clearance, end) for end in ends]
     tree = lumen_tree(clearance, [voxel for voxel in given if voxel is not None])
     fixed: tuple[int | None, int | None]
@@ -99,7 +140,21 @@ def _search(
         fixed = (0, None if ends[1] is None else tree.tips[1])
     else:
         fixed = (None, None if ends[1] is None else 0)
-    return tree, find_colon_path(tree, frame, fixed, prune), clearance
+    return tree, find_colon_path(tree, frame, fixed, prune)
+
+
+def _one_part(clearance: Grid, ends: list[np.ndarray | None]) -> Grid:
+    """Return a clearance with all but one connected part set to 0."""
+    labels, count = ndimage.label(clearance.values > 0, np.ones((3, 3, 3)))
+    if count < 2:
+        return clearance
+    end = next((end for end in ends if end is not None), None)
+    keep = (
+        labels[tuple(_nearest_voxel(clearance, end))]
+        if end is not None
+        else 1 + np.bincount(labels.ravel())[1:].argmax()
+    )
+    return Grid(np.where(labels == keep, clearance.values, 0.0).astype(np.float32), clearance.origin, clearance.spacing)
 
 
 def _nearest_voxel(clearance: Grid, point: np.ndarray) -> np.ndarray:

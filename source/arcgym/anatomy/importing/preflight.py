@@ -73,12 +73,13 @@ def _check_replaceable(path: Path, out: Path, overwrite: bool) -> None:
         some = ", ".join(foreign[:3]) + (f" and {len(foreign) - 3} more" if len(foreign) > 3 else "")
         found = f"{out} is not replaced: {some} in it is not of an import"
         raise ImportArgumentError(found, "Pass another folder, or remove it.")
-    if names and not _made_by_import(out / _REPORT):
+    if names and not made_by_import(out / _REPORT):
         found = f"{out} is not replaced: it is neither empty nor a folder made by an import"
         raise ImportArgumentError(found, "Pass another folder, or remove it.")
 
 
-def _made_by_import(report: Path) -> bool:
+def made_by_import(report: Path) -> bool:
+    """Return whether a report is there and was written by an import."""
     try:
         return json.loads(report.read_text()).get("made_by") == MADE_BY
     except (OSError, ValueError, AttributeError):

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from arcgym.anatomy.importing.doubts import check_doubts
 from arcgym.anatomy.importing.pipeline import ImportedColon
 from arcgym.anatomy.importing.preflight import MADE_BY
 from arcgym.anatomy.segments import SEGMENTS
@@ -32,6 +33,10 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
     stage = imported.stage
     bounds = stage.segment_bounds()
     radii = ring_radii(stage.wall)
+    checks = [
+        {"name": c.name, "value": float(c.value), "bound": float(c.bound), "ok": bool(c.ok)}
+        for c in inspect_stage(stage)
+    ]
     return {
         "made_by": MADE_BY,
         **imported.report,
@@ -48,10 +53,8 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
             "proxy": len(stage.visual_proxy.points),
         },
         "metadata": stage.metadata,
-        "checks": [
-            {"name": c.name, "value": float(c.value), "bound": float(c.bound), "ok": bool(c.ok)}
-            for c in inspect_stage(stage)
-        ],
+        "checks": checks,
+        "doubts": [*imported.report["doubts"], *check_doubts(checks)],
     }
 
 

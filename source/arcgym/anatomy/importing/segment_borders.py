@@ -77,7 +77,7 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
         Ends [m], shape (8,), and the names of the borders that were set to typical shares of the length, because the
         course does not show them.
     """
-    found = {**_from_course(points, arc), **given}
+    found = {**borders_of_course(points, arc), **given}
     borders = np.array([found[name] for name in BORDERS])
     guessed: list[str] = []
     if (np.diff(np.r_[0.0, borders, arc[-1]]) < _SHORTEST_SEGMENT).any():
@@ -88,8 +88,14 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
     return np.r_[borders, arc[-1]], guessed
 
 
-def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
-    """Find the borders by the tops of both flexures, their limbs, and the height of the iliac fossa."""
+def borders_of_course(points: np.ndarray, arc: np.ndarray, fossa: float = ILIAC_FOSSA) -> dict[str, float]:
+    """Find the borders by the tops of both flexures, their limbs, and the height of the iliac fossa.
+
+    Args:
+        points: Centreline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
+        arc: Its arc length [m], shape (n,).
+        fossa: Height of the iliac fossa above the verge [m].
+    """
     length, share, height = arc[-1], arc / arc[-1], points[:, 2]
     splenic = _top(points * [-1, 1, 1], arc, (share > 0.30) & (share < 0.75), lateral=0.0)
     after = (arc > splenic + 0.12) & (arc < length - 0.12)
@@ -99,7 +105,7 @@ def _from_course(points: np.ndarray, arc: np.ndarray) -> dict[str, float]:
     right = limb + LIMB_SHARE * max(cecum - limb, 0.0)
     return {
         "rectosigmoid": min(RECTUM, 0.2 * length),
-        "sigmoid_descending": _groove_end(arc, height, splenic),
+        "sigmoid_descending": _groove_end(arc, height, splenic, fossa),
         "splenic_flexure_entry": left - SPLENIC_FLEXURE[0],
         "splenic_flexure_exit": left + SPLENIC_FLEXURE[1],
         "hepatic_flexure_entry": right - HEPATIC_FLEXURE,
@@ -132,10 +138,10 @@ def _slope(arc: np.ndarray, height: np.ndarray) -> np.ndarray:
     return gaussian_filter1d(np.gradient(height, step), _SLOPE_LENGTH / step, mode="nearest")
 
 
-def _groove_end(arc: np.ndarray, height: np.ndarray, top: float) -> float:
+def _groove_end(arc: np.ndarray, height: np.ndarray, top: float, fossa: float) -> float:
     """Follow the descending colon down to the iliac fossa, or to where it turns up again just above it."""
     tall = float(np.interp(top, arc, height) - height[0])
-    level = height[0] + min(ILIAC_FOSSA, 0.6 * tall)
+    level = height[0] + min(fossa, 0.6 * tall)
     turned = (_slope(arc, height) < _LEVEL_SLOPE) & (height < level + _NEAR_FOSSA * tall)
     near = np.flatnonzero((arc < top - _NEAR_TOP) & (arc > 0.3 * top))[::-1]
     if not len(near):

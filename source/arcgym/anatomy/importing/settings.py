@@ -84,6 +84,8 @@ class ImportSettings:
     """Distance of the cross-sections of the surface drawn for policies [m]."""
     proxy_columns: int = 28
     """Points around the surface drawn for policies."""
+    keep_doubtful: bool = False
+    """Whether to make the folder although there are doubts about it, for looking at."""
 
     def __post_init__(self) -> None:
         """Check every setting.

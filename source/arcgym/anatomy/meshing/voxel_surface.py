@@ -21,6 +21,9 @@ _LEAST_WAY = 0.060
 _TURNS = 6.0
 """The same, in radii of the lumen: a bend brings places nearer than that to each other."""
 
+_UNREACHED = 1e6
+"""Arc length of voxels that no way leads to [m]; they touch no others."""
+
 _MOVES = np.array([(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)])
 """Steps to half of the neighbours of a voxel; the others are their opposites."""
 
@@ -49,8 +52,39 @@ class VoxelSurface:
     """Volume that the walls cut off from the tube and that was left out [m^3]."""
 
 
+@dataclass(frozen=True)
+class SeparatedLoops:
+    """A lumen on voxels with walls between loops that touch."""
+
+    lumen: np.ndarray
+    """Whether each voxel is lumen, the piece with the centreline only, shape (X, Y, Z), bool."""
+    windows: list[Window]
+    """Openings between loops that were closed, the largest first."""
+    lost: float
+    """Volume that the walls cut off from the tube and that was left out [m^3]."""
+
+
 def voxel_surface(values: np.ndarray, origin: np.ndarray, spacing: float, line: np.ndarray) -> VoxelSurface:
-    """Return the surface of a lumen.
+    """Return the surface of a lumen, with walls between loops that touch.
+
+    Args:
+        values: Share of each voxel that is lumen, above 0.5 inside, shape (X, Y, Z).
+        origin: Centre of the first voxel [m], shape (3,).
+        spacing: Edge of a voxel [m].
+        line: Centreline from anal verge to caecal pole, inside of the lumen [m], shape (n, 3).
+
+    Raises:
+        ValueError: The centreline is not inside of the lumen, or the walls cut it.
+    """
+    separated = separate_loops(values, origin, spacing, line)
+    low, kept = _boxed(separated.lumen)
+    soft = ndimage.gaussian_filter(np.pad(kept, 2).astype(np.float32), _SMOOTHING)
+    surface = cut_surface(soft, np.asarray(origin, float) + spacing * (low - 2), spacing, 0.5)
+    return VoxelSurface(surface, separated.windows, separated.lost)
+
+
+def separate_loops(values: np.ndarray, origin: np.ndarray, spacing: float, line: np.ndarray) -> SeparatedLoops:
+    """Put walls between loops that touch.
 
     Every voxel belongs to the place of the centreline that is nearest to it on a way through the lumen. Where voxels
     that touch belong to places far from each other along the colon, two loops are open to each other, or were
@@ -77,12 +111,13 @@ def voxel_surface(values: np.ndarray, origin: np.ndarray, spacing: float, line: 
             " Pass both in the same frame, in metres."
         )
     nearest = _nearest_places(mask, voxels[inside], np.flatnonzero(inside))
-    arc = np.r_[arc_lengths(fine), np.inf].astype(np.float32)[nearest]
+    arc = np.r_[arc_lengths(fine), _UNREACHED].astype(np.float32)[nearest]
     wall, windows = _walls(mask, arc, _radii(mask, voxels, inside, spacing), arc_lengths(fine), spacing, origin)
     kept = _piece_with(mask & ~wall, voxels[inside])
-    soft = ndimage.gaussian_filter(np.pad(kept, 2).astype(np.float32), _SMOOTHING)
     lost = (mask & ~wall & ~kept).sum() * spacing**3
-    return VoxelSurface(cut_surface(soft, origin - 2 * spacing, spacing, 0.5), windows, float(lost))
+    whole = np.zeros(values.shape, bool)
+    whole[tuple(slice(k + 1, k + size - 1) for k, size in zip(low, mask.shape, strict=True))] = kept[1:-1, 1:-1, 1:-1]
+    return SeparatedLoops(whole, windows, float(lost))
 
 
 def _boxed(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

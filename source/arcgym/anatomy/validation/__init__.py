@@ -7,6 +7,7 @@ In reading order:
 - :mod:`checks`: a figure and the bound that it has to keep;
 - :mod:`wall_checks`: the wall on its own, also of colons in the making;
 - :mod:`stage_checks`: everything about a stage, in memory or in a file;
+- :mod:`passage`: room for a scope's stiff head;
 - :mod:`mesh_checks`: whether a mesh is closed or crosses itself, and what it encloses.
 """
 

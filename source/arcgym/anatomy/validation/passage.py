@@ -89,15 +89,19 @@ class Passage:
 
 
 def head_passage(stage: ColonStage, radius: float = HEAD_RADIUS, length: float = HEAD_LENGTH) -> Passage:
-    """Return the room for a stiff head in a stage's wall at rest, from the anal verge to the dome of the caecum.
+    """Return the room for a stiff head in a stage at rest, from the anal verge to the dome of the caecum.
+
+    What counts is the contact surface; where a stage has none, the wall's inner layer.
 
     Args:
         stage: The colon.
         radius: Radius of the head [m].
         length: Its length with both round ends [m].
     """
-    faces = inner_faces(stage.wall.tets, stage.wall.layer)
-    surface = _WallSamples(stage.wall.points.astype(float), faces)
+    if stage.contact is None:
+        surface = _WallSamples(stage.wall.points.astype(float), inner_faces(stage.wall.tets, stage.wall.layer))
+    else:
+        surface = _WallSamples(stage.contact.points.astype(float), stage.contact.faces())
     line = stage.centerline
     return find_passage(surface.clearance, line.points.astype(float), line.arc.astype(float), radius, length)
 
@@ -110,7 +114,9 @@ class _WallSamples:
     """
 
     def __init__(self, points: np.ndarray, faces: np.ndarray) -> None:
-        corners, normals = points[faces], face_normals(points, faces)
+        normals = face_normals(points, faces)
+        faces, normals = faces[(size := np.linalg.norm(normals, axis=1)) > 0.0], normals[size > 0.0]
+        corners = points[faces]
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-18)
         longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(1)
         found, sides = [], []

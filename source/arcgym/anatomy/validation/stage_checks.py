@@ -8,6 +8,7 @@ import numpy as np
 from pxr import Usd, UsdValidation
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.course_measures import measure_course
 from arcgym.anatomy.measures import flipped_normal_fraction, inner_faces, winds_outwards
 from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from arcgym.anatomy.stage import StageError, read_colon
@@ -20,6 +21,7 @@ from arcgym.anatomy.validation.mesh_checks import (
     edge_uses,
     winding_numbers,
 )
+from arcgym.anatomy.validation.passage import HEAD_LENGTH, HEAD_RADIUS, head_passage
 from arcgym.anatomy.validation.wall_checks import check_wall
 
 _LENGTH_RANGE = 0.1, 3.0
@@ -27,6 +29,9 @@ _LENGTH_RANGE = 0.1, 3.0
 
 _DIAMETER_RANGE = 0.010, 0.120
 """Least and largest median diameter [m]."""
+
+_LEAST_BEND = 0.006
+"""Least bend radius of a centerline smoothed over 5 mm [m]; real colons have 10 to 15 mm (docs/importing.md)."""
 
 
 def inspect_file(path: str) -> tuple[ColonStage | None, list[Check]]:
@@ -45,6 +50,7 @@ def inspect_stage(stage: ColonStage) -> list[Check]:
         *_check_meshes(stage),
         *_check_topology(stage.wall),
         _check_centerline(stage),
+        *_check_way(stage),
         *_check_anchors(stage.wall),
     ]
 
@@ -145,6 +151,18 @@ def _check_centerline(stage: ColonStage) -> Check:
     within = (line.arc > wall.ring_arc[0] + margin) & (line.arc < wall.ring_arc[-1] - margin)
     outside = winding_numbers(wall.points, lumen, line.points[within]) < 0.5
     return Check("centreline points outside the lumen", int(outside.sum()), 0, at_least=False)
+
+
+def _check_way(stage: ColonStage) -> list[Check]:
+    """Check that the course bends no tighter than a lumen can, and that a scope's stiff head passes."""
+    line = stage.centerline
+    bend = measure_course(line.points.astype(float)).bend_radius_least
+    found = head_passage(stage)
+    size = f"{1e3 * HEAD_LENGTH:.0f} mm long, tightest {found.tightest:.3f} m up"
+    return [
+        Check("least bend radius [m]", bend, _LEAST_BEND, at_least=True),
+        Check(f"passage: radius of a stiff head [m], {size}", found.least, HEAD_RADIUS, at_least=True),
+    ]
 
 
 def _check_anchors(wall: WallMesh) -> list[Check]:
