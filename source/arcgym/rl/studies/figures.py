@@ -103,8 +103,10 @@ def _colors(cells: Sequence[Cell]) -> dict[str, Any]:
 
 
 def _legend(fig: Any, colors: dict[str, Any]) -> None:
-    """Name the variants above the panels."""
+    """Name the variants below the panels, in as many columns as fit."""
     from matplotlib.lines import Line2D
 
     lines = [Line2D([], [], color=color, label=name) for name, color in colors.items()]
-    fig.legend(handles=lines, loc="outside lower center", ncols=min(len(lines), 6), frameon=False)
+    width = 0.5 + 0.09 * max(map(len, colors))
+    columns = max(1, min(len(lines), int(fig.get_figwidth() / width)))
+    fig.legend(handles=lines, loc="outside lower center", ncols=columns, frameon=False)
