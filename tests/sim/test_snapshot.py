@@ -14,6 +14,7 @@ from tiny_sim import TinySim
 
 from arcgym.sim import Simulation, Snapshot, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
+from arcgym.sim.snapshot_library import with_room
 
 
 def moved(sim: Simulation, steps: int) -> Simulation:
@@ -28,6 +29,22 @@ def stored(tiny_sim: TinySim) -> SnapshotSet:
     sim = tiny_sim()
     states = tuple(moved(sim, 48).read_snapshot(0) for _ in range(2))
     return SnapshotSet(("near", "far"), states, fingerprint(sim))
+
+
+def memory(start: list[int], face: list[int], slide: list[float]) -> Snapshot:
+    return Snapshot(
+        {"contact_start": np.array(start), "contact_face": np.array(face), "contact_slide": np.array(slide)}
+    )
+
+
+def test_memory_of_contacts_fits_into_other_room() -> None:
+    # One link, two contacts with faces 7 and 9; a simulation with room for three, then with room for one.
+    state = memory([0, 2], [7, 9], [1.0, 0.0, 0.0, 2.0, 0.0, 0.0])
+    more = with_room(state, memory([0, 0], [0, 0, 0], [0.0] * 9)).arrays
+    assert more["contact_face"].tolist() == [7, 9, 0]
+    assert more["contact_slide"].tolist() == [1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+    less = with_room(state, memory([0, 0], [0], [0.0] * 3)).arrays
+    assert less["contact_start"].tolist() == [0, 0] and less["contact_face"].tolist() == [0]
 
 
 def test_a_file_gives_back_what_was_saved(stored: SnapshotSet, tmp_path: Path) -> None:

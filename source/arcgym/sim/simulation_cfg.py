@@ -53,13 +53,13 @@ class ContactCfg:
     search_reach: int = 3
     """Rings on either side of a link's own whose faces may touch it from outside, too: a link that was pushed into the
     wall there is pushed back. Elsewhere faces touch a link from the lumen alone."""
-    capacity: int = 16
+    capacity: int = 24
     """Contacts kept a link, on average over the links of a world, which share them. A link that a gathered wall lies
-    around has up to 50, a link outside the anus none; a scope of 121 links, half of it in gathered tissue, had 600
-    altogether. Contacts that find no room are counted (``Simulation.dropped_contacts``): raise it then."""
-    patch_capacity: int = 16
-    """Patches of six faces looked at near a link, on average over the links of a world, which share them. The scope
-    above had 850 altogether; raise it with ``capacity``, and where a wall has far smaller faces."""
+    around has up to 50, a link outside the anus none; 45 links in gathered tissue had 1143 altogether. Contacts that
+    find no room are counted (``Simulation.dropped_contacts``): raise it then."""
+    patch_capacity: int = 24
+    """Patches of six faces looked at near a link, on average over the links of a world, which share them. The links
+    above had 1048 altogether; raise it with ``capacity``, and where a wall has far smaller faces."""
 
     def validate_config(self) -> None:
         """Check bounds.

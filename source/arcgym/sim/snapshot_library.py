@@ -41,7 +41,12 @@ class SnapshotLibrary:
             )
         kept = [one.only(names) for one in sets]
         self.snapshots = kept[0]
-        self._arrays = self._stack([[rest, *one.snapshots] for rest, one in zip(self._rests, kept, strict=True)])
+        self._arrays = self._stack(
+            [
+                [rest, *(with_room(state, rest) for state in one.snapshots)]
+                for rest, one in zip(self._rests, kept, strict=True)
+            ]
+        )
 
     def write(
         self, arrays: dict[str, torch.Tensor], index: torch.Tensor | int, env_ids: torch.Tensor, patient: torch.Tensor
@@ -75,9 +80,31 @@ class SnapshotLibrary:
         return {name: self._stacked(name, snapshots) for name in self._rests[0].arrays}
 
     def _stacked(self, name: str, snapshots: Sequence[Sequence[Snapshot]]) -> torch.Tensor:
-        """One array of all states. Friction's memory is empty in states that were made with room for other contacts."""
+        """One array of all states."""
         empty = np.zeros_like(self._rests[0].arrays[name])
         values = [[snapshot.arrays.get(name, empty) for snapshot in own] for own in snapshots]
-        if name.startswith("contact_"):
-            values = [[value if value.shape == empty.shape else empty for value in own] for own in values]
         return torch.tensor(np.stack([np.stack(own) for own in values]), device=self._device)
+
+
+def with_room(snapshot: Snapshot, rest: Snapshot) -> Snapshot:
+    """Return a state whose memory of contacts has the room that a simulation has for them.
+
+    It is empty where the state has none, or more contacts than find room.
+
+    Args:
+        snapshot: The state.
+        rest: A state of the simulation.
+    """
+    own = {name: array for name, array in rest.arrays.items() if name.startswith("contact_")}
+    stored = {name: snapshot.arrays[name] for name in own if name in snapshot.arrays}
+    fits = len(stored) == len(own)
+    if fits and own:
+        fits = stored["contact_start"].shape == own["contact_start"].shape
+        fits = fits and stored["contact_start"][-1] <= len(own["contact_face"])
+    fitted = {}
+    for name, array in own.items():
+        fitted[name] = np.zeros_like(array)
+        if fits:
+            length = min(len(array), len(stored[name]))
+            fitted[name][:length] = stored[name][:length]
+    return Snapshot({**snapshot.arrays, **fitted})
