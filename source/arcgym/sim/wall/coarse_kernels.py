@@ -22,11 +22,12 @@ from arcgym.utils.math_kernels import clamp_length
 
 DILATION = wp.constant(6)
 """Mode that moves every vertex by its place in the ring's plane over the ring's size."""
-DISTORTION = wp.constant(1.0)
-"""Factor on the square of a ring's distortion, by which the diagonal is larger. In a ring that is dented the modes,
-which are those of its shape at rest, no longer turn it as a whole but strain it, the more the more it is dented. Where
-the wall holds a shaft in a bend, its stiffness in them was up to four times that of the matrix (generalised eigenvalue
-3.95, distortions up to 0.24), and a correction of more than twice what is right grows without bound; now it is 1.75."""
+DENTED = wp.constant(0.03)
+"""Distortion from which a ring takes half of the correction; an undistorted ring takes it whole. The modes are those
+of the ring's shape at rest. In a dented ring they strain it instead of turning it as a whole, and the wall is stiffer
+in them than the matrix says: where it holds a shaft in a bend up to four times (generalised eigenvalue 3.95). A
+correction of more than twice what is right grows without bound: those walls trembled by 0.3 mm a step. (A matrix made
+stiffer there ends that, too, but then the wall cannot get out of the way of a link that is shoved at it.)"""
 
 
 @wp.struct
@@ -165,7 +166,6 @@ def assemble(
     space: RingSpace,
     rotation: wp.array2d[wp.mat33],
     shift: wp.array2d[wp.vec3],
-    distortion: wp.array2d[float],
     tissue: Tissue,
     inv_dt2: float,
     regularisation: float,
@@ -183,7 +183,6 @@ def assemble(
         space: Ring modes of all patients.
         rotation: Rotation of each ring, shape (R, W).
         shift: Shift of each ring's centre [m], shape (R, W).
-        distortion: Change of each ring's shape, shape (R, W).
         tissue: Values of each world.
         inv_dt2: One over the squared physics step [1/s^2].
         regularisation: Relative addition to the diagonal.
@@ -204,7 +203,7 @@ def assemble(
     for part in range(3):
         own_row += moduli[part] * space.stiffness[part, r, a, p]
         next_row += moduli[part] * space.coupling[part, r, a, p]
-    own_row[a] = own_row[a] * (1.0 + regularisation + DISTORTION * distortion[r, w]) + 1.0e-6
+    own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
     if self_contact.in_contact[r, w] == 1:
         own_row += self_contact_row(space, self_contact, back, r, a, w)
     total = float(0.0)
@@ -236,6 +235,7 @@ def assemble(
 def prolong(
     space: RingSpace,
     rotation: wp.array2d[wp.mat33],
+    distortion: wp.array2d[float],
     solution: wp.array3d[float],
     largest_move: float,
     x: wp.array2d[wp.vec3],
@@ -245,6 +245,7 @@ def prolong(
     Args:
         space: Ring modes of all patients.
         rotation: Rotation of each ring, shape (R, W).
+        distortion: Change of each ring's shape, shape (R, W).
         solution: Amplitude of each mode [m], shape (R, M, W).
         largest_move: Longest displacement of a vertex [m].
         x: Wall positions [m], shape (V, W); moved in place.
@@ -255,4 +256,5 @@ def prolong(
     d = wp.vec3(0.0)
     for m in range(MODES):
         d += solution[r, m, w] * space.basis[i, m, p]
+    d = d / (1.0 + wp.min(distortion[r, w] / DENTED, 1.0))
     x[i, w] = x[i, w] + rotation[r, w] * clamp_length(d, largest_move)

@@ -231,8 +231,7 @@ class WallSolver:
             outputs=[self.rotation, self.shift, self.distortion],
             device=self.device,
         )
-        inputs = [self.force, self.space, self.rotation, self.shift, self.distortion, self.tissue]
-        inputs += [1.0 / self.dt**2, REGULARISATION]
+        inputs = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
         wp.launch(
             coarse_kernels.assemble,
             (self.ring_count, MODES, self.num_envs),
@@ -244,7 +243,7 @@ class WallSolver:
         wp.launch(
             coarse_kernels.prolong,
             x.shape,
-            inputs=[self.space, self.rotation, system.rhs, self.cfg.largest_move],
+            inputs=[self.space, self.rotation, self.distortion, system.rhs, self.cfg.largest_move],
             outputs=[x],
             device=self.device,
         )
