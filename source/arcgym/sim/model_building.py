@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
@@ -15,6 +18,7 @@ from arcgym.anatomy.stage import WallMesh
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
+from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.wall.ring_modes import ElasticPart, RingModes, ring_modes
 from arcgym.sim.wall.shell_elements import bending_bound, stretching_stiffness
 from arcgym.sim.wall.solid_elements import tet_stiffness
@@ -73,6 +77,32 @@ def _shell(shell: ShellMesh) -> ShellParameters:
 def wall_modes(wall: WallParameters) -> RingModes:
     """Return the ring modes of the wall."""
     return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness, wall.elements.parts)
+
+
+def carried_surface(
+    colon: Colon, rest: Sequence[np.ndarray], lumen: LumenTopology, patient: wp.array
+) -> CarriedSurface:
+    """Return the fine surface that the walls carry.
+
+    Args:
+        colon: Colon of every world.
+        rest: Rest positions of each patient's wall [m], shape (V, 3).
+        lumen: Faces of a wall that the scope would touch without it.
+        patient: Patient of each world, shape (W,), int32.
+
+    Raises:
+        ValueError: If a stage has none, or they do not fit the wall or each other.
+    """
+    surfaces = []
+    for one in colon.patients:
+        surface = one.stage.contact
+        if surface is None:
+            raise ValueError(
+                f"{one.path} has no contact surface, which env.sim.contact.surface=fine needs: make the stage anew "
+                "with 'arcgym make-colon' or 'arcgym import-colon', or set env.sim.contact.surface=wall."
+            )
+        surfaces.append(surface)
+    return CarriedSurface(surfaces, rest, lumen, patient)
 
 
 def wall_lumen(wall: ShellMesh | WallMesh) -> LumenTopology:

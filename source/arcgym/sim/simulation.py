@@ -17,6 +17,7 @@ import newton
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.sim import model_building
+from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.coupling.two_level_coupling import Coupling, TwoLevelCoupling
 from arcgym.sim.patient_walls import patient_walls
@@ -27,6 +28,7 @@ from arcgym.sim.snapshot import Snapshot, SnapshotSet
 from arcgym.sim.snapshot_library import SnapshotLibrary
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
+from arcgym.sim.wall.wall_topology import LumenTopology
 from arcgym.utils.configclass import validate
 
 logger = logging.getLogger(__name__)
@@ -104,11 +106,19 @@ class Simulation:
             scope.stage.link_radius,
             self.num_envs,
             self.device,
+            self._carried_surface(rest, lumen),
         )
         slots = len(self.contact.records.face)
         self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
         self.wall_readout = WallReadout(lumen, rest, colon.wall.ring, anchors, scale, self.patient, self.device)
+
+    def _carried_surface(self, rest: list[np.ndarray], lumen: LumenTopology) -> CarriedSurface | None:
+        """Return the fine surface that the links touch, or None if they touch the wall's own faces."""
+        if self.cfg.contact.surface == "wall":
+            return None
+        self.require_two_level("touches the wall's own faces", "set env.sim.contact.surface=wall")
+        return model_building.carried_surface(self.colon, rest, lumen, self.patient)
 
     def _coupling(self) -> Coupling:
         if self.cfg.solver == "newton":

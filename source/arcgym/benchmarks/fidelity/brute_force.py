@@ -14,8 +14,6 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from arcgym.benchmarks.lumen import lumen_triangles
-
 
 @dataclass(frozen=True)
 class ContactSample:
@@ -38,24 +36,22 @@ def sample_contacts(sim: Any, worlds: Iterable[int] = (0,)) -> list[ContactSampl
         worlds: The worlds.
     """
     sim.contact.detect(sim.nodal_pos, sim.state.body_q)
-    faces = lumen_triangles(sim.colon.wall)
+    faces = sim.contact.surface.faces.numpy()
     samples = []
     for world in worlds:
         known = recorded(sim, world)
         pairs = touching(sim, faces, world)
-        missed = [(link, *sorted(map(int, faces[face]))) not in known for link, face in pairs]
+        missed = [pair not in known for pair in pairs]
         samples.append(ContactSample(np.array(pairs, dtype=int).reshape(-1, 2), np.array(missed, dtype=bool)))
     return samples
 
 
-def recorded(sim: Any, world: int) -> set[tuple[int, ...]]:
-    """Return link and sorted vertices of each contact that the simulation has recorded in a world."""
+def recorded(sim: Any, world: int) -> set[tuple[int, int]]:
+    """Return link and face of each contact that the simulation has recorded in a world."""
     records = sim.contact.records
     first, count = world * records.capacity, int(wp.to_torch(records.start)[world, -1])
-    link, corners = (
-        wp.to_torch(array)[first : first + count].cpu().numpy() for array in (records.link, records.corners)
-    )
-    return {(int(a), *map(int, face)) for a, face in zip(link, np.sort(corners, axis=1), strict=True)}
+    link, face = (wp.to_torch(array)[first : first + count].tolist() for array in (records.link, records.face))
+    return set(zip(link, face, strict=True))
 
 
 def touching(sim: Any, faces: np.ndarray, world: int) -> list[tuple[int, int]]:
@@ -69,7 +65,7 @@ def touching(sim: Any, faces: np.ndarray, world: int) -> list[tuple[int, int]]:
     start, end = link_axes(sim, world)
     reach = sim.endoscope.stage.link_radius + sim.contact.law.wall_radius
     inside = np.flatnonzero(wp.to_torch(sim.contact.ring_distance)[world].cpu().numpy() < 1.0e9)
-    corners = sim.colon.data.nodal_pos_w[world].cpu().numpy().astype(float)[faces]
+    corners = wp.to_torch(sim.contact.points)[:, world].cpu().numpy().astype(float)[faces]
     middle = corners.mean(axis=1)
     size = np.linalg.norm(corners - middle[:, None], axis=2).max(axis=1)
     found = []

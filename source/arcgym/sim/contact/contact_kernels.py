@@ -39,15 +39,16 @@ class ContactRecords:
     link: wp.array[int]  # link of each slot, shape (W*S,)
     face: wp.array[int]  # in ascending order for each link, shape (W*S,)
     ring: wp.array[int]  # lowest ring of the face's vertices
-    corners: wp.array[wp.vec3i]  # the face's three wall vertices
-    bary: wp.array[wp.vec3]
+    corners: wp.array[wp.vec4i]  # wall vertices that carry the point; of a wall's face, the last one twice
+    bary: wp.array[wp.vec4]  # their weights, of sum 1; of a wall's face, barycentric coordinates and 0
+    offset: wp.array[wp.vec3]  # from the point that they carry to the one that is touched; 0 on the wall itself [m]
     distance: wp.array[float]  # of the link's axis from the face [m]
     weight: wp.array[float]  # share of the contact stiffness
     normal: wp.array[wp.vec3]  # outward normal of the wall there at detection, or direction from a link clear of it
     slide: wp.array[wp.vec3]  # elastic displacement of the link along the wall, which friction bounds [m]
     owed: wp.array[wp.vec3]  # part of the force on the wall that is still owed from earlier steps [N]
-    vertex_head: wp.array2d[int]  # first entry of each vertex's list, shape (V, W); entry e = 3 * record + corner
-    vertex_next: wp.array[int]  # shape (3*W*S,)
+    vertex_head: wp.array2d[int]  # first entry of each vertex's list, shape (V, W); entry e = 4 * record + corner
+    vertex_next: wp.array[int]  # shape (4*W*S,)
     ring_head: wp.array2d[int]  # first record whose lowest ring is this one, shape (R, W)
     ring_next: wp.array[int]  # shape (W*S,)
     dropped: wp.array[int]  # contacts that found no slot since the start, shape (W,)
@@ -65,6 +66,25 @@ class ContactLaw:
     slip_velocity: float  # speed at which friction has fallen to 1/e of the way from static to dynamic [m/s]
     wall_radius: float  # half the skin that the wall adds to each link [m]
     search_gap: float  # distance up to which records are kept [m]
+
+
+@wp.func
+def carried(x: wp.array2d[wp.vec3], corners: wp.vec4i, weights: wp.vec4, w: int) -> wp.vec3:
+    """Return the mean of world ``w``'s vertices ``corners`` by their weights; ``x`` has shape (V, W)."""
+    out = weights[0] * x[corners[0], w] + weights[1] * x[corners[1], w] + weights[2] * x[corners[2], w]
+    if corners[3] != corners[2]:
+        out += weights[3] * x[corners[3], w]
+    return out
+
+
+@wp.func
+def touched(records: ContactRecords, slot: int, x: wp.array2d[wp.vec3], w: int) -> wp.vec3:
+    """Return the point of the wall that the contact in ``slot`` touches at the positions ``x`` of world ``w`` [m]."""
+    corners = records.corners[slot]
+    out = carried(x, corners, records.bary[slot], w)
+    if corners[3] != corners[2]:
+        out += records.offset[slot]
+    return out
 
 
 @wp.func

@@ -8,7 +8,7 @@ W worlds, L links a world, S contact slots a world, V wall vertices.
 
 import warp as wp
 
-from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactRecords, LinkShapes
+from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactRecords, LinkShapes, carried
 from arcgym.sim.contact.contact_search_kernels import Candidates, sum_before
 from arcgym.sim.contact.lumen_kernels import FAR, LumenSurface
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
@@ -159,6 +159,7 @@ def fill_slots(surface: LumenSurface, candidates: Candidates, stride: int, recor
 @wp.kernel
 def locate_contacts(
     x: wp.array2d[wp.vec3],
+    points: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
     links: LinkShapes,
     surface: LumenSurface,
@@ -173,6 +174,7 @@ def locate_contacts(
 
     Args:
         x: Wall positions [m], shape (V, W).
+        points: Vertices of the surface that links touch: the wall's, or those of a fine surface [m], shape (M, W).
         body_q: Link poses, shape (W*L,).
         links: Capsules of one world.
         surface: Inner faces of one world.
@@ -191,14 +193,24 @@ def locate_contacts(
     center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     face = records.face[slot]
-    point = closest_point(surface, face, x, w, center, axis, records.distance[slot])
+    point = closest_point(surface, face, points, w, center, axis, records.distance[slot])
     u = point.bary
     corners = face_corners(surface, face)
-    records.corners[slot] = corners
-    for c in range(3):
-        records.vertex_next[3 * slot + c] = wp.atomic_exch(records.vertex_head, corners[c], w, 3 * slot + c)
+    carriers = wp.vec4i(corners[0], corners[1], corners[2], corners[2])
+    weights = wp.vec4(u[0], u[1], u[2], 0.0)
+    offset = wp.vec3(0.0)
+    entries = int(3)
+    if surface.carried == 1:
+        carriers = surface.carriers[face]
+        weights = u[0] * surface.weights[face, 0] + u[1] * surface.weights[face, 1] + u[2] * surface.weights[face, 2]
+        offset = corner_point(points, corners, u, w) - carried(x, carriers, weights, w)
+        entries = 4
+    records.corners[slot] = carriers
+    records.bary[slot] = weights
+    records.offset[slot] = offset
+    for c in range(entries):
+        records.vertex_next[4 * slot + c] = wp.atomic_exch(records.vertex_head, carriers[c], w, 4 * slot + c)
     records.ring[slot] = surface.ring[face]
-    records.bary[slot] = u
     records.weight[slot] = wp.pow(EDGE_WEIGHT, edge_proximity(u[0]) + edge_proximity(u[1]) + edge_proximity(u[2]))
     records.normal[slot] = point.normal
     if nearest[w, link] > CLEARANCE * links.radius[link]:

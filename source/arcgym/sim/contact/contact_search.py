@@ -11,6 +11,7 @@ import warp as wp
 from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
 from arcgym.sim.contact import lumen_kernels
+from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
@@ -19,6 +20,8 @@ FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
 GPU_LIST_PARTS = 32
 """Threads a world that list the contacts by ring on a GPU, where a list waits for memory at every entry."""
+CARRIED_ROOM = 3
+"""How much more room contacts and patches have on a fine surface."""
 PAIR_THREADS = 256
 """Threads a world that go through the pairs of a link and a patch near it."""
 MAX_RING_SHIFT = 4
@@ -43,6 +46,7 @@ class ContactSearch:
         radius: np.ndarray,
         num_envs: int,
         device: str,
+        carried: CarriedSurface | None = None,
     ):
         """Allocate the search.
 
@@ -55,10 +59,14 @@ class ContactSearch:
             radius: Link radii [m], shape (L,).
             num_envs: Worlds, W.
             device: Warp device.
+            carried: Fine surface of the lumen that is touched in place of the wall's faces.
         """
-        self.num_envs, self.device = num_envs, device
+        self.num_envs, self.device, self.carried = num_envs, device, carried
+        if carried is not None:
+            topology, surface_offset = carried.topology, 0.0
+        room = (len(radius) + FURTHER_LINKS) * (1 if carried is None else CARRIED_ROOM)
         self.link_count, self.vertex_count, self.ring_count = len(radius), len(vertex_ring), len(topology.rings)
-        self.surface = self._surface(topology, cfg.search_reach)
+        self.surface = self._surface(topology, cfg.search_reach, carried)
         self.links = LinkShapes()
         self.links.half_length = wp.array(half_length, dtype=float, device=device)
         self.links.radius = wp.array(radius, dtype=float, device=device)
@@ -71,22 +79,28 @@ class ContactSearch:
         self.bounds = lumen_kernels.Bounds()
         self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
         self.bounds.patch = wp.zeros((len(topology.patch_start) - 1, num_envs), dtype=wp.vec4, device=device)
-        self.candidates = self._candidates(cfg.patch_capacity * (self.link_count + FURTHER_LINKS))
+        self.candidates = self._candidates(cfg.patch_capacity * room)
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
-        self.records = self._records(cfg.capacity * (self.link_count + FURTHER_LINKS))
+        self.records = self._records(cfg.capacity * room)
         self.list_parts = 1 if device == "cpu" else GPU_LIST_PARTS
         self.past = record_kernels.PastContacts()
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
 
-    def _surface(self, topology: LumenTopology, reach: int) -> lumen_kernels.LumenSurface:
+    def _surface(
+        self, topology: LumenTopology, reach: int, carried: CarriedSurface | None
+    ) -> lumen_kernels.LumenSurface:
         surface = lumen_kernels.LumenSurface()
         for name in ("rings", "faces", "neighbors", "patch_start", "ring_patch", "patch_vertices"):
             setattr(surface, name, wp.array(getattr(topology, name), dtype=int, device=self.device))
         ring = np.repeat(np.arange(self.ring_count), np.diff(topology.ring_start))
         surface.ring = wp.array(ring, dtype=int, device=self.device)
         surface.reach = reach
+        surface.carried = int(carried is not None)
+        if carried is not None:
+            surface.carriers = wp.array(carried.carriers, dtype=wp.vec4i, device=self.device)
+            surface.weights = wp.array(carried.weights, dtype=wp.vec4, device=self.device)
         return surface
 
     def _law(self, cfg: ContactCfg) -> ContactLaw:
@@ -118,13 +132,14 @@ class ContactSearch:
         records.dropped = wp.zeros(self.num_envs, dtype=int, device=self.device)
         for name in ("link", "face", "ring"):
             setattr(records, name, wp.zeros(slots, dtype=int, device=self.device))
-        records.corners = wp.zeros(slots, dtype=wp.vec3i, device=self.device)
+        records.corners = wp.zeros(slots, dtype=wp.vec4i, device=self.device)
+        records.bary = wp.zeros(slots, dtype=wp.vec4, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(slots, dtype=float, device=self.device))
-        for name in ("bary", "normal", "slide", "owed"):
+        for name in ("offset", "normal", "slide", "owed"):
             setattr(records, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
-        records.vertex_next = wp.full(3 * slots, -1, dtype=int, device=self.device)
+        records.vertex_next = wp.full(4 * slots, -1, dtype=int, device=self.device)
         records.ring_head = wp.full((self.ring_count, self.num_envs), -1, dtype=int, device=self.device)
         records.ring_next = wp.full(slots, -1, dtype=int, device=self.device)
         return records
@@ -173,22 +188,23 @@ class ContactSearch:
         """
         self.update_centers(x)
         self.track(body_q)
-        self._find(x, body_q)
-        self._record(x, body_q)
+        self.points = x if self.carried is None else self.carried.update(x)
+        self._find(self.points, body_q)
+        self._record(x, self.points, body_q)
 
-    def _find(self, x: wp.array, body_q: wp.array) -> None:
+    def _find(self, points: wp.array, body_q: wp.array) -> None:
         """Find the patches near each link, and the distances of their faces."""
         links, stride = (self.num_envs, self.link_count), self._stride
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
-        self._launch(lumen_kernels.bound_faces, (self.ring_count, self.num_envs), [x, self.surface], [self.bounds])
+        self._launch(lumen_kernels.bound_faces, (self.ring_count, self.num_envs), [points, self.surface], [self.bounds])
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
-        inputs = [x, body_q, self.links, self.surface, self.law, stride]
+        inputs = [points, body_q, self.links, self.surface, self.law, stride]
         self._launch(kernels.face_distances, (self.num_envs, stride), inputs, [self.candidates])
         self._launch(kernels.count_candidates, links, [], [self.candidates])
 
-    def _record(self, x: wp.array, body_q: wp.array) -> None:
+    def _record(self, x: wp.array, points: wp.array, body_q: wp.array) -> None:
         """Record the faces near each link, and what friction held where it touched the same face before."""
         records, stride = self.records, self._stride
         for name in ("start", "face", "slide"):
@@ -199,7 +215,7 @@ class ContactSearch:
         self._launch(record_kernels.allot_slots, links, [self.candidates], [records])
         inputs = [self.surface, self.candidates, stride]
         self._launch(record_kernels.fill_slots, (self.num_envs, stride), inputs, [records])
-        inputs = [x, body_q, self.links, self.surface, self.candidates.nearest, self.past]
+        inputs = [x, points, body_q, self.links, self.surface, self.candidates.nearest, self.past]
         self._launch(record_kernels.locate_contacts, slots, inputs, [records])
         self._launch(record_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
         self._launch(record_kernels.list_rings, (self.num_envs, self.list_parts), [self.list_parts], [records])

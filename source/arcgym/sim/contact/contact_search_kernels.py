@@ -219,7 +219,7 @@ def face_distances(
     gathered around the link, but not the outside of a neighboring loop.
 
     Args:
-        x: Wall positions [m], shape (V, W).
+        x: Vertices of the surface [m], shape (V, W).
         body_q: Link poses, shape (W*L,).
         links: Capsules of one world.
         surface: Inner faces of one world.

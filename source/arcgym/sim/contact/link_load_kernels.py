@@ -10,11 +10,12 @@ from arcgym.sim.contact.contact_kernels import (
     ContactLaw,
     ContactRecords,
     LinkShapes,
+    carried,
     contact_geometry,
     normal_force,
     slide_stiffness,
+    touched,
 )
-from arcgym.sim.geometry_kernels import corner_point
 from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -112,10 +113,8 @@ def load_contacts(
     back = body_q_prev[row] * wp.transform_inverse(pose)
     for k in range(records.start[w, link], records.start[w, link + 1]):
         slot = w * records.capacity + k
-        f = records.corners[slot]
-        u = records.bary[slot]
-        wall_v = corner_point(v, f, u, w)
-        p = corner_point(x, f, u, w)
+        wall_v = carried(v, records.corners[slot], records.bary[slot], w)
+        p = touched(records, slot, x, w)
         radius = links.radius[link] + law.wall_radius
         c = contact_geometry(p, records.normal[slot], pose, links.half_length[link], radius)
         if c.gap + radius < CLEARANCE * links.radius[link]:

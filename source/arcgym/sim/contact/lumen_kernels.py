@@ -16,15 +16,21 @@ FAR = wp.constant(1.0e9)
 
 @wp.struct
 class LumenSurface:
-    """Inner faces of one world's wall, sorted by ring; normals point from the lumen into the wall."""
+    """Inner faces of one world's wall, or of a fine surface that it carries, sorted by ring.
+
+    Normals point from the lumen into the wall.
+    """
 
     rings: wp.array2d[int]  # inner vertices of each ring, padded with the first, shape (R, S)
-    faces: wp.array2d[int]  # shape (F, 3)
+    faces: wp.array2d[int]  # vertices of the wall or of the fine surface, shape (F, 3)
     ring: wp.array[int]  # lowest ring of each face's vertices, shape (F,)
+    carried: int  # 1 for a fine surface that the wall carries, 0 for the wall's own faces
+    carriers: wp.array[wp.vec4i]  # wall vertices that carry each face of a fine surface, shape (F,)
+    weights: wp.array2d[wp.vec4]  # their weights in each of its corners, shape (F, 3)
     neighbors: wp.array2d[int]  # face across the edge opposite to each corner or -1, shape (F, 3)
     patch_start: wp.array[int]  # first face of each patch, shape (P + 1,)
     ring_patch: wp.array[int]  # first patch of each ring, shape (R + 1,)
-    patch_vertices: wp.array2d[int]  # vertices of each patch, padded with its first, shape (P, K)
+    patch_vertices: wp.array2d[int]  # these vertices of each patch, padded with its first, shape (P, K)
     reach: int  # rings on either side of a link's own whose faces may touch it from outside, too
 
 

@@ -98,11 +98,11 @@ def ring_rotations(
 
 
 @wp.func
-def point_move(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, m: int, p: int) -> wp.vec3:
-    """Return the displacement of the point ``u`` of face ``f`` in mode ``m`` of ring ``r``, in the rest frame."""
+def point_move(space: RingSpace, f: wp.vec4i, u: wp.vec4, r: int, m: int, p: int) -> wp.vec3:
+    """Return the displacement in mode ``m`` of ring ``r`` of the point that ``f`` carry by ``u``, in the rest frame."""
     out = wp.vec3(0.0)
-    for k in range(3):
-        if space.ring[f[k]] == r:
+    for k in range(4):
+        if u[k] != 0.0 and space.ring[f[k]] == r:
             out += u[k] * space.basis[f[k], m, p]
     return out
 
@@ -116,11 +116,11 @@ def apply_contact_stiffness(measured: MeasuredContacts, slot: int, move: wp.vec3
 
 
 @wp.func
-def ring_share(space: RingSpace, f: wp.vec3i, u: wp.vec3, r: int, direction: wp.vec3, p: int) -> Unknowns:
-    """Return how far each mode of ring ``r`` moves the point ``u`` of ``f`` along ``direction``, in the rest frame."""
+def ring_share(space: RingSpace, f: wp.vec4i, u: wp.vec4, r: int, direction: wp.vec3, p: int) -> Unknowns:
+    """Return how far each mode of ring ``r`` moves the point that ``f`` carry by ``u`` along ``direction``."""
     out = Unknowns()
-    for k in range(3):
-        if space.ring[f[k]] == r:
+    for k in range(4):
+        if u[k] != 0.0 and space.ring[f[k]] == r:
             for m in range(MODES):
                 out[m] = out[m] + u[k] * wp.dot(space.basis[f[k], m, p], direction)
     return out

@@ -16,9 +16,9 @@ from arcgym.sim.contact.contact_kernels import (
     contact_geometry,
     normal_force,
     slide_stiffness,
+    touched,
 )
 from arcgym.sim.contact.self_contact_kernels import SelfContactForce
-from arcgym.sim.geometry_kernels import corner_point
 from arcgym.sim.wall.anchor_kernels import Anchors, anchor_hessian, anchor_pull
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -111,9 +111,7 @@ def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d[wp.vec3], 
     out = ContactForce()
     link = contacts.records.link[slot]
     row = w * contacts.links.radius.shape[0] + link
-    f = contacts.records.corners[slot]
-    u = contacts.records.bary[slot]
-    p = corner_point(x, f, u, w)
+    p = touched(contacts.records, slot, x, w)
     radius = contacts.links.radius[link] + contacts.law.wall_radius
     c = contact_geometry(
         p, contacts.records.normal[slot], contacts.body_q[row], contacts.links.half_length[link], radius
@@ -125,7 +123,8 @@ def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d[wp.vec3], 
         out.stiffness = push[1]
         out.normal = c.normal
         local = wp.transform_point(wp.transform_inverse(contacts.body_q[row]), p)
-        slip = wp.transform_point(contacts.body_q_prev[row], local) - corner_point(contacts.x_prev, f, u, w)
+        before = touched(contacts.records, slot, contacts.x_prev, w)
+        slip = wp.transform_point(contacts.body_q_prev[row], local) - before
         opening = wp.dot(c.normal, slip)
         if opening < 0.0:
             damping = share * contacts.law.damping / contacts.dt
@@ -146,8 +145,8 @@ def add_contact(block: VertexBlock, contacts: WallContacts, x: wp.array2d[wp.vec
     eye = wp.identity(n=3, dtype=float)
     entry = contacts.records.vertex_head[i, w]
     while entry >= 0:
-        slot = entry // 3
-        weight = contacts.records.bary[slot][entry - 3 * slot]
+        slot = entry // 4
+        weight = contacts.records.bary[slot][entry - 4 * slot]
         c = contact_force_at(contacts, slot, x, w)
         if c.normal_force > 0.0:
             along = wp.outer(c.normal, c.normal)
@@ -263,8 +262,8 @@ def vertex_contact_force(records: ContactRecords, measured: MeasuredContacts, i:
     out = wp.vec3(0.0)
     entry = records.vertex_head[i, w]
     while entry >= 0:
-        slot = entry // 3
-        out += records.bary[slot][entry - 3 * slot] * measured.force[slot]
+        slot = entry // 4
+        out += records.bary[slot][entry - 4 * slot] * measured.force[slot]
         entry = records.vertex_next[entry]
     return out
 

@@ -52,9 +52,9 @@ def lumen_topology(points: np.ndarray, faces: np.ndarray, ring: np.ndarray, laye
     order = np.lexsort((angle, lowest))
     faces = faces[order].astype(np.int32)
     ring_start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
-    patch_start, ring_patch = _patches(ring_start)
-    patch_vertices = _patch_vertices(faces, patch_start)
-    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, patch_start, ring_patch, patch_vertices)
+    patch_start, ring_patch = patches(ring_start)
+    vertices = patch_vertices(faces, patch_start)
+    return LumenTopology(rings, faces, face_neighbors(faces), ring_start, patch_start, ring_patch, vertices)
 
 
 def _sectors(ring: np.ndarray, layer: np.ndarray) -> np.ndarray | None:
@@ -90,7 +90,7 @@ def _angle_around(arm: np.ndarray, ring: np.ndarray) -> np.ndarray:
     return angle
 
 
-def _patches(ring_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def patches(ring_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Split the faces of each ring into patches; first face of each patch and first patch of each ring."""
     starts = [
         np.arange(a, b, PATCH_FACES, dtype=np.int32) for a, b in zip(ring_start[:-1], ring_start[1:], strict=True)
@@ -99,8 +99,8 @@ def _patches(ring_start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.append(np.concatenate(starts), ring_start[-1]).astype(np.int32), ring_patch
 
 
-def _patch_vertices(faces: np.ndarray, patch_start: np.ndarray) -> np.ndarray:
-    """Return the vertices of each patch, each once, padded with the first, shape (P, K)."""
+def patch_vertices(faces: np.ndarray, patch_start: np.ndarray) -> np.ndarray:
+    """Return the vertices of each patch of ``faces``, each once, padded with the first, shape (P, K), int32."""
     groups = [np.unique(faces[a:b]) for a, b in zip(patch_start[:-1], patch_start[1:], strict=True)]
     out = np.zeros((len(groups), max(map(len, groups))), np.int32)
     for row, group in zip(out, groups, strict=True):

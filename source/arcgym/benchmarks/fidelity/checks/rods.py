@@ -9,6 +9,7 @@ neither links nor speed, damping or facets.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from arcgym.sim.simulation_cfg import ContactCfg
 REFINE = 4
 """Rings and sectors of the sigmoid's wall for each one of the shipped: with facets so small, the rod's smooth surface
 and ours are the same."""
-ROOM = {"capacity": 40, "patch_capacity": 160}
+ROOM: dict[str, Any] = {"capacity": 40, "patch_capacity": 160}
 """Contacts of sixteen times as many faces."""
 
 
