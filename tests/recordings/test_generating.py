@@ -112,6 +112,20 @@ def test_incomplete_episodes_are_made_again(data, tmp_path) -> None:
     assert clean(tmp_path) == 1 and [path.name for path in tmp_path.iterdir()] == ["episode_000000.hdf5"]
 
 
+def test_patients_in_one_batch(colons, tmp_path, capsys) -> None:
+    words = ["record", *OPTIONS, "--patients", ",".join(map(str, colons)), "--out", str(tmp_path), "--together"]
+    assert main([*words, "--num_envs", "3"]) == 0
+    episodes = list(load_episodes(tmp_path / "together"))
+    drawn = [episode.info["patient"] for episode in episodes]
+    assert len(episodes) == 6 and set(drawn) == {"straight", "bent"}
+    assert all(
+        f"/{name}/" in one.provenance["stages"]["colon"]["path"] for name, one in zip(drawn, episodes, strict=True)
+    )
+    assert f"| bent | {drawn.count('bent')} |" in (tmp_path / "README.md").read_text()
+    bent = episode_paths(tmp_path / "together")[drawn.index("bent")]
+    assert main(["replay", str(bent), "--device", "cpu"]) == 0
+
+
 def test_unknown_patients_are_named(capsys) -> None:
     with pytest.raises(SystemExit):
         main(["record", *OPTIONS, "--patients", "colon_11"])

@@ -6,13 +6,15 @@
     arcgym record --agent expert --task ARC-Sigmoid-Magnetic --episodes 20 --patients colon_1,colon_2 --images
 
 --agent is expert (sees the centerline), zero, random, or a trained one: policy (PPO) or the key of another (sac, ...),
-whose run --load_run and --checkpoint choose. Each patient has a folder below --out; what is there already is kept, so
-that the same command goes on after an interruption. README.md there tells what the data set is.
+whose run --load_run and --checkpoint choose. Each patient has a folder below --out, or all one with --together; what is
+there already is kept, so that the same command goes on after an interruption. README.md there tells what the data set
+is. --patients takes names (colon_1), stage files, folders and splits (population:test).
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -33,7 +35,8 @@ class RecordArguments(RunArguments):
     agent: str = argument("expert (default), zero, random, policy, or the key of a trained agent", "expert")
     episodes: int = argument("episodes of each patient (default: 10)", 10, type=positive)
     out: str | None = argument("folder of the data set (default: logs/datasets/<task>_<agent>)", None)
-    patients: str | None = argument("colons, separated by commas: colon_1 or stage files (default: the task's)", None)
+    patients: str | None = argument("colons, separated by commas (default: the task's)", None)
+    together: bool = argument("simulate all patients in one batch, each episode in one that is drawn", False)
     images: bool = argument("record color, depth, normals, labels and the camera's pose", False, group="pictures")
     size: int = argument("width and height of the pictures [px] (default: 256)", 256, type=positive, group="pictures")
     samples: int = argument("rays a pixel of the color (default: 2)", 2, type=positive, group="pictures")
@@ -68,22 +71,25 @@ def _stages(colon: Any, patients: str | None) -> tuple[str, ...]:
     """Return the stage files of the patients, those of the task where none are named."""
     from arcgym.assets.patient_files import find_stages
 
-    if patients is not None:
-        return tuple(_stage(name) for name in patients.split(","))
     try:
-        return tuple(map(str, find_stages(colon.usd_path, colon.num_patients)))
+        if patients is None:
+            return tuple(map(str, find_stages(colon.usd_path, colon.num_patients)))
+        return tuple(str(path) for name in patients.split(",") for path in _named(name))
     except (ValueError, OSError) as error:
         raise UsageError(str(error)) from error
 
 
-def _stage(name: str) -> str:
-    """Return the stage file that a patient's name means."""
+def _named(name: str) -> Sequence[str | Path]:
+    """Return the stage files that a name of patients means: a colon that comes along, a file, a folder, a split."""
+    from arcgym.assets.patient_files import find_stages
     from arcgym.utils.paths import assets_dir, resolve_asset
     from arcgym.utils.string import did_you_mean
 
     for path in (name, f"{name}/colon.usda"):
         if resolve_asset(path).is_file():
-            return path
+            return [path]
+    if ":" in name or resolve_asset(name).is_dir():
+        return find_stages(name)
     known = sorted(path.parent.name for path in assets_dir().glob("*/colon.usda"))
     raise UsageError(f"--patients names '{name}', which is no stage file. {did_you_mean(name, known)}")
 
@@ -98,13 +104,15 @@ def _record(
     from arcgym.rl.playing import load_policy
     from arcgym.rl.preflight import check_environment
 
-    for stage in stages:
-        env_cfg.scene.colon.usd_path = stage
-        check_environment(env_cfg, args.device, [out])
+    env_cfg.scene.colon.usd_path = list(stages)
+    check_environment(env_cfg, args.device, [out])
     images = mdp.PostStepImagesRecorderCfg(width=args.size, height=args.size, samples=args.samples)
     device = place(env_cfg, agent_cfg, args.device)
+    together = args.together and len(stages) > 1
+    groups = (stages,) if together else tuple((stage,) for stage in stages)
+    episodes = args.episodes * len(stages) if together else args.episodes
     plan = GenerationPlan(
-        args.task, args.episodes, out, stages, args.agent, images if args.images else None, args.observations
+        args.task, episodes, out, groups, args.agent, images if args.images else None, args.observations
     )
     load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint, device)
     report = generate(plan, env_cfg, agent_cfg, load)

@@ -36,6 +36,7 @@ class TeleopArguments(RunArguments):
     out: str = argument("folder of the recordings (default: logs/teleop)", "logs/teleop")
     host: str = argument("address to listen at (default: 127.0.0.1, this machine alone)", "127.0.0.1", group="page")
     port: int = argument("port (default: 8080; 0 takes a free one)", 8080, type=whole(0), group="page")
+    seconds: int | None = argument("measure: run by itself so long, say how fast, and close", None, type=positive)
     size: int = argument(
         "width and height of the endoscope's view [px] (default: 320)", 320, type=positive, group="page"
     )
@@ -58,44 +59,51 @@ def run(namespace: argparse.Namespace) -> None:
     check_installed("viser", "teleoperation", extra="teleop")
     if args.driver not in ("hand", "policy", *SCRIPTED):
         raise UsageError(f"--driver is '{args.driver}', expected hand, policy, {', '.join(SCRIPTED)}.")
-    drivers = make_drivers(args)
-    serve(args, drivers, steers=True)
+    serve(args, steers=True)
 
 
-def make_drivers(args: Any) -> dict[str, Any]:
-    """Return makers of policies by name; ``policy`` is there where a checkpoint was asked for."""
+def make_drivers(args: Any) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """Return makers of policies by name, and what the environment of the trained one was configured with.
+
+    ``policy`` is there where a checkpoint was asked for.
+    """
     from arcgym.rl.rollout import UNTRAINED
 
     drivers: dict[str, Any] = {name: UNTRAINED[name] for name in SCRIPTED if name in UNTRAINED}
-    if args.driver == "policy" or args.checkpoint or args.load_run:
-        from arcgym.cli.task import load_run_cfgs
-        from arcgym.rl.device import choose_device
-        from arcgym.rl.playing import load_policy
+    if not (args.driver == "policy" or args.checkpoint or args.load_run):
+        return drivers, None
+    from arcgym.cli.task import PLAY, load_run_cfgs
+    from arcgym.rl.device import choose_device
+    from arcgym.rl.params import read_params
+    from arcgym.rl.playing import load_policy
 
-        _, agent_cfg, checkpoint = load_run_cfgs(args)
-        device = choose_device(args.device)
-        drivers["policy"] = lambda env: load_policy(env, agent_cfg, checkpoint, device)
-    return drivers
+    _, agent_cfg, checkpoint = load_run_cfgs(args)
+    device = choose_device(args.device)
+    drivers["policy"] = lambda env: load_policy(env, agent_cfg, checkpoint, device)
+    saved = None if args.no_params else read_params(checkpoint.parent)
+    fits = saved is not None and saved.task.removesuffix(PLAY) == args.task.removesuffix(PLAY)
+    return drivers, saved.env if saved is not None and fits else None
 
 
-def serve(args: Any, drivers: dict[str, Any], steers: bool) -> None:
+def serve(args: Any, steers: bool) -> None:
     """Run a session and its page until Ctrl-C; without a hand it goes on by itself."""
     from arcgym.rl.device import choose_device
     from arcgym.rl.preflight import check_environment
     from arcgym.teleop.choices import Choice, make_cfg
     from arcgym.teleop.session import Session
 
+    drivers, settings = make_drivers(args)
     patient = args.patient
     if patient is not None and not patient.endswith(".usda"):
         patient = f"{patient}/colon.usda"
     choice = Choice(
         args.task, patient, args.tissue, args.start, args.driver, choose_device(args.device), args.seed or 0,
-        overrides=tuple(text for text in args.overrides if text.startswith("env.")),
+        overrides=tuple(text for text in args.overrides if text.startswith("env.")), settings=settings,
     )  # fmt: skip
     out = Path(args.out)
     check_environment(make_cfg(choice, out)[1], args.device, [out])
     session = Session(choice, out, drivers)
-    session.needs_page = session.starts_paused = steers
+    session.needs_page = session.starts_paused = steers and args.seconds is None
     show(session, args, steers)
 
 
@@ -115,8 +123,11 @@ def show(session: Any, args: Any, steers: bool) -> None:
     session.start()
     print(f"page: {page.gate.url}", flush=True)
     try:
-        while True:
-            time.sleep(0.5)
+        if getattr(args, "seconds", None):
+            print(page.measure(args.seconds))
+        else:
+            while True:
+                time.sleep(0.5)
     except KeyboardInterrupt:
         print("closing; what is under way is saved")
     finally:

@@ -125,7 +125,7 @@ def _stage(what: Path, args: ViewArguments) -> Any:
 
 def _view_run(folder: Path, args: ViewArguments) -> None:
     """Let the policy of a run drive."""
-    from arcgym.cli.teleop import TeleopArguments, make_drivers, serve
+    from arcgym.cli.teleop import TeleopArguments, serve
     from arcgym.rl.params import read_params
     from arcgym.rl.run_folder import newest_checkpoint
 
@@ -137,4 +137,4 @@ def _view_run(folder: Path, args: ViewArguments) -> None:
         task=params.task.removesuffix("-Play"), checkpoint=checkpoint, driver="policy", device=args.device,
         host=args.host, port=args.port, size=args.size, overrides=args.overrides, out="logs/view",
     )  # fmt: skip
-    serve(asked, make_drivers(asked), steers=False)
+    serve(asked, steers=False)

@@ -41,6 +41,7 @@ class EnvMemory:
             for sensor in env.scene.sensors.values()
         ]
         self._random = torch.get_rng_state()
+        self._device_random = torch.cuda.get_rng_state(env.device) if str(env.device).startswith("cuda") else None
         self._arrays: list[tuple[Place, Any, Any]] = []
         self._values: list[tuple[Place, Any]] = []
         self._contents: list[tuple[Any, Any]] = []
@@ -70,6 +71,8 @@ class EnvMemory:
             if hasattr(sensor.data, "frame"):
                 sensor.data.frame += 1
         torch.set_rng_state(self._random)
+        if self._device_random is not None:
+            torch.cuda.set_rng_state(self._device_random, env.device)
 
     def _left_out(self) -> Iterator[Any]:
         env: Any = self._env

@@ -63,8 +63,9 @@ def _read(folder: Path) -> _Contents:
         for file in episode_paths(below):
             with open_recording(file) as opened:
                 for demo in opened["data"].values():
-                    _add(contents, below.name, demo)
-            contents.patients[below.name].size += file.stat().st_size
+                    name = str(json.loads(demo.attrs["info"]).get("patient", below.name))
+                    _add(contents, name, demo)
+            contents.patients[name].size += file.stat().st_size
     return contents
 
 

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Data sets: episodes of an agent in several patients, recorded until there are as many as wanted."""
+"""Data sets: episodes of an agent in one or more patients, recorded until there are as many as wanted."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ class GenerationPlan:
     """Registered name."""
 
     episodes: int
-    """Episodes of each patient."""
+    """Episodes of each group."""
 
     out: Path
-    """Folder of the data set; each patient has one below it."""
+    """Folder of the data set; each group has one below it."""
 
-    patients: tuple[str, ...]
-    """Stages of colons, as ``env.scene.colon.usd_path`` takes them."""
+    groups: tuple[tuple[str, ...], ...]
+    """Stages of colons that are simulated together. A group of several draws a world's patient at every reset."""
 
     agent: str = "expert"
     """A key of :data:`arcgym.rl.rollout.UNTRAINED`, or ``policy``."""
@@ -69,7 +69,7 @@ class GenerationReport:
     """Episodes that were there before."""
 
     skipped: list[str] = field(default_factory=list)
-    """Patients for which no environment could be built, with the reason."""
+    """Groups for which no environment could be built, with the reason."""
 
     def __str__(self) -> str:
         """Return the figures in one line."""
@@ -89,7 +89,7 @@ def generate(
     load_policy: Callable[[RslRlVecEnvWrapper], Policy] | None = None,
     say: Callable[[str], None] = print,
 ) -> GenerationReport:
-    """Record what the data set lacks, patient by patient.
+    """Record what the data set lacks, group by group.
 
     Every round records each world's first episode and no other: of worlds that start again at once, short episodes
     would be recorded more often. Worlds of a round share a seed, which the next round counts up.
@@ -102,20 +102,20 @@ def generate(
         say: Called with a line of text after every round.
     """
     report = GenerationReport()
-    for patient in plan.patients:
-        folder = plan.out / patient_name(patient)
+    for group in plan.groups:
+        folder = plan.out / group_name(group)
         found = clean(folder)
         report.found += found
         if found >= plan.episodes:
             continue
         cfg = copy.deepcopy(env_cfg)
-        cfg.scene.colon.usd_path = patient
+        cfg.scene.colon.usd_path = group[0] if len(group) == 1 else list(group)
         cfg.scene.num_envs = min(cfg.scene.num_envs, plan.episodes - found)
         cfg.recorders = recorders_of(plan, folder)
         try:
             env = make_env(plan.task, cfg, agent_cfg)
         except (ValueError, OSError) as error:
-            report.skipped.append(f"{patient}: {error}")
+            report.skipped.append(f"{group_name(group)}: {error}")
             continue
         try:
             policy = load_policy(env) if load_policy else UNTRAINED[plan.agent](env)
@@ -134,10 +134,10 @@ def recorders_of(plan: GenerationPlan, folder: Path) -> Any:
     return cfg
 
 
-def patient_name(patient: str) -> str:
-    """Return the name of a stage's folder: ``colon_1`` of ``colon_1/colon.usda``."""
-    path = Path(patient)
-    return path.parent.name or path.stem
+def group_name(group: tuple[str, ...]) -> str:
+    """Return the name of a group's folder: ``colon_1`` of ``colon_1/colon.usda``, ``together`` of several."""
+    path = Path(group[0])
+    return "together" if len(group) > 1 else path.parent.name or path.stem
 
 
 def clean(folder: Path) -> int:
@@ -163,7 +163,7 @@ def _fill(
     report: GenerationReport,
     say: Callable[[str], None],
 ) -> None:
-    """Record rounds until a patient has as many episodes as wanted."""
+    """Record rounds until a group has as many episodes as wanted."""
     seed = env.unwrapped.cfg.seed or 0
     while found < wanted:
         start = time.perf_counter()
@@ -176,7 +176,8 @@ def _fill(
         report.steps += steps
         report.simulated += steps * env.unwrapped.step_dt
         found += episodes
-        say(f"{patient_name(env.unwrapped.cfg.scene.colon.usd_path)}: {found} of {wanted} episodes; so far {report}")
+        folder = Path(env.unwrapped.cfg.recorders.dataset_export_dir_path).name
+        say(f"{folder}: {found} of {wanted} episodes; so far {report}")
 
 
 def _round(env: RslRlVecEnvWrapper, policy: Policy, wanted: int, seed: int) -> tuple[int, int]:

@@ -13,6 +13,8 @@ from typing import Any
 from arcgym.envs import mdp
 from arcgym.managers import RecorderTerm, RecorderTermCfg
 from arcgym.managers.recorder_term import Record
+from arcgym.rl.params import differences, restore
+from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.paths import assets_dir
@@ -42,6 +44,8 @@ class Choice:
     """Seed of the environment."""
     overrides: tuple[str, ...] = ()
     """Texts ``env.path=value``, applied last."""
+    settings: dict[str, Any] | None = None
+    """Configuration that the task was trained with, as plain values, for the policy that was trained in it."""
 
 
 class HandRecorder(RecorderTerm):
@@ -73,6 +77,9 @@ def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
     name = f"{choice.task}{PLAY}" if f"{choice.task}{PLAY}" in list_tasks(prefix="") else choice.task
     try:
         cfg = load_cfg_from_registry(name, "env_cfg_entry_point")
+        if choice.settings is not None:
+            plain = to_plain(load_cfg_from_registry(choice.task, "env_cfg_entry_point"))
+            restore(cfg, choice.settings, "env", keep=list(differences(plain, to_plain(cfg))))
         cfg.scene.num_envs, cfg.sim.device, cfg.seed = 1, choice.device, choice.seed
         _choose(cfg, choice)
         recorders = mdp.TrajectoryRecorderCfg(dataset_export_dir_path=str(out), dataset_filename="teleop")

@@ -73,12 +73,30 @@ class Page:
         self._looker: Looker | None = None
         self._drawn, self._surface_at, self._text_at = -1, 0.0, 0.0
         self._times: deque[float] = deque(maxlen=11)
+        self.pictures = 0
+        """Pictures drawn so far."""
         self._axis_controls: list[Any] = []
         self._sliders: list[Any] = []
         self._build()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="arcgym-page", daemon=True)
         self._thread.start()
+
+    def measure(self, seconds: float) -> str:
+        """Let a session run for a while and return its control steps and pictures a second, in a line."""
+        session = self._session
+        while session.frame is None and session.status.state != "failed":
+            time.sleep(0.1)
+        time.sleep(3.0)  # first pictures compile kernels
+        steps, pictures = session.frames, self.pictures
+        start, busy = time.perf_counter(), time.process_time()
+        time.sleep(seconds)
+        spent, busy = time.perf_counter() - start, time.process_time() - busy
+        steps, pictures = session.frames - steps, self.pictures - pictures
+        return (
+            f"measured over {spent:.1f} s: {steps / spent:.1f} control steps/s, {pictures / spent:.1f} pictures/s of "
+            f"{self._size} px, {1000.0 * busy / max(steps, 1):.0f} ms of processor time a step"
+        )
 
     def close(self) -> None:
         """Stop showing."""
@@ -158,7 +176,9 @@ class Page:
 
     def _load(self, task: str, fields: Mapping[str, Any]) -> None:
         chosen = {name: None if one.value == TASKS_OWN else one.value for name, one in fields.items()}
-        self._session.load(replace(self._session.status.choice, task=task, driver=HAND, **chosen))
+        now = self._session.status.choice
+        settings = now.settings if task == now.task else None
+        self._session.load(replace(now, task=task, driver=HAND, settings=settings, **chosen))
 
     def _option(self, gui: Any, name: str, options: Iterable[str]) -> Any:
         """Make a choice of something that a task has a value of its own for."""
@@ -261,6 +281,7 @@ class Page:
             self._surface_at = time.monotonic()
             self._colon.vertices = self._looker.surface(frame)
         self._times.append(time.monotonic())
+        self.pictures += 1
 
     def _tell(self) -> None:
         """Bring numbers, marks and driver up to date, and sliders back where nobody holds them."""

@@ -26,6 +26,7 @@ from arcgym.teleop.choices import Choice, axes_of, make_cfg
 from arcgym.teleop.frames import Frame, read_frame
 from arcgym.teleop.hand import Hand
 from arcgym.utils.errors import UsageError
+from arcgym.utils.threads import one_thread
 
 logger = logging.getLogger(__name__)
 
@@ -97,6 +98,8 @@ class Session:
         self.env: Any = None
         self.building = threading.Lock()
         """Held while an environment is built: nothing may be drawn meanwhile."""
+        self.frames = 0
+        """Frames made so far, in all environments."""
         self.generation = 0
         """Counts the environments."""
         self._requests: queue.Queue[tuple[Callable[[], Any], Future[Any]]] = queue.Queue()
@@ -198,6 +201,7 @@ class Session:
             self.hand.release()
         return not (self._paused or waits)
 
+    @one_thread()
     @torch.inference_mode(False)
     @torch.no_grad()
     def _step(self) -> None:
@@ -228,6 +232,7 @@ class Session:
     def _look(self) -> None:
         """Copy the world for the pages, and count."""
         self._times.append(time.perf_counter())
+        self.frames += 1
         self.frame = read_frame(self.env, 0, 0 if self.frame is None else self.frame.number + 1)
         spent = self._times[-1] - self._times[0]
         rate = (len(self._times) - 1) / spent if spent > 0.0 else 0.0

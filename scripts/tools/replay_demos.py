@@ -1,0 +1,9 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Make a recorded episode again, under Isaac Lab's name; the same as ``arcgym replay``."""
+
+from arcgym.cli.main import run_script
+
+if __name__ == "__main__":
+    raise SystemExit(run_script("replay"))
