@@ -66,19 +66,19 @@ def diameters(stage: ColonStage, start: float, end: float) -> str:
 
 def features(name: str, stage: ColonStage) -> str:
     """Return a sentence with the number of bends, folds and lesions, and the least bend radius."""
-    from arcgym.anatomy.bends import acute_bends
+    from arcgym.anatomy.course_measures import measure_course
     from arcgym.anatomy.generator.generate import draw_surface
     from arcgym.anatomy.generator.lesions import WIDE_NECK
     from arcgym.anatomy.generator.patients import PATIENTS
 
     surface, lesions = draw_surface(PATIENTS[name](), int(stage.metadata.get("attempt", 0)))
-    bends = len(acute_bends(stage.centerline.points.astype(float), stage.centerline.arc.astype(float)))
     polyps = sum(lesion.kind in ("sessile", "pedunculated", "flat") for lesion in lesions)
     sacs = [lesion for lesion in lesions if lesion.kind == "diverticulum"]
     wide = sum(lesion.size >= WIDE_NECK for lesion in sacs)
-    sharpest, folds = 1e3 / surface.curve.curvature[3:-3].max(), sum(len(row.s) for row in surface.rows)
+    measured = measure_course(stage.centerline.points.astype(float))
+    sharpest, folds = 1e3 * measured.bend_radius_least, sum(len(row.s) for row in surface.rows)
     return (
-        f"{bends} acute bends (least radius {sharpest:.0f} mm), {folds} semilunar folds,"
+        f"{measured.acute_bends} acute bends (least radius {sharpest:.0f} mm), {folds} semilunar folds,"
         f" {len(surface.valves)} rectal valves, ileocaecal valve and appendix orifice,\n{polyps} polyps,"
         f" {len(sacs)} diverticula, {wide} of them wide enough for a 13 mm tip."
     )

@@ -25,7 +25,7 @@ WIDEST = 0.036
 _ANGLES = np.radians(100.0), np.radians(165.0)
 """Least and largest angle by which an arc turns [rad]."""
 
-_WIDER = 1.0, 1.7
+_WIDER = 1.0, 1.5
 """Least and largest radius of an arc over the least that spec and lumen allow."""
 
 _REACH = 0.050

@@ -21,15 +21,15 @@ SAMPLE_SPACING = 0.005
 """Distance of the relaxed points [m]."""
 
 _SIGMOID = SEGMENTS.index("sigmoid")
-_HOLD_TIED, _HOLD_MOBILE, _HOLD_REPOSED = 0.0072, 0.003, 0.025
+_HOLD_TIED, _HOLD_MOBILE, _HOLD_REPOSED = 0.0072, 0.003, 0.06
 """Share of the way back to the route in each iteration: of tied and mobile segments, and of tied ones that another
 posture leaves in place."""
 _WAVES = 0.015, 0.031
 """Standard deviations of two Gaussians whose difference of random numbers are the waves of the course [m]: their
 wavelengths are 8 to 18 cm."""
 
-_OPENED = 0.9
-"""Radius below which bends are opened after all, over the least one."""
+_LENGTH_TRIALS = 2
+"""Number of times that a course is relaxed, the second time for lengths that make up for what waves and bends took."""
 
 _OPENINGS = 60
 """Largest number of times that too tight bends are smoothed."""
@@ -56,29 +56,35 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
     tied = np.repeat([name in RETROPERITONEAL for name in SEGMENTS], counts)
     tied = np.r_[tied, tied[-1]]
     arc = np.r_[0.0, np.cumsum(edge)]
-    hold, places = np.where(tied, _HOLD_TIED, _HOLD_MOBILE), None
+    hold, places, waving = np.where(tied, _HOLD_TIED, _HOLD_MOBILE), None, np.ones(len(tied))
     if reference is not None:
         share = np.interp(arc, np.r_[0.0, np.cumsum(list(lengths.values()))], np.r_[0.0, reference.ends])
         hold = np.where(tied, _HOLD_REPOSED, _HOLD_MOBILE)
+        waving = gaussian_filter1d((~tied).astype(float), 4.0)
         route = np.where(tied[:, None], reference.position(np.asarray(share)), route)
         places = [int(np.abs(share - s).argmin()) for s in acute_bends(reference.points, reference.s)]
-    points = relax(route, edge, base_radius(spec, arc), hold, spec, rng, places)
-    points = open_bends(add_waves(_smoothed(points), spec.waviness, rng), _OPENED * spec.min_bend_radius)
-    points *= edge.sum() / arc_lengths(points)[-1]
-    arc = arc_lengths(points)
-    ends = arc[np.cumsum(counts)]
+    wanted, radius, state = edge.copy(), base_radius(spec, arc), rng.bit_generator.state
+    for _ in range(_LENGTH_TRIALS):
+        rng.bit_generator.state = state
+        points = relax(route, edge, radius, hold, spec, rng, places)
+        points = open_bends(add_waves(_smoothed(points), spec.waviness, rng, waving), spec.min_bend_radius)
+        points *= wanted.sum() / arc_lengths(points)[-1]
+        arc = arc_lengths(points)
+        ends = arc[np.cumsum(counts)]
+        edge = edge * np.repeat(np.array(list(lengths.values())) / np.diff(ends, prepend=0.0), counts)
     if spec.iliac_fossa is not None:
         ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])
     return Curve(points, ends)
 
 
-def add_waves(points: np.ndarray, size: float, rng: np.random.Generator) -> np.ndarray:
+def add_waves(points: np.ndarray, size: float, rng: np.random.Generator, share: np.ndarray) -> np.ndarray:
     """Shift a course sideways by smooth random waves: real colons wind between their flexures as well.
 
     Args:
         points: Course, evenly spaced [m], shape (n, 3).
         size: Standard deviation of the waves in each of the two directions [m].
         rng: Source of randomness; the same numbers are drawn for every size.
+        share: How much of the waves each point takes, shape (n,); none where the course has them already.
     """
     arc = arc_lengths(points)
     spacing = arc[-1] / (len(points) - 1)
@@ -91,7 +97,7 @@ def add_waves(points: np.ndarray, size: float, rng: np.random.Generator) -> np.n
     calm = 1.0 / (1.0 + (_CALM * gaussian_filter1d(bend, 0.015 / spacing)) ** 2)
     calm *= smooth_step(*_WAVES_FROM, arc) * smooth_step(*_WAVES_TO, arc[-1] - arc)
     waves -= (waves * tangent).sum(1, keepdims=True) * tangent
-    return points + calm[:, None] * waves
+    return points + (share * calm)[:, None] * waves
 
 
 def open_bends(points: np.ndarray, least: float) -> np.ndarray:

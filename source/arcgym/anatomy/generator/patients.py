@@ -80,7 +80,7 @@ def colon_4() -> ColonSpec:
             sigmoid_shape="redundant",
             transverse_shape="redundant",
             acute_bends=14,
-            min_bend_radius=0.012,
+            min_bend_radius=0.013,
             transverse_sag=0.13,
             mucosa=MucosaSpec(paleness=0.35, redness=0.12, vessels=1.35),
         )
@@ -89,7 +89,7 @@ def colon_4() -> ColonSpec:
 
 def colon_5() -> ColonSpec:
     """Man of 60: 16 polyps, diverticula left and right, redundant sigmoid, residual stool."""
-    segments = _with_lengths(sigmoid=0.62, descending=0.205, transverse=0.39, ascending=0.145)
+    segments = _with_lengths(sigmoid=0.63, descending=0.205, transverse=0.39, ascending=0.145)
     segments["descending"] = replace(segments["descending"], diverticula=15, wide_diverticula=2)
     segments["ascending"] = replace(segments["ascending"], diverticula=10, wide_diverticula=2)
     return _committed(

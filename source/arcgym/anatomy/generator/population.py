@@ -60,7 +60,7 @@ WIDTH_MEAN, WIDTH_DEVIATION, WIDTH_RANGE = 0.88, 0.11, (0.68, 1.12)
 """Diameters over the default's. Five colons from CT, imported, have medians of 28 to 44 mm and 5th percentiles of 21 to
 31 mm; the default's are 42 and 33 mm."""
 
-LEAST_WIDTH = {"rectum": 0.9, "ascending": 0.85, "cecum": 0.9}
+LEAST_WIDTH = {"rectum": 0.9, "ascending": 0.95, "cecum": 0.95}
 """Least factor of the diameters of single segments: gas rises into the widest; from CT the 95th percentile of diameters
 is 55 to 63 mm whatever the median."""
 

@@ -21,7 +21,7 @@ ASCENDING_ROTATION = np.radians(20.0)
 _BLEND = 15.0
 """Standard deviation of the smoothing of the turn, in samples of 2 mm."""
 
-_LENGTH_TRIALS = 4
+_LENGTH_TRIALS = 2
 """Number of courses that are made to match the lengths."""
 
 

@@ -118,7 +118,7 @@ class ColonSpec:
     acute_bends: int | None = 10
     """How many places turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
     None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
-    min_bend_radius: float = 0.013
+    min_bend_radius: float = 0.0145
     """Least radius of the centreline [m], where the lumen is narrow enough. Colons from CT bend at 14-15 mm at least
     and 15-18 at the 5th percentile; a colonoscope's bending section turns on about 25-30 mm."""
     waviness: float = 0.0025
