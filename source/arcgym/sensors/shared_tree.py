@@ -1,10 +1,16 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Order of the triangles of several patients' surfaces in which one ray tree suits all of them, in numpy."""
+"""Order of the triangles of several patients' surfaces in which one ray tree suits all of them, in numpy.
+
+The unrolled surface of each patient is halved again and again, across its longer side, with equally many triangles in
+either half. A tree that halves the numbers of the triangles then has one piece of surface in every node, whichever
+patient a world has, and as small ones as a tree of that patient alone.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,55 +19,112 @@ if TYPE_CHECKING:
     from arcgym.anatomy.shell import ShellMesh
     from arcgym.anatomy.stage import VisualMesh, WallMesh
 
-AROUND = 128
-"""Steps around the colon of the curve along which triangles are sorted; along it they are about as long."""
-SPACING = 0.001
-"""Step along the colon [m]."""
+CIRCUMFERENCE = 0.14
+"""Length around the colon for its length along it [m]: that of a lumen of 45 mm."""
+SMALLEST = 2
+"""Triangles in the smallest pieces."""
 
 
-def sorted_faces(visuals: Sequence[VisualMesh], wall: ShellMesh | WallMesh) -> np.ndarray:
-    """Sort the triangles of each patient along a curve over the colon's surface, and fill up to equally many.
+class TreeShape:
+    """Points and triangles of which a tree builder makes a tree that halves the triangles' numbers again and again."""
 
-    Triangles of the same number then lie at about the same place of the colon, and triangles of neighboring numbers
-    side by side, in every patient: a tree over the numbers encloses them tightly whichever patient a world has.
+    def __init__(self, faces: int, vertices: int, on_cpu: bool):
+        """Place the triangles.
+
+        Args:
+            faces: Number of triangles F of a world.
+            vertices: Number of vertices M of a world, at least half of F.
+            on_cpu: Whether the tree is built on a CPU, which halves the longest side of a box between triangles, or by
+                Morton codes, which have ten bits for each axis.
+        """
+        self.constructor = "median" if on_cpu else "lbvh"
+        """Builder that makes this tree of these points."""
+        index = np.arange(faces)
+        vertex = index * vertices // faces
+        again = np.diff(vertex, prepend=-1) == 0
+        self.faces = np.repeat(vertex, 3).reshape(-1, 3).astype(np.int32)
+        """Corners, shape (F, 3), int32."""
+        self.points = np.zeros((vertices, 3), np.float32)
+        """Points [m], shape (M, 3)."""
+        self.pieces: list[np.ndarray] = []
+        """First triangle of each piece that a node of the tree holds, level by level."""
+        if on_cpu:
+            self.points[:, 0] = np.arange(vertices)
+            self.faces[again, 2] = np.minimum(self.faces[again, 2] + 1, vertices - 1)  # half a step further on
+            self.pieces = _halves(faces)
+            return
+        bits = -(-max(vertices - 1, 1).bit_length() // 3) * 3  # as many for each axis
+        code = np.arange(vertices) * (1 << bits) // vertices  # fills the cube, whose sides are halved
+        for bit in range(bits):
+            self.points[:, bit % 3] += ((code >> bit) & 1) << (bit // 3)
+        starts = [np.searchsorted(code[vertex], np.arange(1 << level) << (bits - level)) for level in range(bits)]
+        self.pieces = [np.unique(start[start < faces]) for start in starts]
+
+
+def _halves(count: int) -> list[np.ndarray]:
+    """Return the first of each piece where pieces are halved down to two or less, level by level."""
+    levels = [np.array([0])]
+    while (size := np.diff(np.append(levels[-1], count))).max() > SMALLEST:
+        start = levels[-1]
+        middle = (start + size // 2)[size > SMALLEST]
+        levels.append(np.sort(np.append(start, middle)))
+    return levels
+
+
+def sorted_faces(visuals: Sequence[VisualMesh], wall: ShellMesh | WallMesh, shape: TreeShape) -> np.ndarray:
+    """Sort the triangles of each patient, and fill up to equally many.
 
     Args:
         visuals: Surfaces, skinned to walls on one grid.
         wall: One of those walls.
+        shape: The tree.
 
     Returns:
-        Corners, shape (P, F, 3), int32; those that fill up are the last triangle's first corner three times.
+        Corners, shape (P, F, 3), int32; those that fill up are a corner of some triangle three times.
     """
-    faces = [visual.faces[np.argsort(_curve(visual, wall), kind="stable")] for visual in visuals]
-    out = np.empty((len(faces), max(map(len, faces)), 3), np.int32)
-    for row, own in zip(out, faces, strict=True):
-        row[: len(own)] = own
-        row[len(own) :] = own[-1, 0]
-    return out
+    with ThreadPoolExecutor() as pool:
+        return np.stack(list(pool.map(lambda visual: _sorted(visual, wall, shape), visuals)))
 
 
-def curve_points(count: int) -> np.ndarray:
-    """Return points whose order along a Z-order curve in space is their own, shape (count, 3), float32."""
-    bits = max(count - 1, 1).bit_length()
-    index = (
-        np.arange(count) * (1 << bits) // count
-    )  # up to the last corner of the cube, whose sides tree builders halve
-    out = np.zeros((count, 3), np.float32)
-    for bit in range(bits):
-        out[:, bit % 3] += ((index >> bit) & 1) << (bit // 3)
-    return out
+def _sorted(visual: VisualMesh, wall: ShellMesh | WallMesh, shape: TreeShape) -> np.ndarray:
+    """Return the triangles of one patient in order, filled up to those of the tree, shape (F, 3)."""
+    count = len(shape.faces)
+    own = np.arange(count) * len(visual.faces) // count
+    faces = visual.faces[own].astype(np.int32)
+    repeated = np.diff(own, prepend=-1) == 0
+    faces[repeated] = faces[repeated][:, :1]
+    return faces[halving_order(_unrolled(visual, wall)[own], shape.pieces)]
 
 
-def _curve(visual: VisualMesh, wall: ShellMesh | WallMesh) -> np.ndarray:
-    """Return the place of each triangle along a Z-order curve over the unrolled surface, shape (F,)."""
+def halving_order(places: np.ndarray, pieces: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the order in which the places of every piece are a piece of the plane, cut across its longer side.
+
+    Args:
+        places: Places in the plane, shape (n, 2).
+        pieces: First place of each piece, level by level; every level divides the pieces of the one before.
+
+    Returns:
+        Indices, shape (n,).
+    """
+    order = np.arange(len(places))
+    for start in pieces:
+        piece = np.repeat(np.arange(len(start)), np.diff(np.append(start, len(places))))
+        now = places[order]
+        size = np.maximum.reduceat(now, start, axis=0) - np.minimum.reduceat(now, start, axis=0)
+        key = np.where(size[piece, 0] >= size[piece, 1], now[:, 0], now[:, 1])
+        order = order[np.lexsort((key, piece))]
+    return order
+
+
+def _unrolled(visual: VisualMesh, wall: ShellMesh | WallMesh) -> np.ndarray:
+    """Return the place of each triangle along the colon and around it [m], shape (F, 2)."""
     angle = 2.0 * np.pi * _sector(wall)[visual.skin_indices]
     weight = visual.skin_weights
     along = (weight * wall.ring_arc[wall.ring[visual.skin_indices]]).sum(axis=1)
     x, y = (weight * np.cos(angle)).sum(axis=1), (weight * np.sin(angle)).sum(axis=1)
     corners = visual.faces
-    turn = np.arctan2(y[corners].mean(axis=1), x[corners].mean(axis=1)) / (2.0 * np.pi) + 0.5
-    row = np.maximum(along[corners].mean(axis=1) / SPACING, 0.0).astype(np.int64)
-    return _interleaved(row, np.minimum((turn * AROUND).astype(np.int64), AROUND - 1))
+    turn = np.arctan2(y[corners].mean(axis=1), x[corners].mean(axis=1)) / (2.0 * np.pi)
+    return np.stack([along[corners].mean(axis=1), CIRCUMFERENCE * turn], axis=1)
 
 
 def _sector(wall: ShellMesh | WallMesh) -> np.ndarray:
@@ -71,12 +134,4 @@ def _sector(wall: ShellMesh | WallMesh) -> np.ndarray:
     for key in np.unique(group):
         own = np.flatnonzero(group == key)
         out[own] = np.arange(len(own)) / len(own)
-    return out
-
-
-def _interleaved(one: np.ndarray, two: np.ndarray) -> np.ndarray:
-    """Return the numbers whose bits are those of two others by turns."""
-    out = np.zeros_like(one)
-    for bit in range(20):
-        out |= ((one >> bit) & 1) << (2 * bit + 1) | ((two >> bit) & 1) << (2 * bit)
     return out

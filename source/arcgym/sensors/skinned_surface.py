@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import warp as wp
 
-from arcgym.sensors.shared_tree import curve_points, sorted_faces
+from arcgym.sensors.shared_tree import TreeShape, sorted_faces
 from arcgym.sensors.skinning_kernels import group_roots, skin_vertices, wall_frames, write_faces
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -85,7 +85,7 @@ class SkinnedSurface:
             self._skin(wp.array(rest, dtype=wp.vec3, device=device), self._everywhere)
             self.mesh = self._build_mesh(visuals[0].faces)
         else:
-            self.mesh = self._build_shared(sorted_faces(visuals, walls[0]))
+            self.mesh = self._build_shared(visuals, walls[0])
             self.update(wp.array(rest, dtype=wp.vec3, device=device))
         self.roots = wp.zeros(num_envs, dtype=int, device=device)
         wp.launch(group_roots, num_envs, inputs=[self.mesh.id], outputs=[self.roots], device=device)
@@ -176,23 +176,19 @@ class SkinnedSurface:
         worlds (``arcgym bench camera`` on an H100).
         """
         self._faces = None
-        return self._grouped_mesh(self.points, faces)
+        return self._grouped_mesh(self.points, faces, "sah" if self._device.is_cpu else "lbvh")
 
-    def _build_shared(self, faces: np.ndarray) -> wp.Mesh:
-        """Build the grouped mesh of several patients, the triangles of each, shape (P, F, 3), in a common order.
-
-        The tree is made of points in that order, and then given the vertices and triangles of the worlds.
-        """
-        count = faces.shape[1]
-        spread = np.repeat(np.arange(count) * self.num_vertices // count, 3).reshape(-1, 3)
-        points = np.tile(curve_points(self.num_vertices), (self.num_envs, 1))
-        self.points.assign(points)
-        mesh = self._grouped_mesh(self.points, spread)
+    def _build_shared(self, visuals: list[VisualMesh], wall: WallMesh | ShellMesh) -> wp.Mesh:
+        """Build the grouped mesh of several patients; it gets the vertices and triangles of the worlds later."""
+        shape = TreeShape(max(len(one.faces) for one in visuals), self.num_vertices, self._device.is_cpu)
+        self.points.assign(np.tile(shape.points, (self.num_envs, 1)))
+        mesh = self._grouped_mesh(self.points, shape.faces, shape.constructor)
+        faces = sorted_faces(visuals, wall, shape)
         self._faces = wp.array(faces.swapaxes(0, 1).copy(), dtype=wp.vec3i, device=self.device)
         self._written = wp.full(self.num_envs, -1, dtype=int, device=self.device)
         return mesh
 
-    def _grouped_mesh(self, points: wp.array, faces: np.ndarray) -> wp.Mesh:
+    def _grouped_mesh(self, points: wp.array, faces: np.ndarray, constructor: str) -> wp.Mesh:
         first = np.arange(self.num_envs, dtype=np.int32) * self.num_vertices
         indices = (faces.reshape(1, -1).astype(np.int32) + first[:, None]).ravel()
         groups = np.repeat(np.arange(self.num_envs, dtype=np.int32), len(faces))
@@ -200,7 +196,7 @@ class SkinnedSurface:
             points,
             wp.array(indices, dtype=int, device=self.device),
             groups=wp.array(groups, dtype=int, device=self.device),
-            bvh_constructor="sah" if self._device.is_cpu else "lbvh",
+            bvh_constructor=constructor,
             bvh_leaf_size=4 if self._device.is_cpu else 2,
         )
 
