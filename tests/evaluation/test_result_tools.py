@@ -93,3 +93,18 @@ def test_a_run_that_is_not_the_suites_is_refused(tmp_path: Path, capsys, run: di
 def test_missing_trials_are_counted(tmp_path: Path, capsys) -> None:
     assert main(["results", "check", str(result(tmp_path / "mine", trials=slice(0, 28)))]) == 1
     assert "lacks 2 of 30 trials, first 28" in capsys.readouterr().out
+
+
+def test_the_page_holds_tables_and_pictures_in_one_file(tmp_path: Path) -> None:
+    path = result(tmp_path / "mine", end="time_out", success=0, progress=0.25)
+    assert main(["results", "page", str(path)]) == 0
+    page = (path / "page.html").read_text()
+    assert page.count("data:image/png;base64,") == 2 and "http" not in page
+    assert "<td>97 (83–99)</td>" in page  # 29 of 30, Wilson
+    assert "<td>ARC-Rectum-Magnetic</td><td>time_out</td><td>1</td>" in page
+
+
+def test_a_folder_without_trials_has_no_page(tmp_path: Path) -> None:
+    ResultFolder(tmp_path / "mine", RUN)
+    with pytest.raises(SystemExit):
+        main(["results", "page", str(tmp_path / "mine")])

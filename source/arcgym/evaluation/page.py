@@ -1,0 +1,127 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""A page about one evaluation: a single HTML file with its figures inside."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from arcgym.evaluation.result_folder import read_run, read_trial_rows
+from arcgym.evaluation.summary import KEY_METRICS, summarize
+
+STYLE = """body{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}
+table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.25em .6em;text-align:right}
+td:first-child,th:first-child{text-align:left}img{max-width:100%}.scroll{overflow-x:auto}"""
+
+DISTRIBUTIONS = ("progress", "seconds", "p95_tip_force", "p95_shaft_force")
+"""Figures whose distribution over the trials is drawn, if the rows have them."""
+
+LABELS = {"seconds": "time [s]", "p95_tip_force": "p95 tip force [N]", "p95_shaft_force": "p95 shaft force [N]"}
+"""Labels of their axes with units; others are without one."""
+
+
+def write_page(folder: Path) -> Path:
+    """Write ``page.html`` into a result folder and return its path.
+
+    Raises:
+        UsageError: It is no result folder, or has no finished trial.
+    """
+    run, rows = read_run(folder), read_trial_rows(folder)
+    summaries = summarize(rows)
+    names = [name for name in KEY_METRICS if any(name in of for of in summaries.values())]
+    body = [
+        f"<h1>{html.escape(str(run.get('suite')))}: {html.escape(_agent(run))}</h1>",
+        _table(["", ""], [[name, _plain(run.get(name))] for name in run]),
+        "<h2>Tasks</h2><p>Interquartile means and success over all trials, with 95 % intervals.</p>",
+        _table(
+            ["task", "trials", "success [%]", *names], [_summary_row(task, of, names) for task, of in summaries.items()]
+        ),
+        _picture(_success_figure(summaries)),
+        "<h2>Trials</h2>",
+        _picture(_distribution_figure(rows)),
+        "<h2>How episodes ended</h2>",
+        _table(["task", "end", "trials"], _ends(rows)),
+    ]
+    page = f"<!doctype html><html lang=en><meta charset=utf-8><title>Evaluation</title><style>{STYLE}</style>"
+    path = folder / "page.html"
+    path.write_text(page + "\n".join(body) + "</html>\n")
+    return path
+
+
+def _agent(run: dict[str, Any]) -> str:
+    return ", ".join(run.get("checkpoint") or []) or str(run.get("agent"))
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {text}" for name, text in value.items())
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    cells = ["<tr>" + "".join(f"<th>{html.escape(text)}</th>" for text in head) + "</tr>"]
+    cells += ["<tr>" + "".join(f"<td>{html.escape(str(text))}</td>" for text in row) + "</tr>" for row in rows]
+    return f"<div class=scroll><table>{''.join(cells)}</table></div>"
+
+
+def _summary_row(task: str, summary: dict[str, Any], names: Sequence[str]) -> list[str]:
+    success = summary["success"]
+    rate = f"{100 * success.value:.0f} ({100 * success.low:.0f}–{100 * success.high:.0f})"
+    values = [
+        f"{summary[n].value:.2f} ({summary[n].low:.2f}–{summary[n].high:.2f})" if n in summary else "" for n in names
+    ]
+    return [task, str(summary["trials"]), rate, *values]
+
+
+def _ends(rows: Sequence[dict[str, Any]]) -> list[list[str]]:
+    counts = Counter((row["task"], row["end"]) for row in rows)
+    return [[task, end, str(count)] for (task, end), count in sorted(counts.items())]
+
+
+def _success_figure(summaries: dict[str, dict[str, Any]]) -> Any:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 0.5 * len(summaries) + 1.2), layout="constrained")
+    axes = figure.subplots()
+    for place, (task, of) in enumerate(summaries.items()):
+        rate = of["success"]
+        axes.errorbar(
+            100 * rate.value,
+            place,
+            xerr=[[100 * (rate.value - rate.low)], [100 * (rate.high - rate.value)]],
+            fmt="o",
+            capsize=4,
+            color="C0",
+        )
+        axes.annotate(task, (2, place + 0.18), fontsize="small")
+    axes.set(xlim=(-2, 102), ylim=(-0.5, len(summaries) - 0.2), yticks=[], xlabel="success [%]")
+    return figure
+
+
+def _distribution_figure(rows: Sequence[dict[str, Any]]) -> Any:
+    from matplotlib.figure import Figure
+
+    names = [name for name in DISTRIBUTIONS if name in rows[0]]
+    figure = Figure(figsize=(3.2 * len(names), 3.0), layout="constrained")
+    for axes, name in zip(np.atleast_1d(figure.subplots(1, len(names), sharey=True)), names, strict=True):
+        for task in sorted({row["task"] for row in rows}):
+            values = np.sort([row[name] for row in rows if row["task"] == task])
+            axes.step(values, 100.0 * np.arange(1, len(values) + 1) / len(values), where="post", label=task)
+        axes.set(xlabel=LABELS.get(name, name), ylim=(0, 105))
+    figure.axes[0].set_ylabel("trials at or below [%]")
+    figure.axes[0].legend(fontsize="x-small")
+    return figure
+
+
+def _picture(figure: Any) -> str:
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=130)
+    return f'<img alt="" src="data:image/png;base64,{base64.b64encode(out.getvalue()).decode()}">'
