@@ -41,3 +41,8 @@ def test_mean_action_is_the_squashed_mean():
     distribution = SquashedGaussianDistribution(2)
     assert torch.equal(distribution.deterministic_output(output), expected)
     assert torch.equal(distribution.as_deterministic_output_module()(output), expected)
+
+
+def test_values_are_not_checked_which_would_wait_for_the_device():
+    distribution = make([float("nan"), 0.0], [0.0, 0.0])
+    assert bool(distribution.sample_with_log_prob()[1].isnan().all())

@@ -62,7 +62,7 @@ class SAC:
         max_grad_norm: float = 10.0,
         num_steps: int = 1,
         use_mixed_precision: bool = False,
-        use_cuda_graphs: bool = True,
+        use_cuda_graphs: bool = False,
         device: str = "cpu",
         multi_gpu_cfg: dict | None = None,
         grad_reduce_bucket_mb: float = 25,

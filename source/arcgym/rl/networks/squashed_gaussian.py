@@ -80,7 +80,7 @@ class SquashedGaussianDistribution(Distribution):
 
     def kl_divergence(self, old_params: tuple[torch.Tensor, ...], new_params: tuple[torch.Tensor, ...]) -> torch.Tensor:
         """Return KL(old || new), which squashing does not change, shape (N,)."""
-        old, new = Normal(old_params[0], old_params[1]), Normal(new_params[0], new_params[1])
+        old, new = _normal(*old_params), _normal(*new_params)
         return torch.distributions.kl_divergence(old, new).sum(dim=-1)
 
     def deterministic_output(self, mlp_output: torch.Tensor) -> torch.Tensor:
@@ -100,7 +100,7 @@ class SquashedGaussianDistribution(Distribution):
 
     def _raw_log_prob(self, raw: torch.Tensor) -> torch.Tensor:
         change = 2.0 * (math.log(2.0) - raw - nn.functional.softplus(-2.0 * raw))
-        return (Normal(self._mean, self._std).log_prob(raw) - change).sum(dim=-1)
+        return (_normal(self._mean, self._std).log_prob(raw) - change).sum(dim=-1)
 
 
 class _SquashedMean(nn.Module):
@@ -108,3 +108,8 @@ class _SquashedMean(nn.Module):
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         return torch.tanh(x[..., 0, :])
+
+
+def _normal(mean: torch.Tensor, std: torch.Tensor) -> Normal:
+    """Return a normal distribution that does not check its values, for which it would wait for the device."""
+    return Normal(mean, std, validate_args=False)
