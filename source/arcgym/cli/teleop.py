@@ -110,6 +110,7 @@ def serve(args: Any, steers: bool) -> None:
 def show(session: Any, args: Any, steers: bool) -> None:
     """Show a session, or a player, until Ctrl-C."""
     import secrets
+    import signal
     import time
 
     from arcgym.teleop.gate import LOOPBACK
@@ -120,6 +121,7 @@ def show(session: Any, args: Any, steers: bool) -> None:
         page = Page(session, args.host, args.port, token, args.size, steers)
     except OSError as error:
         raise UsageError(f"--port {args.port} at {args.host} cannot be opened: {error}.") from error
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a polite kill ends as Ctrl-C does
     session.start()
     print(f"page: {page.gate.url}", flush=True)
     try:

@@ -34,9 +34,11 @@ SURFACE_PERIOD = 0.25
 """Least time between two shapes of the colon's surface [s]: each takes 160 kB."""
 TEXT_PERIOD = 0.2
 """Least time between two sets of numbers [s]."""
+BACKGROUND = (222, 228, 238)
+"""Color behind the colon."""
 TASKS_OWN = "the task's"
 """Choice of what the task has."""
-COLON_COLOR = (245, 185, 172)
+COLON_COLOR = (228, 132, 116)
 """Color of the colon from outside."""
 
 
@@ -110,6 +112,8 @@ class Page:
         server, gui = self._viser, self._viser.gui
         gui.configure_theme(dark_mode=True, show_logo=False, show_share_button=False, control_width="large")
         server.scene.set_up_direction("+z")
+        server.scene.set_background_image(np.full((8, 8, 3), BACKGROUND, np.uint8))
+        server.scene.add_light_ambient("/light", intensity=0.25)
         panel = gui.add_panel()
         with panel.add_tab("Endoscope"):
             self._image = gui.add_image(np.zeros((self._size, self._size, 3), np.uint8), jpeg_quality=85)
@@ -164,7 +168,7 @@ class Page:
     def _build_choice(self, gui: Any) -> None:
         now = self._session.status.choice
         with gui.add_folder("World", expand_by_default=self._steers):
-            self._opacity = gui.add_slider("colon opacity", min=0.05, max=1.0, step=0.05, initial_value=0.3)
+            self._opacity = gui.add_slider("colon opacity", min=0.05, max=1.0, step=0.05, initial_value=0.4)
             views = gui.add_button_group("view from", ("front", "left", "above"))
             if self._steers:
                 task = gui.add_dropdown("task and robot", choices.tasks(), initial_value=now.task)
@@ -188,7 +192,7 @@ class Page:
 
     def _turn(self, client: Any, name: str) -> None:
         """Look at the colon from another side: +Y is anterior, +X the patient's right."""
-        directions = {"front": (0.0, 0.9, 0.1), "left": (-0.9, 0.05, 0.1), "above": (0.0, 0.05, 0.9)}
+        directions = {"front": (0.0, 0.62, 0.08), "left": (-0.62, 0.05, 0.08), "above": (0.0, 0.05, 0.7)}
         client.camera.position = tuple(self._middle + np.array(directions[name]))
         client.camera.look_at = tuple(self._middle)
 
@@ -219,7 +223,7 @@ class Page:
         self._looker = Looker(session.env, self._tiers, self._size)
         points, scene = self._looker.surface(session.frame), self._viser.scene
         self._middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        self._viser.initial_camera.position = tuple(self._middle + np.array([0.0, 0.9, 0.1]))
+        self._viser.initial_camera.position = tuple(self._middle + np.array([0.0, 0.62, 0.08]))
         self._viser.initial_camera.look_at = tuple(self._middle)
         self._colon = scene.add_mesh_simple(
             "/colon", points, self._looker.faces, color=COLON_COLOR, opacity=self._opacity.value, side="double",

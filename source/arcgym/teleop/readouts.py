@@ -24,7 +24,7 @@ def readouts(frame: Frame | None, status: Status, tiers: Tiers, latency: float, 
     head = f"<div style='margin-bottom:6px'>{state}<br><span style='opacity:.75'>{escape(status.message)}</span></div>"
     if frame is None:
         return f"<div id='arcgym-readouts' style='padding:8px 14px'>{head}</div>"
-    info = frame.info
+    info, runs = frame.info, status.state == "running"
     cells = [
         ("time", f"{info.time:.1f} s", ""),
         (f"tip in {info.segment}", f"{100 * info.tip_arc:.1f} cm", ""),
@@ -36,8 +36,8 @@ def readouts(frame: Frame | None, status: Status, tiers: Tiers, latency: float, 
         ("progress", _number(100 * frame.progress, "{:.0f} %"), ""),
         ("looping ratio", _number(frame.looping, "{:.2f}"), ""),
         ("recorded", f"{status.steps} steps", ""),
-        ("control", f"{status.rate:.1f} steps/s", ""),
-        ("pictures", f"{picture_rate:.1f} /s", ""),
+        ("control", f"{status.rate:.1f} steps/s" if runs else "–", ""),
+        ("pictures", f"{picture_rate:.1f} /s" if runs else "–", ""),
         ("latency", _number(1000 * latency, "{:.0f} ms"), ""),
     ]
     grid = "".join(CELL.format(label=escape(name), value=escape(value), color=color) for name, value, color in cells)
