@@ -28,7 +28,7 @@ def mask(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("settings", "match"),
     [
-        ({"sectors": 3}, "sectors is 3. Pass 6 to 64"),
+        ({"sectors": 3}, "sectors is 3. Pass 6 to 96"),
         ({"max_gap": float("nan")}, "max_gap is nan"),
         ({"landmarks": {"foo": 0.003}}, "Unknown landmark 'foo'. Available: cecum_entry"),
         ({"landmarks": {"rectosigmiod": 0.15}}, "Did you mean 'rectosigmoid'"),

@@ -21,7 +21,7 @@ from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.stage_checks import inspect_file
 from arcgym.sim.wall.wall_topology import lumen_topology
 
-COARSE = ImportSettings(voxel=0.0025, visual_spacing=0.006, visual_columns=32, proxy_spacing=0.01, proxy_columns=16)
+COARSE = ImportSettings(voxel=0.0025)
 
 
 @pytest.mark.parametrize("kind", DIRECTIONS)
@@ -63,12 +63,12 @@ def test_stage_passes_its_checks(imported: Path) -> None:
 def test_landmark_by_position_and_a_finer_wall(tmp_path: Path) -> None:
     line, _ = course()
     place = tuple(float(value) for value in 1e3 * line[100])
-    settings = replace(COARSE, landmarks={"rectosigmoid": place}, posture="prone", sectors=16, ring_spacing=0.010)
+    settings = replace(COARSE, landmarks={"rectosigmoid": place}, posture="prone", sectors=16, rings=120)
     report = import_to_folder(write_volume(tmp_path / "tube.mha"), tmp_path / "tube", settings)
     stage = read_colon(tmp_path / "tube" / "colon.usda")
     assert [check for check in report["checks"] if not check["ok"]] == []
     assert stage.wall.num_sectors == 16
-    assert np.diff(stage.wall.ring_arc) == pytest.approx(0.010, rel=0.05)
+    assert stage.wall.num_rings == 120 and stage.contact is not None and stage.contact.columns == 48
     assert stage.landmarks["rectosigmoid"] == pytest.approx(0.200 + RADIUS, abs=0.008)
     assert stage.metadata["gravityInScan"] == [0.0, 1.0, 0.0]
 

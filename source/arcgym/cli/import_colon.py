@@ -56,7 +56,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--min-lumen", type=float, default=8.0, help="least radius of the wall [mm] (default: 8)")
     parser.add_argument("--wall-thickness", type=float, default=2.0, help="thickness of the wall [mm] (default: 2)")
     parser.add_argument("--voxel", type=float, default=1.0, help="edge of the voxels worked on [mm] (default: 1)")
-    parser.add_argument("--ring-spacing", type=float, default=12.5, help="distance of wall rings [mm] (default: 12.5)")
+    parser.add_argument(
+        "--rings", type=int, default=160, help="rings of the wall (default: 160, as in generated colons)"
+    )
     parser.add_argument("--sectors", type=int, default=12, help="wall vertices around a ring (default: 12)")
 
 
@@ -153,6 +155,6 @@ def import_settings(args: argparse.Namespace) -> ImportSettings:
         voxel=1e-3 * args.voxel,
         min_lumen_radius=1e-3 * args.min_lumen,
         wall_thickness=1e-3 * args.wall_thickness,
-        ring_spacing=1e-3 * args.ring_spacing,
+        rings=args.rings,
         sectors=args.sectors,
     )

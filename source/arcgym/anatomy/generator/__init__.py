@@ -12,7 +12,7 @@ In reading order:
 - :mod:`surface` is the lumen's radius by arc length and angle, with its :mod:`folds`; :mod:`lumen_field` the lumen as a
   field in space;
 - :mod:`lesions` places diverticula and polyps, :mod:`lesion_shapes` gives them their form;
-- :mod:`fitting` makes wall and surfaces of the field, as for any lumen; :mod:`quantize` rounds them for small files;
+- :mod:`fitting` makes wall and surfaces of the field, as for any lumen;
 - :mod:`acceptance` rejects what is not as the spec asks.
 """
 

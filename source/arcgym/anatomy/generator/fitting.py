@@ -12,10 +12,10 @@ import numpy as np
 from arcgym.anatomy.generator.lesion_shapes import distance_to, shape_lesion, wall_bulge
 from arcgym.anatomy.generator.lesions import Lesion
 from arcgym.anatomy.generator.lumen_field import LEAD, LumenField
-from arcgym.anatomy.generator.quantize import quantize, quantize_contact
 from arcgym.anatomy.generator.surface import Surface
 from arcgym.anatomy.meshing.colon_fitting import FitSettings, FittedColon, fit_colon
 from arcgym.anatomy.meshing.grid_surfaces import Detail
+from arcgym.anatomy.meshing.quantize import quantize, quantize_contact
 from arcgym.anatomy.meshing.triangle_surface import cut_surface
 
 LEG_GAP = 0.0015

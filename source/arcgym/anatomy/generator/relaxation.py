@@ -1,9 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Relax a generated course by moving its points: lengths, bends and gaps between loops.
-
-The importer's :mod:`arcgym.anatomy.importing.bend_opening` changes a measured centerline instead, as little as it can.
-"""
+"""Relax a generated course by moving its points: lengths, bends and gaps between loops."""
 
 from __future__ import annotations
 

@@ -11,10 +11,9 @@ In reading order:
 - :mod:`path_search` finds the path through the lumen on voxels: :mod:`clearance` and :mod:`tree` of the lumen,
   :mod:`colon_path` in the tree with its :mod:`anal_end`, :mod:`cecal_end` and :mod:`attached_lumen`, which
   :mod:`cutting` cuts off, and :mod:`poles`; :mod:`orientation` says which end is the anus;
-- :mod:`measuring` makes a smooth curve of the path and measures the lumen along it: :mod:`smooth_centerline`,
-  :mod:`cecum_fit`, :mod:`bend_opening`, :mod:`polar`;
+- :mod:`smooth_centerline` makes a smooth curve of the path, with :mod:`cecum_fit` and :mod:`polar`;
 - :mod:`placement` moves it to the stage's frame, :mod:`segment_borders` divides it into segments;
-- :mod:`wall_fitting` and :mod:`visual_fitting` fit the meshes, :mod:`report` writes figures and pictures.
+- :mod:`arcgym.anatomy.meshing` fits the meshes, :mod:`report` writes figures and pictures.
 """
 
 from __future__ import annotations

@@ -11,18 +11,21 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.importing.border_uncertainty import border_uncertainty
 from arcgym.anatomy.importing.cecal_openings import VALVE
+from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.formats import GRAVITY
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.lumen import Lumen, Progress, find_lumen
-from arcgym.anatomy.importing.measuring import Measured, measure, sample_centerline
-from arcgym.anatomy.importing.placement import describe_transform, given_landmarks, place
+from arcgym.anatomy.importing.placement import describe_transform, given_landmarks
 from arcgym.anatomy.importing.segment_borders import find_segment_ends
 from arcgym.anatomy.importing.settings import ImportSettings
-from arcgym.anatomy.importing.visual_fitting import fit_visual
-from arcgym.anatomy.importing.wall_fitting import FittedWall, fit_wall
+from arcgym.anatomy.importing.smooth_centerline import plain_curve
 from arcgym.anatomy.landmarks import find_landmarks
+from arcgym.anatomy.meshing.colon_fitting import FitSettings, FittedColon, fit_colon
+from arcgym.anatomy.meshing.quantize import quantize, quantize_contact
+from arcgym.anatomy.meshing.voxel_surface import smooth_surface
 from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import ColonStage, TissueMaterial
 
@@ -42,8 +45,8 @@ class ImportedColon:
     """Centreline in the patient's frame [m], shape (n, 3)."""
     rotation: np.ndarray
     """From the file's axes to the patient's, shape (3, 3)."""
-    fitted: FittedWall
-    """The wall and how it differs from the measured surface."""
+    fitted: FittedColon
+    """Wall and surfaces."""
     report: dict[str, Any] = field(default_factory=dict)
     """Figures by stage."""
 
@@ -77,19 +80,17 @@ def mesh_colon(lumen: Lumen, source: str, settings: ImportSettings, folder: Path
     Raises:
         ColonImportError: No wall fits the lumen.
     """
-    measured = measure(lumen.grid, lumen.line, settings)
-    progress.done("radii", f"{1e3 * measured.curve.length:.0f} mm long")
-    curve, measured, canal = place(measured)
-    given = given_landmarks(settings, measured.curve, lumen.rotation, curve.length)
-    openings = _arcs(lumen, measured.curve, curve.length)
+    curve = plain_curve(lumen.line - lumen.line[0])
+    given = given_landmarks(settings, plain_curve(lumen.line), lumen.rotation, curve.length)
+    openings = _arcs(lumen, curve)
     given = _valve_border(lumen, openings, curve.length) | given
     ends, guessed = find_segment_ends(curve.points, curve.s, given)
     curve = Curve(curve.points, ends)
-    fitted = fit_wall(curve, measured.s, measured.radius, settings)
-    progress.done("wall", f"{len(fitted.wall.points)} vertices, {100 * fitted.widened:.0f} % widened")
-    transform = describe_transform(lumen.orientation, measured, curve, canal)
+    fitted = _fit(lumen, curve, settings)
+    progress.done("wall", f"{len(fitted.wall.points)} vertices, {100 * fitted.mended:.0f} % mended")
+    transform = describe_transform(lumen.orientation, -lumen.line[0])
     folder.mkdir(parents=True, exist_ok=True)
-    stage = _stage(source, curve, measured, fitted, settings, folder, transform, openings)
+    stage = _stage(source, curve, fitted, settings, folder, transform, openings)
     progress.done("surfaces", f"{len(stage.visual.points)} and {len(stage.visual_proxy.points)} vertices")
     uncertain = border_uncertainty(curve.points, curve.s, given)
     report = {
@@ -98,19 +99,38 @@ def mesh_colon(lumen: Lumen, source: str, settings: ImportSettings, folder: Path
         "landmark_uncertainty_mm": {name: None if name in guessed else _mm(value) for name, value in uncertain.items()},
         "seconds": progress.seconds,
     }
-    return ImportedColon(stage, lumen.grid, measured.curve.points, lumen.rotation, fitted, report)
+    return ImportedColon(stage, lumen.grid, lumen.line, lumen.rotation, fitted, report)
 
 
 def _mm(value: float) -> float:
     return round(1e3 * value, 1)
 
 
-def _arcs(lumen: Lumen, curve: Curve, length: float) -> dict[str, float]:
+def _fit(lumen: Lumen, curve: Curve, settings: ImportSettings) -> FittedColon:
+    """Fit wall and surfaces to the lumen, the anal verge at the origin.
+
+    Raises:
+        ColonImportError: No wall fits.
+    """
+    surface = smooth_surface(lumen.grid.mask, lumen.grid.origin - lumen.line[0], lumen.grid.spacing)
+    fit = FitSettings(
+        shape=GridShape(rings=settings.rings, sectors=settings.sectors),
+        thickness=settings.wall_thickness,
+        least_radius=settings.min_lumen_radius,
+        lead=0.0,
+    )
+    try:
+        return fit_colon(surface, curve, fit)
+    except ValueError as error:
+        raise ColonImportError(str(error), "Check the segmentation there.") from error
+
+
+def _arcs(lumen: Lumen, curve: Curve) -> dict[str, float]:
     """Return the arc length of valve and appendix on the stage's centreline [m]."""
     arcs = {}
     for name, opening in lumen.openings.items():
-        nearest = np.linalg.norm(curve.points - opening.position, axis=1).argmin()
-        arcs[name] = float(curve.s[nearest]) * length / curve.length
+        nearest = np.linalg.norm(curve.points - (opening.position - lumen.line[0]), axis=1).argmin()
+        arcs[name] = float(curve.s[nearest])
     return arcs
 
 
@@ -125,22 +145,19 @@ def _valve_border(lumen: Lumen, arcs: dict[str, float], length: float) -> dict[s
 def _stage(
     source: str,
     curve: Curve,
-    measured: Measured,
-    fitted: FittedWall,
+    fitted: FittedColon,
     settings: ImportSettings,
     folder: Path,
     transform: dict[str, Any],
     openings: dict[str, float],
 ) -> ColonStage:
     albedo, detail = write_textures(folder, seed=sum(settings.name.encode()))
-    row = measured.dome_row + 1
-    shape = (curve, measured.s[:row], measured.radius[:row], measured.dome, fitted)
     return ColonStage(
         name=settings.name,
         wall=fitted.wall,
-        visual=fit_visual(*shape, settings.visual_spacing, settings.visual_columns),
-        visual_proxy=fit_visual(*shape, settings.proxy_spacing, settings.proxy_columns),
-        centerline=sample_centerline(curve, measured),
+        visual=quantize(fitted.visual),
+        visual_proxy=quantize(fitted.visual_proxy),
+        centerline=fitted.centerline,
         landmarks=find_landmarks(curve, openings),
         material=TissueMaterial(),
         albedo_texture=albedo,
@@ -153,4 +170,5 @@ def _stage(
             "licence": settings.licence,
             **transform,
         },
+        contact=quantize_contact(fitted.contact),
     )

@@ -45,8 +45,7 @@ def figures(imported: ImportedColon) -> dict[str, Any]:
         "landmark_mm": {name: _mm(arc) for name, arc in stage.landmarks.items()},
         "lumen_radius_mm": {f"p{q}": _mm(np.quantile(stage.centerline.radius, q / 100)) for q in (5, 50, 95)},
         "least_wall_radius_mm": _mm(radii.min()),
-        "share_widened": round(imported.fitted.widened, 4),
-        "share_narrowed": round(imported.fitted.narrowed, 4),
+        "share_mended": round(imported.fitted.mended, 4),
         "vertices": {
             "wall": len(stage.wall.points),
             "visual": len(stage.visual.points),

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from arcgym.anatomy.generator.spec import ColonSpec
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.importing.errors import ImportArgumentError
 from arcgym.anatomy.importing.formats import FRAMES, GRAVITY, UNITS
 from arcgym.anatomy.landmarks import BORDERS
@@ -18,15 +19,10 @@ from arcgym.utils.string import did_you_mean
 _RANGES = {
     "voxel": (0.0003, 0.01),
     "max_gap": (0.0, 0.15),
-    "ring_spacing": (0.004, 0.03),
-    "sectors": (6, 64),
+    "rings": (8, 1000),
+    "sectors": (6, 96),
     "wall_thickness": (0.0005, 0.006),
     "min_lumen_radius": (0.004, 0.03),
-    "clearance": (0.0, 0.02),
-    "visual_spacing": (0.0005, 0.02),
-    "visual_columns": (12, 400),
-    "proxy_spacing": (0.0005, 0.02),
-    "proxy_columns": (12, 400),
 }
 """Smallest and largest value of settings in meters and of counts."""
 
@@ -66,24 +62,14 @@ class ImportSettings:
     """Edge of the voxels that are worked on [m]. Smaller keeps finer folds and costs time and memory."""
     max_gap: float = 0.05
     """Longest collapsed or fluid-filled stretch to bridge [m]."""
-    ring_spacing: float = 0.0125
-    """Distance of the wall's rings [m], on average that of generated colons."""
-    sectors: int = 12
-    """Wall vertices around a ring, likewise; more suit a wide colon: 12 are 13 mm apart where it is 50 mm wide."""
+    rings: int = GridShape.rings
+    """Rings of the wall. Colons of other numbers than generated ones have cannot be in one batch with them."""
+    sectors: int = GridShape.sectors
+    """Wall vertices around a ring, likewise."""
     wall_thickness: float = ColonSpec.wall_thickness
-    """Thickness of the simulated wall [m], likewise."""
+    """Thickness of the simulated wall [m], as in generated colons."""
     min_lumen_radius: float = 0.008
     """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through with 1.5 mm to spare."""
-    clearance: float = 0.003
-    """Least gap between the walls of two loops [m]."""
-    visual_spacing: float = 0.0022
-    """Distance of the cross-sections of the fine visual surface [m]."""
-    visual_columns: int = 72
-    """Points around the fine visual surface."""
-    proxy_spacing: float = 0.004
-    """Distance of the cross-sections of the surface drawn for policies [m]."""
-    proxy_columns: int = 28
-    """Points around the surface drawn for policies."""
     keep_doubtful: bool = False
     """Whether to make the folder although there are doubts about it, for looking at."""
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A smooth centerline from a path on voxels: moved to the middle of the lumen and led to the wall at both ends.
 
-:mod:`path_search` finds the path; :mod:`bend_opening` then makes room for the wall.
+:mod:`path_search` finds the path.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ From any lumen's surface, in reading order:
 - :mod:`coarse_wall`: the wall's two layers from the grid; :mod:`mending`: mends them where they are bad;
 - :mod:`grid_surfaces`: what the scope touches and what the camera sees, from the grid, finer near lesions
   (:mod:`refine`);
+- :mod:`quantize`: rounds surfaces for small files;
 - :mod:`colon_fitting`: all of it, :func:`arcgym.anatomy.meshing.colon_fitting.fit_colon`;
 
 and for surfaces swept along a centreline:

@@ -27,6 +27,12 @@ _SMOOTHING = 0.006
 _OUTSIDE = 0.080
 """Length by which the centreline is continued in front of its first point [m]: the surface may begin there."""
 
+_VERGE = 0.005, 0.015
+"""Arc lengths between which the canal's radius is taken [m]."""
+
+_WIDE = 0.8
+"""Radius of the first row over that radius."""
+
 _LAST_RADIUS = 0.55
 """Mean radius of the last ring before the dome of the caecum over the largest within :data:`_CECUM`."""
 
@@ -88,7 +94,7 @@ def fit_grid(mapped: ConformalMap, path: np.ndarray, shape: GridShape | None = N
     """
     shape = shape or GridShape()
     chart = _chart(mapped, path)
-    start = np.interp(0.0, chart.arc, chart.travel)
+    start = _first_row(chart)
     cecum = np.flatnonzero(chart.travel > chart.travel[-1] - _CECUM)
     wide = cecum[chart.radius[cecum] > _LAST_RADIUS * chart.radius[cecum].max()]
     last = chart.travel[wide[-1]]
@@ -113,6 +119,14 @@ def ring_centers(rings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     center = (middle * weight[..., None]).sum(1) / total[:, None]
     radius = (np.linalg.norm(middle - center[:, None], axis=2) * weight).sum(1) / total
     return center, radius
+
+
+def _first_row(chart: _Chart) -> float:
+    """Return where the first row lies [m]: at the verge, or where the lumen is wide, if a flat cap closes it there."""
+    behind = (chart.arc > _VERGE[0]) & (chart.arc < _VERGE[1])
+    wide = _WIDE * np.median(chart.radius[behind]) if behind.any() else 0.0
+    first = int(np.argmax((chart.arc >= -_VERGE[0]) & (chart.radius >= wide)))
+    return max(float(np.interp(0.0, chart.arc, chart.travel)), float(chart.travel[first]))
 
 
 def _chart(mapped: ConformalMap, path: np.ndarray) -> _Chart:

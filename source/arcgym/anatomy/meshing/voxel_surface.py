@@ -77,10 +77,20 @@ def voxel_surface(values: np.ndarray, origin: np.ndarray, spacing: float, line: 
         ValueError: The centreline is not inside of the lumen, or the walls cut it.
     """
     separated = separate_loops(values, origin, spacing, line)
-    low, kept = _boxed(separated.lumen)
+    return VoxelSurface(smooth_surface(separated.lumen, origin, spacing), separated.windows, separated.lost)
+
+
+def smooth_surface(mask: np.ndarray, origin: np.ndarray, spacing: float) -> TriangleSurface:
+    """Return the surface of a lumen whose loops have walls between them, smoothed so little that these stay.
+
+    Args:
+        mask: Whether each voxel is lumen, shape (X, Y, Z), bool.
+        origin: Centre of the first voxel [m], shape (3,).
+        spacing: Edge of a voxel [m].
+    """
+    low, kept = _boxed(mask)
     soft = ndimage.gaussian_filter(np.pad(kept, 2).astype(np.float32), _SMOOTHING)
-    surface = cut_surface(soft, np.asarray(origin, float) + spacing * (low - 2), spacing, 0.5)
-    return VoxelSurface(surface, separated.windows, separated.lost)
+    return cut_surface(soft, np.asarray(origin, float) + spacing * (low - 2), spacing, 0.5)
 
 
 def separate_loops(values: np.ndarray, origin: np.ndarray, spacing: float, line: np.ndarray) -> SeparatedLoops:
