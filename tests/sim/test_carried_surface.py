@@ -22,11 +22,11 @@ RINGS, SECTORS, PARTS = 17, 8, 3
 FOLD, WIDTH = 0.006, 0.004
 
 
-def folded_surface() -> ContactSurface:
+def folded_surface(fold: float = FOLD) -> ContactSurface:
     """Three rows and columns for each of the wall's, and the pole; a fold of 6 mm where z is 0.1 m."""
     ring, sector = np.arange((RINGS - 1) * PARTS + 1) / PARTS, np.arange(SECTORS * PARTS) / PARTS
     z, angle = 0.0125 * ring, sector * 2.0 * np.pi / SECTORS
-    radius = 0.02 - FOLD * np.exp(-(((z - 0.1) / WIDTH) ** 2))
+    radius = 0.02 - fold * np.exp(-(((z - 0.1) / WIDTH) ** 2))
     round_lumen = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     tube = np.concatenate([radius[:, None, None] * round_lumen, np.broadcast_to(z[:, None, None], (49, 24, 1))], axis=2)
     points = np.concatenate([tube, np.tile([0.0, 0.0, 0.2], (1, 24, 1))])
@@ -126,3 +126,24 @@ def test_a_surface_that_does_not_divide_the_cells_is_refused(folded: TinySim, tm
     path = write_colon(stage, tmp_path / "colon.usda")
     with pytest.raises(ValueError, match="must divide the wall's cells evenly"):
         folded("capsule", contact=ContactCfg(surface="fine"), colon={"usd_path": str(path)})
+
+
+def test_every_patient_has_folds_of_its_own(tmp_path: Path) -> None:
+    tube, paths = TinySim(tmp_path), []
+    for name, fold in (("deep", FOLD), ("shallow", 0.5 * FOLD)):
+        stage = replace(tiny_colon_stage(texture_folder=tmp_path), contact=folded_surface(fold))
+        paths.append(str(write_colon(stage, tmp_path / name / "colon.usda")))
+
+    def pushed(usd_path: object, num_envs: int) -> Simulation:
+        sim = tube("capsule", num_envs=num_envs, colon={"usd_path": usd_path}, contact=ContactCfg(surface="fine"))
+        sim.endoscope.data.joint_pos[:] = torch.tensor([0.011, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0])
+        sim.forward()
+        sim.step(5)
+        return sim
+
+    both = pushed(paths[::-1], 2)
+    for world, path in enumerate(paths[::-1]):
+        alone = pushed(path, 1)
+        assert torch.equal(both.colon.data.nodal_pos_w[world], alone.colon.data.nodal_pos_w[0])
+        assert torch.equal(both.endoscope.data.link_force_w[world], alone.endoscope.data.link_force_w[0])
+    assert both.endoscope.data.link_force_norm[1] > 2.0 * both.endoscope.data.link_force_norm[0]

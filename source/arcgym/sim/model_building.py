@@ -95,7 +95,7 @@ def carried_surface(
     """
     surfaces = []
     for one in colon.patients:
-        surface = one.stage.contact
+        surface = one.contact
         if surface is None:
             raise ValueError(
                 f"{one.path} has no contact surface, which env.sim.contact.surface=fine needs: make the stage anew "

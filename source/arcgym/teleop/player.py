@@ -134,7 +134,8 @@ def recorded_frames(env: Any, episode: Episode) -> Callable[[int], Frame]:
 
 def walk_frames(env: Any) -> tuple[Callable[[int], Frame], int]:
     """Return the frames of a walk along the centerline of a colon at rest, and their number; the robot goes along."""
-    patient, stage = env.scene["colon"].patient_of(0), env.scene["colon"].stage
+    patient = env.scene["colon"].patient_of(0)
+    stage = patient.stage
     tiers = shown_tiers(tiers_of(env.cfg))
     window = np.zeros(len(env.scene["endoscope"].data.window_arc))
     length = float(patient.centerline.arc[-1]) - 0.04
