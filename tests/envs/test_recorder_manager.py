@@ -210,6 +210,8 @@ def test_provenance_and_settings_are_told(recording, tmp_path) -> None:
     episode = next(load_episodes(tmp_path))
     assert episode.provenance["seed"] == 0 and episode.provenance["device"] == "cpu"
     assert {"arcgym", "newton", "warp-lang", "torch"} <= set(episode.provenance["versions"])
+    if (Path(__file__).parents[2] / ".git").exists():
+        assert len(episode.provenance["versions"]["arcgym commit"].split()[0]) == 12
     assert episode.settings["decimation"] == 2 and episode.settings["scene"]["num_envs"] == 2
     assert episode.provenance["settings"] == settings_hash(episode.settings)
     assert settings_hash({**episode.settings, "decimation": 3}) != episode.provenance["settings"]

@@ -7,6 +7,7 @@ from __future__ import annotations
 import hashlib
 import json
 import platform
+import subprocess
 from functools import lru_cache
 from importlib import metadata
 from pathlib import Path
@@ -73,14 +74,29 @@ def settings_hash(settings: dict[str, Any]) -> str:
 
 @lru_cache
 def versions() -> dict[str, str]:
-    """Return the versions of ARCGym, Python and the packages that results may depend on."""
-    found = {"arcgym": __version__, "python": platform.python_version()}
+    """Return the versions of ARCGym, Python and the packages that results may depend on; of a checkout the commit."""
+    found = {"arcgym": __version__, "python": platform.python_version(), **_commit()}
     for name in PACKAGES:
         try:
             found[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
             continue
     return found
+
+
+def _commit() -> dict[str, str]:
+    """Return the commit of ARCGym's own checkout, marked where files differ from it; nothing where it is installed."""
+    root = Path(__file__).resolve().parents[3]
+    if not (root / ".git").exists():
+        return {}
+    try:
+        commit, changed = (
+            subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10).stdout.strip()
+            for words in (("rev-parse", "--short=12", "HEAD"), ("status", "--porcelain", "--", "source"))
+        )
+    except (OSError, subprocess.SubprocessError):
+        return {}
+    return {"arcgym commit": commit + (" with changes" if changed else "")} if commit else {}
 
 
 def stage_hash(path: str | Path) -> str:
