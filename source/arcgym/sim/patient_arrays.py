@@ -20,7 +20,7 @@ def patient_array(values: Sequence[np.ndarray], dtype: Any, device: str) -> wp.a
     last index, so that they read neighboring memory.
 
     Args:
-        values: Array of each patient, shape (..., *d), d the shape of a vector or matrix, () for numbers and structs.
+        values: Array of each patient, shape ``(..., *d)``, d the shape of a vector or matrix, () for numbers, structs.
         dtype: Warp type of an element.
         device: Warp device.
 
