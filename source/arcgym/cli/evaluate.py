@@ -21,14 +21,14 @@ from arcgym.cli.arguments import add_fields, argument, positive, read_fields
 
 TAKES_OVERRIDES = True
 
-REFERENCE_AGENTS = ("zero", "random")
+REFERENCE_AGENTS = ("zero", "random", "expert")
 
 
 @dataclass(frozen=True, kw_only=True)
 class EvaluateArguments:
     """Arguments of ``arcgym evaluate``."""
 
-    agent: str = argument("checkpoint, or several separated by commas, or zero, or random")
+    agent: str = argument("checkpoint, or several separated by commas, or zero, random, expert")
     out: str = argument("folder of the results")
     suite: str = argument("suite of tasks (default: paper)", "paper")
     tasks: str | None = argument("tasks of the suite, separated by commas (default: all of the robot)", None)

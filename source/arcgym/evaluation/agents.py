@@ -13,6 +13,7 @@ import torch
 from rsl_rl.utils import resolve_callable
 
 from arcgym.evaluation.batched_policy import BatchedPolicy
+from arcgym.rl.expert_policy import ExpertPolicy
 from arcgym.rl.rollout import Policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
@@ -27,8 +28,12 @@ def random_agent(env: RslRlVecEnvWrapper) -> Policy:
     return lambda obs: 2.0 * env.unwrapped.random.uniform("random agent", env.num_actions) - 1.0
 
 
-REFERENCES: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {"zero": zero_agent, "random": random_agent}
-"""Agents that need no checkpoint, by name."""
+REFERENCES: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {
+    "zero": zero_agent,
+    "random": random_agent,
+    "expert": ExpertPolicy,
+}
+"""Agents that need no checkpoint, by name; the expert sees what no camera sees."""
 
 
 def trained_agent(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> Policy:
