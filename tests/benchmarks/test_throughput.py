@@ -111,7 +111,7 @@ def test_shared_arrays_count_once():
 
 
 def test_line_has_a_dash_for_the_memory_of_no_device():
-    assert report.describe(ROW).split() == ["4", "1", "8.0", "0.80", "500.00", "-", "900", "12.0", "0.5", "10.0"]
+    assert report.describe(ROW).split() == ["4", "1", "8.0", "0.80", "500.00", "-", "900", "12.0", "0.5", "-", "10.0"]
 
 
 def test_median_leaves_the_first_call_out():

@@ -52,6 +52,8 @@ def run(args: argparse.Namespace) -> None:
     from arcgym.rl.device import choose_device
     from arcgym.rl.preflight import check_environment
 
+    if args.patients and not cfg.scene.colon.num_patients:
+        cfg.scene.colon.num_patients = 1  # of the colons that are configured the first is looked at
     check_environment(cfg, args.device)
     device = choose_device(args.device)
     num_envs = args.num_envs or (CPU_COUNTS if device == "cpu" else GPU_COUNTS)

@@ -78,7 +78,8 @@ def _check_scene(env_cfg: Any) -> None:
         raise UsageError(f"env.scene.colon.material is '{colon.material}', which is no tissue preset. {hint}")
     _in_one_line(read_endoscope, _in_one_line(resolve_asset, endoscope.usd_path))
     segment = getattr(env_cfg, "segment", None)
-    for path in _in_one_line(find_stages, colon.usd_path, colon.num_patients)[:MOST_STAGES]:
+    count = None if colon.num_patients is None else min(colon.num_patients, MOST_STAGES)
+    for path in _in_one_line(find_stages, colon.usd_path, count)[:MOST_STAGES]:
         bounds = _in_one_line(read_colon, path).segment_bounds()
         if segment is not None and segment not in bounds:
             raise UsageError(

@@ -20,6 +20,7 @@ COLUMNS = {
     "host_mib": ("host MiB", "{:.0f}"),
     "links_touching": ("touching", "{:.1f}"),
     "compile_s": ("compile s", "{:.1f}"),
+    "build_s": ("build s", "{:.1f}"),
     "first_step_s": ("first step s", "{:.1f}"),
 }
 """Heading and format of each figure of a row."""
@@ -34,7 +35,7 @@ def describe(row: Row) -> str:
     """Return one line of the table of results."""
     if "error" in row:
         return f"{row['num_envs']:>14d}  {row['error']}"
-    values = {"patients": 1, **row, **row["ms"]}
+    values = {"patients": 1, "build_s": None, **row, **row["ms"]}
     cells = ["-" if values[key] is None else form.format(values[key]) for key, (_, form) in COLUMNS.items()]
     return "".join(f"{cell:>14s}" for cell in cells)
 
