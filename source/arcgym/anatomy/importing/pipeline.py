@@ -25,7 +25,7 @@ from arcgym.anatomy.importing.smooth_centerline import plain_curve
 from arcgym.anatomy.landmarks import find_landmarks
 from arcgym.anatomy.meshing.colon_fitting import FitSettings, FittedColon, fit_colon
 from arcgym.anatomy.meshing.quantize import quantize, quantize_contact
-from arcgym.anatomy.meshing.voxel_surface import smooth_surface
+from arcgym.anatomy.meshing.voxel_surface import voxel_surface
 from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import ColonStage, TissueMaterial
 
@@ -107,20 +107,21 @@ def _mm(value: float) -> float:
 
 
 def _fit(lumen: Lumen, curve: Curve, settings: ImportSettings) -> FittedColon:
-    """Fit wall and surfaces to the lumen, the anal verge at the origin.
+    """Fit wall and surfaces to the lumen, the anal verge at the origin; what widening opened between loops is closed.
 
     Raises:
         ColonImportError: No wall fits.
     """
-    surface = smooth_surface(lumen.grid.mask, lumen.grid.origin - lumen.line[0], lumen.grid.spacing)
     fit = FitSettings(
         shape=GridShape(rings=settings.rings, sectors=settings.sectors),
         thickness=settings.wall_thickness,
         least_radius=settings.min_lumen_radius,
         lead=0.0,
     )
+    grid = lumen.grid
     try:
-        return fit_colon(surface, curve, fit)
+        found = voxel_surface(grid.values, grid.origin - lumen.line[0], grid.spacing, curve.points)
+        return fit_colon(found.surface, curve, fit)
     except ValueError as error:
         raise ColonImportError(str(error), "Check the segmentation there.") from error
 
