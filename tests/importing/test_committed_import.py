@@ -15,8 +15,8 @@ from arcgym.anatomy import ColonStage, read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
 
 COLONS = Path(__file__).resolve().parents[2] / "assets" / "usd"
-BENT = 0.08
-"""Distance from the anal verge within which the importer bends the canal upright [m]."""
+BENT = 0.11
+"""Distance from the anal verge within which the importer draws the canal anew [m]."""
 
 SAMPLES = 0.0005
 """Distance of the samples of both surfaces [m]; adds less than half of it to the distance between them."""

@@ -19,8 +19,8 @@ from arcgym.anatomy import read_colon
 from arcgym.anatomy.importing import ImportSettings, import_to_folder
 
 COLONS = Path(__file__).resolve().parents[2] / "assets" / "usd"
-BENT = 0.08
-"""Distance from the anal verge within which the importer bends the canal upright [m]."""
+BENT = 0.11
+"""Distance from the anal verge within which the importer draws the canal anew [m]."""
 
 CASES = {
     "noise and fluid": ("colon_1", "identity", [noise, gap(0.5, 0.05, fluid=True)], []),

@@ -11,11 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.headroom import other_loops
-from arcgym.anatomy.importing.tubes import WALL, draw_tube, padded_for
+from arcgym.anatomy.importing.tubes import WALL, box_near, draw_tube, padded_for
 from arcgym.anatomy.polyline import resample, smooth
 
 
@@ -35,6 +36,8 @@ class CanalSettings:
     """Largest angle of the arc [rad]."""
     funnel: tuple[float, float] = (0.020, 0.9)
     """Length from the verge from which more of the rectum is kept than the tube [m], and how fast it widens [m/m]."""
+    beside: float = 1.4
+    """Largest radius of what is kept of the rectum, over its radius where the new way joins it."""
     along: float = 0.015
     """How much farther from the joint, or nearer, what is kept may be along the found way than along the new [m]."""
     taper: float = 0.030
@@ -152,9 +155,20 @@ def _remove_old(grid: Grid, way: np.ndarray, joint: float, new: np.ndarray) -> N
     distance, nearest = cKDTree(new).query(points)
     start, slope = SETTINGS.funnel
     room = SETTINGS.radius + slope * np.maximum(_STEP * nearest - start, 0.0)
+    room = np.minimum(room, SETTINGS.beside * _widest_near(grid, way, joint))
     elsewhere = np.abs(below - _STEP * (len(new) - 1 - nearest)) > SETTINGS.along
     gone = (below > 0) & ((distance > room) | (nearest == 0) | elsewhere)
     grid.values[tuple(index[gone].T)] = 0.0
+
+
+def _widest_near(grid: Grid, way: np.ndarray, joint: float) -> float:
+    """Return the largest distance to the wall within 2 cm of the joint along the way [m]."""
+    near = round(joint / _STEP)
+    points = way[max(near - _BEYOND, 0) : near + _BEYOND]
+    box = box_near(grid, points, 0.04)
+    distance = grid.spacing * distance_transform_edt(grid.values[box] > 0.5)
+    index = np.rint(grid.index(points)).astype(int) - [side.start for side in box]
+    return max(float(distance[tuple(np.clip(index, 0, np.array(distance.shape) - 1).T)].max()), SETTINGS.radius)
 
 
 def least_bend_radius(points: np.ndarray) -> float:

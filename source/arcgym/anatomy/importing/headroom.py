@@ -16,6 +16,12 @@ from arcgym.anatomy.importing.tubes import WALL, box_near, draw_tube
 from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.validation.passage import HEAD_LENGTH, HEAD_RADIUS, Passage, find_passage
 
+_SPARED = 1.0, 0.0005, 0.0
+"""What a head must be spared at least so as not to be drawn, in turn [m]: first all that was asked for, later less."""
+
+_ENTRANCE = 0.008
+"""Length at the verge that a head's axis does not enter [m]: on voxels the lumen is closed there."""
+
 _GROUP = 8
 """Heads that are drawn at once."""
 
@@ -50,7 +56,9 @@ def room_for_head(grid: Grid, line: np.ndarray, radius: float = HEAD_RADIUS) -> 
         index = np.moveaxis(field.index(points), -1, 0)
         return map_coordinates(field.values, index, order=1, mode="nearest")
 
-    return find_passage(clearance, line, arc_lengths(line), radius, HEAD_LENGTH + 2.0 * (radius - HEAD_RADIUS))
+    arc = arc_lengths(line)
+    inside = arc >= _ENTRANCE
+    return find_passage(clearance, line[inside], arc[inside], radius, HEAD_LENGTH + 2.0 * (radius - HEAD_RADIUS))
 
 
 def widen_for_head(grid: Grid, line: np.ndarray, radius: float) -> tuple[Grid, dict[str, Any]]:
@@ -62,26 +70,37 @@ def widen_for_head(grid: Grid, line: np.ndarray, radius: float) -> tuple[Grid, d
         radius: Radius of the head with what it is to be spared [m].
 
     Returns:
-        The widened lumen, and figures: the share of the way, the least room before, and the volume that was added.
+        The widened lumen, and figures: the share of the way, the least room before for a head of that radius and after
+        for the scopes', and the volume that was added.
     """
-    found = room_for_head(grid, line, radius)
-    poor = np.flatnonzero(found.room < radius)
     out = Grid(grid.values.copy(), grid.origin, grid.spacing)
-    half = 0.5 * HEAD_LENGTH - HEAD_RADIUS
-    beads = np.linspace(-half, half, round(2 * half / grid.spacing) + 1)[:, None]
-    for part in _groups(poor):
-        axis = _beads(found, part, beads)
-        keep_off = other_loops(grid, line, axis, radius, found.arc[part])
-        draw_tube(out, axis, np.full(len(axis), radius), keep_off)
+    found = before = room_for_head(out, line, radius)
+    for spared in _SPARED:
+        poor = np.flatnonzero(found.room < min(radius, HEAD_RADIUS + spared))
+        if not len(poor):
+            break
+        _draw_heads(out, grid, line, found, poor, radius)
+        found = room_for_head(out, line)
     added = float((out.values > 0.5).sum() - (grid.values > 0.5).sum()) * grid.spacing**3
-    tightest = line[np.searchsorted(arc_lengths(line), found.tightest)]
+    tightest = line[min(int(np.searchsorted(arc_lengths(line), found.tightest)), len(line) - 1)]
     return out, {
-        "share": round(len(poor) / len(found.arc), 3),
-        "least_room_mm": round(1e3 * found.least, 2),
-        "least_room_at_mm": round(1e3 * found.tightest),
+        "share": round(float((before.room < radius).mean()), 3),
+        "least_room_mm": round(1e3 * before.least, 2),
+        "least_room_after_mm": round(1e3 * found.least, 2),
+        "tightest_at_mm": round(1e3 * found.tightest),
         "place_mm": in_millimeters(tightest),
         "added_ml": round(1e6 * added, 1),
     }
+
+
+def _draw_heads(out: Grid, lumen: Grid, line: np.ndarray, found: Passage, places: np.ndarray, radius: float) -> None:
+    """Draw the heads at some places into a lumen, in place."""
+    half = 0.5 * HEAD_LENGTH - HEAD_RADIUS
+    beads = np.linspace(-half, half, round(2 * half / out.spacing) + 1)[:, None]
+    for part in _groups(places):
+        axis = _beads(found, part, beads)
+        keep_off = other_loops(lumen, line, axis, radius, found.arc[part])
+        draw_tube(out, axis, np.full(len(axis), radius), keep_off)
 
 
 def _groups(places: np.ndarray) -> list[np.ndarray]:

@@ -78,7 +78,7 @@ def _draw_page(imported: ImportedColon, path: Path) -> None:
     views = figure.add_gridspec(3, 3, height_ratios=(3, 1.3, 1.6))
     for column, axes in enumerate(((0, 2), (1, 2), (0, 1))):
         _draw_projection(figure.add_subplot(views[0, column]), imported, axes)
-    _draw_radius(figure.add_subplot(views[1, :]), imported.stage)
+    _draw_radius(figure.add_subplot(views[1, :]), imported.stage, imported.report["landmark_uncertainty_mm"])
     _draw_unrolled(figure.add_subplot(views[2, :]), imported.stage)
     lines = "\n".join(_cleaning_lines(imported.report["cleaning"]))
     figure.suptitle(f"{imported.stage.name}: {_mm(imported.stage.length):.0f} mm\n{lines}", fontsize=9)
@@ -86,12 +86,13 @@ def _draw_page(imported: ImportedColon, path: Path) -> None:
 
 
 def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
-    """Return in words what was bridged, dropped and cut off, at most six lines."""
+    """Return in words what was bridged, dropped, cut off and left, at most six lines."""
     lines = [f"bridged a gap of {b['gap_mm']:.0f} mm at {b['place_mm']}" for b in cleaning["bridges"]]
     for cut in cleaning["cut"]:
         size = f", {cut['length_mm']} mm long, {cut['caliber_mm']:.0f} mm wide" if "length_mm" in cut else ""
         at = f" at {cut['place_mm']}" if "place_mm" in cut else ""
         lines.append(f"cut off: {cut['kind']}, {cut['volume_ml']:.0f} ml{size}{at}")
+    lines += [f"left: {p['kind']}, {p['length_mm']} mm long at {p['place_mm']}" for p in cleaning["pouches"]]
     lines += [f"dropped a piece of {d['volume_ml']:.0f} ml at {d['place_mm']}" for d in cleaning["dropped"]]
     return lines[:6] + ([f"and {len(lines) - 6} more, see {REPORT_NAME}"] if len(lines) > 6 else [])
 
@@ -109,10 +110,14 @@ def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) 
     for k, name in enumerate(SEGMENTS):
         part = path[segment == k]
         axis.plot(part[:, axes[0]], part[:, axes[1]], color=_COLORS[k], lw=2, label=name)
-    for mark in (*imported.report["cleaning"]["bridges"], *imported.report["cleaning"]["cut"]):
+    cleaning = imported.report["cleaning"]
+    for mark in (*cleaning["bridges"], *cleaning["cut"], *cleaning["pouches"]):
         if "place_mm" in mark:
             place = 1e-3 * imported.rotation @ np.array(mark["place_mm"])
             axis.plot(place[axes[0]], place[axes[1]], "x", color="black", ms=8)
+    for window in imported.report["windows"]:
+        place = 1e-3 * np.array(window["place_mm"])
+        axis.plot(place[axes[0]], place[axes[1]], "s", color="#c44e52", ms=5, mfc="none")
     names = ("right", "anterior", "cranial")
     axis.set_xlabel(f"{names[axes[0]]} [m]")
     axis.set_ylabel(f"{names[axes[1]]} [m]")
@@ -120,12 +125,15 @@ def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) 
         axis.legend(fontsize=7)
 
 
-def _draw_radius(axis: Any, stage: ColonStage) -> None:
+def _draw_radius(axis: Any, stage: ColonStage, uncertain: dict[str, float | None]) -> None:
+    """Draw the radii along the colon, and the landmarks with how far they may be off."""
     line, wall = stage.centerline, stage.wall
     axis.plot(1e3 * line.arc, 1e3 * line.radius, color="black", label="mean measured radius")
     axis.plot(1e3 * wall.ring_arc, 1e3 * ring_radii(wall), color="#c44e52", lw=1, label="least radius of the wall")
     for name, arc in stage.landmarks.items():
         axis.axvline(1e3 * arc, color="0.7", lw=0.8)
+        half = uncertain.get(name) or 0.0
+        axis.axvspan(1e3 * arc - half, 1e3 * arc + half, color="0.7", alpha=0.15, lw=0)
         axis.text(1e3 * arc, axis.get_ylim()[1], name.replace("_", " "), rotation=20, fontsize=6)
     axis.set_ylabel("radius [mm]")
     axis.legend(fontsize=7)

@@ -16,7 +16,7 @@ from scipy.ndimage import binary_dilation, label, minimum
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.measures import face_normals, inner_faces
-from arcgym.anatomy.stage.types import ColonStage
+from arcgym.anatomy.stage.types import ColonStage, WallMesh
 
 HEAD_RADIUS = 0.0066
 """Radius of the shipped scopes' heads [m]."""
@@ -42,13 +42,13 @@ _BLIND = 0.014
 _BEADS = 7
 """Points along the head's axis at which the distance to the wall is taken."""
 
-_ATTEMPTS = 10
+_ATTEMPTS = 8
 """How often heads that do not pass are laid anew."""
 
 _AROUND = 6
 """Places on either side that are laid anew with one that does not pass."""
 
-_ROUNDS = 48, 100
+_ROUNDS = 40, 120
 """Random moves of a head: alone, and between its neighbors."""
 
 _MOVES = ((0.004, 0.30), (0.002, 0.15), (0.001, 0.06), (0.0004, 0.03))
@@ -59,6 +59,9 @@ _ENOUGH = 0.0005
 
 _CENTERED = 1.8, 1.0
 """Room that is looked for with each head alone, over what is enough, in turn."""
+
+_TOGETHER = 0.3
+"""Room that a head gives up so as not to be off its neighbors' mean, over how far it would be."""
 
 _ALONG = 0.95, 0.8, 0.6, 0.3
 """Least cosine between a head alone and the course, in turn; between its neighbors it is the last."""
@@ -98,12 +101,27 @@ def head_passage(stage: ColonStage, radius: float = HEAD_RADIUS, length: float =
         radius: Radius of the head [m].
         length: Its length with both round ends [m].
     """
-    if stage.contact is None:
-        surface = _WallSamples(stage.wall.points.astype(float), inner_faces(stage.wall.tets, stage.wall.layer))
-    else:
-        surface = _WallSamples(stage.contact.points.astype(float), stage.contact.faces())
     line = stage.centerline
+    if stage.contact is None:
+        return wall_passage(stage.wall, line.points.astype(float), line.arc.astype(float), radius, length)
+    surface = _WallSamples(stage.contact.points.astype(float), stage.contact.faces())
     return find_passage(surface.clearance, line.points.astype(float), line.arc.astype(float), radius, length)
+
+
+def wall_passage(
+    wall: WallMesh, points: np.ndarray, arc: np.ndarray, radius: float = HEAD_RADIUS, length: float = HEAD_LENGTH
+) -> Passage:
+    """Return the room for a stiff head inside of a wall at rest.
+
+    Args:
+        wall: The wall.
+        points: Centerline [m], shape (n, 3).
+        arc: Its arc length [m], shape (n,).
+        radius: Radius of the head [m].
+        length: Its length with both round ends [m].
+    """
+    surface = _WallSamples(wall.points.astype(float), inner_faces(wall.tets, wall.layer))
+    return find_passage(surface.clearance, points, arc, radius, length)
 
 
 class _WallSamples:
@@ -144,7 +162,8 @@ class _Heads:
 
     def __init__(self, clearance: Clearance, points: np.ndarray, arc: np.ndarray, half: float) -> None:
         self.clearance, self.half = clearance, half
-        self.arc = np.arange(half, max(arc[-1] - half - _BLIND, half + _STATION), _STATION)
+        first = arc[0] + half
+        self.arc = np.arange(first, max(arc[-1] - half - _BLIND, first + _STATION), _STATION)
         at = lambda s: np.stack([np.interp(s, arc, points[:, k]) for k in range(3)], 1)  # noqa: E731
         self.tangent = _unit(at(self.arc + half) - at(self.arc - half))
         self.course = 0.25 * (at(self.arc + half) + 2.0 * at(self.arc) + at(self.arc - half))
@@ -184,19 +203,30 @@ class _Heads:
                 now[failed] = then[failed]
 
     def _spread_out(self, index: np.ndarray, rng: np.random.Generator, enough: float, along: float) -> None:
-        """Move each head alone to where it has most room, but no more than ``enough`` [m]."""
+        """Move each head to where it has room, up to ``enough`` [m], but not far from where its neighbors went."""
         own = np.full(len(self.arc), np.inf)
         own[index] = self._least([(self.middle[index], self.axis[index])])
         for k in range(_ROUNDS[0]):
-            chosen = np.flatnonzero(own < enough)
-            if not len(chosen):
-                break
-            middle, axis = self._moved(chosen, rng, *_MOVES[len(_MOVES) * k // _ROUNDS[0]], along)
-            room = self._least([(middle, axis)])
-            better = room > own[chosen]
-            chosen = chosen[better]
-            self.middle[chosen], self.axis[chosen], own[chosen] = middle[better], axis[better], room[better]
+            for parity in (0, 1):
+                chosen = index[(index % 2 == parity) & (own[index] < enough)]
+                if not len(chosen):
+                    continue
+                middle, axis = self._moved(chosen, rng, *_MOVES[len(_MOVES) * k // _ROUNDS[0]], along)
+                room = self._least([(middle, axis)])
+                before = self._astray(chosen, self.middle[chosen], self.axis[chosen])
+                gain = np.minimum(room, enough) - np.minimum(own[chosen], enough)
+                better = gain > _TOGETHER * (self._astray(chosen, middle, axis) - before)
+                chosen = chosen[better]
+                self.middle[chosen], self.axis[chosen], own[chosen] = middle[better], axis[better], room[better]
         self.room[index] = self.worst(index)
+
+    def _astray(self, index: np.ndarray, middle: np.ndarray, axis: np.ndarray) -> np.ndarray:
+        """Return how far heads are off the mean of their neighbors, both taken from the course [m], shape (n,)."""
+        sides = [np.clip(index + step, 0, len(self.arc) - 1) for step in (-1, 1)]
+        shift = sum(0.5 * (self.middle[side] - self.course[side]) for side in sides)
+        turn = sum(0.5 * (self.axis[side] - self.tangent[side]) for side in sides)
+        aside = np.linalg.norm(middle - self.course[index] - shift, axis=1)
+        return aside + self.half * np.linalg.norm(axis - self.tangent[index] - turn, axis=1)
 
     def _fit_in(self, index: np.ndarray, rng: np.random.Generator, enough: float) -> None:
         """Move heads where they, or the way to their neighbors, have less room than ``enough`` [m]."""
