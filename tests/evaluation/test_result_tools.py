@@ -81,6 +81,7 @@ def test_a_wrong_submission_is_refused_with_the_reason(tmp_path: Path, capsys, c
     [
         ({**RUN, "overrides": ["env.start=rest"]}, "change the task"),
         ({**RUN, "checkpoint_sha256": []}, "cannot be identified"),
+        ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"start": ["segment", "rest"]}}}, "run with start = rest"),
         ({**RUN, "suite": "mine"}, "expected one of paper"),
         ({**RUN, "conditions_sha256": "x"}, "hash of the condition file differs"),
     ],

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.main import main
-from arcgym.evaluation.result_folder import read_trial_rows
+from arcgym.evaluation.result_folder import read_run, read_trial_rows
 from arcgym.evaluation.trials import Trial, write_conditions
 
 
@@ -53,3 +53,10 @@ def test_the_shipped_conditions_are_whole() -> None:
 
     sizes = {name: len(read_conditions(suite.conditions_path).trials) for name, suite in read_suites().items()}
     assert sizes == {"paper": 30, "five_colons": 50, "left_colon": 50, "cecum": 50}
+
+
+def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) -> None:
+    evaluate(tmp_path / "run", conditions)
+    changes = read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule"]
+    assert changes["start"] == ["segment", "rest"] and changes["episode_length_s"] == [None, 0.4]
+    assert not [path for path in changes if path.startswith("scene.colon")]

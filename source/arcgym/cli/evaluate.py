@@ -13,6 +13,7 @@ Several checkpoints, separated by commas, are training seeds: trials of group g 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,7 @@ class EvaluateArguments:
     conditions: str | None = argument("condition file (default: the suite's)", None)
     num_envs: int = argument("largest number of worlds (default: 30)", 30, type=positive)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
-    overrides: list[str] = None  # type: ignore[assignment]
+    overrides: list[str] = dataclasses.field(default_factory=list)
     """Texts ``env.path=value``."""
 
 
@@ -56,7 +57,7 @@ def run(namespace: argparse.Namespace) -> None:
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
     _check_tasks(tasks)
     conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
-    overrides = (*suite.overrides, *(args.overrides or ()))
+    overrides = (*suite.overrides, *args.overrides)
 
     from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
     from arcgym.evaluation.summary import summarize, to_markdown

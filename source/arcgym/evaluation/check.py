@@ -5,10 +5,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
+
+TASK_FIELDS = ("segment", "start", "episode_length_s", "decimation", "force_tiers", "events", "terminations", "sim.")
+TASK_FIELDS += ("metrics", "lumen", "scene.colon", "scene.endoscope")
+"""Beginnings of the paths that make a task what it is: observations, actions and rewards are the agent's."""
 
 BASIC = ("task", "agent", *COLUMNS, "success", "end", "reward", "seconds")
 """Columns that every row must have."""
@@ -28,20 +33,27 @@ def problems(path: Path) -> list[str]:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
     conditions = read_conditions(suite.conditions_path)
     return [
-        *_run_problems(run, conditions),
+        *_run_problems(run, conditions, suite),
         *_row_problems(rows, conditions),
         *_missing_trials(rows, conditions, suite),
     ]
 
 
-def _run_problems(run: dict, conditions: Conditions) -> list[str]:
+def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> list[str]:
     found = []
     if run.get("conditions_sha256") != conditions.sha256:
         found.append(f"conditions are not those of {conditions.name}: the hash of the condition file differs")
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
-    if run.get("overrides"):
-        found.append(f"overrides {run['overrides']} change the task: publish it as a variant of its own")
+    more = [text for text in run.get("overrides", []) if text not in suite.overrides]
+    if more:
+        found.append(f"overrides {more} change the task: publish it as a variant of its own")
+    for task, changes in run.get("changes", {}).items():
+        for path in changes:
+            if path.startswith(TASK_FIELDS):
+                found.append(
+                    f"{task} was run with {path} = {changes[path][1]}, which changes the task ({changes[path][0]})"
+                )
     return found
 
 

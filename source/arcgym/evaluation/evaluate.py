@@ -14,13 +14,28 @@ from typing import Any
 import torch
 
 from arcgym.envs.provenance import versions
-from arcgym.evaluation.agents import REFERENCES, file_sha256, trained_agent
+from arcgym.evaluation.agents import file_sha256, trained_agent
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.run_trials import run_trials
 from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.rl.device import place
 from arcgym.rl.make_env import make_env
+from arcgym.rl.params import differences
+from arcgym.rl.rollout import UNTRAINED
+from arcgym.utils.coerce import to_plain
 from arcgym.utils.progress import counted
+from arcgym.utils.registry import load_cfg_from_registry
+
+SET_HERE = (
+    "seed",
+    "log_dir",
+    "recorders",
+    "sim.device",
+    "scene.num_envs",
+    "scene.colon.usd_path",
+    "scene.colon.num_patients",
+)
+"""Fields that an evaluation sets itself."""
 
 LoadCfgs = Callable[[str, Path | None], tuple[Any, Any]]
 """From task and checkpoint to the configurations of environment and agent."""
@@ -31,7 +46,7 @@ class EvaluationOptions:
     """Settings of :func:`evaluate` beside tasks and trials."""
 
     agents: tuple[str, ...]
-    """A name in :data:`arcgym.evaluation.agents.REFERENCES`, or checkpoints. Trials of group g get checkpoint g, or the
+    """A name in :data:`arcgym.rl.rollout.UNTRAINED`, or checkpoints. Trials of group g get checkpoint g, or the
     only one."""
 
     suite: str
@@ -74,7 +89,7 @@ def evaluate(
 
 def run_record(conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
     """Return what identifies an evaluation, and the versions and the machine it is made with."""
-    checkpoints = [] if options.agents[0] in REFERENCES else [Path(agent) for agent in options.agents]
+    checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in options.agents]
     return {
         "agent": ",".join(options.agents) if not checkpoints else "checkpoint",
         "checkpoint": [str(path) for path in checkpoints],
@@ -86,6 +101,16 @@ def run_record(conditions: Conditions, options: EvaluationOptions) -> dict[str, 
         "versions": versions(),
         "machine": f"{platform.processor() or platform.machine()}, {_accelerator()}",
     }
+
+
+def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
+    """Return registered and used value of every field of the environment, by path, where they differ.
+
+    A policy runs with the settings that it was trained with: what was made easier in training is easier here, too.
+    """
+    registered = to_plain(load_cfg_from_registry(task, "env_cfg_entry_point"))
+    found = differences(registered, to_plain(env_cfg))
+    return {path: list(values) for path, values in found.items() if path not in SET_HERE}
 
 
 def _batches(trials: Sequence[Trial], agents: Sequence[str]) -> list[tuple[tuple[str, str], list[Trial]]]:
@@ -107,10 +132,11 @@ def _run_batch(
     folder: ResultFolder,
 ) -> None:
     """Run the trials of one patient with one agent in an environment of their own."""
-    checkpoint = None if agent in REFERENCES else Path(agent)
+    checkpoint = None if agent in UNTRAINED else Path(agent)
     env_cfg, agent_cfg = load_cfgs(task, checkpoint)
+    folder.note_changes(task, changes_of(task, env_cfg))
     env_cfg.scene.num_envs = min(options.num_envs, len(trials))
-    env_cfg.scene.colon.usd_path = patient
+    env_cfg.scene.colon.usd_path, env_cfg.scene.colon.num_patients = patient, None
     env_cfg.seed, env_cfg.recorders = 0, None
     place(env_cfg, agent_cfg, options.device)
     env = make_env(task, env_cfg, agent_cfg)
@@ -122,7 +148,7 @@ def _run_batch(
                 folder.add({"task": task, "agent": agent, **row})
                 show(len(folder.rows) - started)
 
-            make_policy = REFERENCES.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
+            make_policy = UNTRAINED.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
             run_trials(env, make_policy, trials, keep)
     finally:
         env.close()

@@ -39,7 +39,7 @@ def write_page(folder: Path) -> Path:
     names = [name for name in KEY_METRICS if any(name in of for of in summaries.values())]
     body = [
         f"<h1>{html.escape(str(run.get('suite')))}: {html.escape(_agent(run))}</h1>",
-        _table(["", ""], [[name, _plain(run.get(name))] for name in run]),
+        _table(["run", ""], [[name, _plain(run.get(name))] for name in run]),
         "<h2>Tasks</h2><p>Interquartile means and success over all trials, with 95 % intervals.</p>",
         _table(
             ["task", "trials", "success [%]", *names], [_summary_row(task, of, names) for task, of in summaries.items()]

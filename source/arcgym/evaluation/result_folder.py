@@ -45,9 +45,7 @@ class ResultFolder:
         if file.is_file():
             _check_same(file, json.loads(file.read_text()), run)
         else:
-            temporary = file.with_suffix(".tmp")
-            temporary.write_text(json.dumps(run, indent=1, sort_keys=True) + "\n")
-            os.replace(temporary, file)
+            _write_run(file, run)
         _cut_torn_line(path / TRIALS_FILE)
         self.rows = read_trial_rows(path)
         """Rows so far."""
@@ -55,6 +53,12 @@ class ResultFolder:
     def done(self, task: str) -> set[int]:
         """Return the numbers of the trials of a task that have a row."""
         return {row["trial"] for row in self.rows if row["task"] == task}
+
+    def note_changes(self, task: str, changes: dict[str, list[Any]]) -> None:
+        """Write down which fields of a task are not as registered: registered and used value by path."""
+        run = read_run(self.path)
+        run.setdefault("changes", {})[task] = changes
+        _write_run(self.path / RUN_FILE, run)
 
     def add(self, row: Row) -> None:
         """Write a row to the disk.
@@ -106,6 +110,13 @@ def _value(name: str, cell: str) -> Any:
         return float(cell)
     except ValueError:
         return cell
+
+
+def _write_run(file: Path, run: dict[str, Any]) -> None:
+    """Write what was run, whole or not at all."""
+    temporary = file.with_suffix(".tmp")
+    temporary.write_text(json.dumps(run, indent=1, sort_keys=True) + "\n")
+    os.replace(temporary, file)
 
 
 def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:

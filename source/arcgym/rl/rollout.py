@@ -82,8 +82,8 @@ def zero_policy(env: RslRlVecEnvWrapper) -> Policy:
 
 
 def random_policy(env: RslRlVecEnvWrapper) -> Policy:
-    """Return the policy whose raw actions are uniform in [-1, 1]."""
-    return lambda obs: 2.0 * torch.rand(env.num_envs, env.num_actions, device=env.device) - 1.0
+    """Return the policy whose raw actions are uniform in [-1, 1], drawn from the worlds' own random numbers."""
+    return lambda obs: 2.0 * env.unwrapped.random.uniform("random policy", env.num_actions) - 1.0
 
 
 UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {
