@@ -11,8 +11,10 @@ from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
-TASK_FIELDS = ("segment", "start", "episode_length_s", "decimation", "force_tiers", "events", "terminations", "sim.")
-TASK_FIELDS += ("metrics", "lumen", "scene.colon", "scene.endoscope")
+TASK_FIELDS = (
+    *("segment", "start", "episode_length_s", "decimation", "force_tiers", "events", "terminations", "sim."),
+    *("metrics", "lumen", "scene.colon", "scene.endoscope"),
+)
 """Beginnings of the paths that make a task what it is: observations, actions and rewards are the agent's."""
 
 BASIC = ("task", "agent", *COLUMNS, "success", "end", "reward", "seconds")
