@@ -87,6 +87,11 @@ class EndoscopeCamera(SensorBase):
         return self._renderer.surface
 
     @property
+    def renderer(self) -> SurfaceRenderer:
+        """Rays, surface and buffers of the policy's pictures."""
+        return self._renderer
+
+    @property
     def radiance(self) -> torch.Tensor:
         """Linear radiance before exposure, in arbitrary units, shape (N, H, W, 3)."""
         return wp.to_torch(self._renderer.radiance)

@@ -144,6 +144,7 @@ class MetricsCfg:
     s_o = MetricsTerm(func=mdp.lumen_visibility, reduce="mean")
     centered_rate = MetricsTerm(func=mdp.centered_rate, reduce="mean")
     visible_rate = MetricsTerm(func=mdp.visible_rate, reduce="mean")
+    red_out_rate = MetricsTerm(func=mdp.view_blocked, reduce="mean")
     centerline_distance = MetricsTerm(func=mdp.centerline_distance, reduce="mean")
     max_tip_force = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "tip_force"})
     mean_tip_force = MetricsTerm(func=mdp.load, reduce="mean", params={"kind": "tip_force"})
@@ -181,7 +182,14 @@ class MetricsCfg:
     max_wall_strain = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "wall_strain", "reduce": "peak"})
     max_anchor_tension = MetricsTerm(func=mdp.load, reduce="max", params={"kind": "anchor_tension", "reduce": "peak"})
     inserted_length = MetricsTerm(func=mdp.inserted_scope, reduce="max")
+    max_mesentery_stretch = MetricsTerm(func=mdp.mesentery_stretch, reduce="max")
     looping_ratio = MetricsTerm(func=mdp.looping_ratio, reduce="last")
+    loop_type = MetricsTerm(func=mdp.loop_type, reduce="last", log=False)
+    n_loop_rate = MetricsTerm(func=mdp.loop_rate, reduce="mean", params={"kind": "n"})
+    alpha_rate = MetricsTerm(func=mdp.loop_rate, reduce="mean", params={"kind": "alpha"})
+    reverse_alpha_rate = MetricsTerm(func=mdp.loop_rate, reduce="mean", params={"kind": "reverse_alpha"})
+    paradoxical_motion = MetricsTerm(func=mdp.paradoxical_motion, reduce="sum")
+    path_efficiency = MetricsTerm(func=mdp.path_efficiency, reduce="last")
 
 
 @configclass

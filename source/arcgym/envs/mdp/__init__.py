@@ -5,6 +5,7 @@
 
 from arcgym.envs.mdp.actions import *  # noqa: F403
 from arcgym.envs.mdp.costs import *  # noqa: F403
+from arcgym.envs.mdp.coverage import *  # noqa: F403
 from arcgym.envs.mdp.curriculums import *  # noqa: F403
 from arcgym.envs.mdp.events import *  # noqa: F403
 from arcgym.envs.mdp.image_recorders import *  # noqa: F403
@@ -16,4 +17,5 @@ from arcgym.envs.mdp.observations import *  # noqa: F403
 from arcgym.envs.mdp.recorders import *  # noqa: F403
 from arcgym.envs.mdp.rewards import *  # noqa: F403
 from arcgym.envs.mdp.segments import *  # noqa: F403
+from arcgym.envs.mdp.shaft_metrics import *  # noqa: F403
 from arcgym.envs.mdp.terminations import *  # noqa: F403
