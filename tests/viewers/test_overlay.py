@@ -98,7 +98,7 @@ def test_the_window_with_the_largest_force_and_the_loop_are_told():
     by_label = {cell.label: cell.value for cell in cells(FrameInfo(max_force=6.0, max_force_arc=0.125, looping=1.304))}
     assert (by_label["from the tip"], by_label["loop ratio"]) == ("12 cm", "1.30")
     by_label = {cell.label: cell.value for cell in cells(FrameInfo())}
-    assert by_label["from the tip"] == "–" and "loop ratio" not in by_label
+    assert by_label["from the tip"] == "-" and "loop ratio" not in by_label
 
 
 def test_tip_force_names_its_tier_and_stands_on_the_bar():

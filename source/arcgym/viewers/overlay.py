@@ -106,7 +106,7 @@ def cells(info: FrameInfo, tiers: Tiers = FORCE_TIERS) -> list[Cell]:
         Cell("inserted", f"{100 * info.inserted:.1f} cm", "000.0 cm"),
         Cell("tip force", f"{info.tip_force:.1f} N", "000.0 N", tip.color, tip.label, info.tip_force),
         Cell("shaft force", f"{info.max_force:.1f} N", "000.0 N", top.color, force=info.max_force),
-        Cell("from the tip", "–" if info.max_force_arc is None else f"{100 * info.max_force_arc:.0f} cm", "000 cm"),
+        Cell("from the tip", "-" if info.max_force_arc is None else f"{100 * info.max_force_arc:.0f} cm", "000 cm"),
     ]
     if info.looping is not None:
         shown.append(Cell("loop ratio", f"{info.looping:.2f}", "0.00"))
