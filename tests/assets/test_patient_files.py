@@ -77,6 +77,24 @@ def test_what_names_no_patients_is_refused(folder: Path, names: str | list[str],
         find_stages(filled)
 
 
+def test_single_patients_of_a_population_are_made_together(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def resolve(split: str, count: int | None) -> list[Path]:
+        asked.append(split)
+        return [Path(f"{seed}.usda") for seed in split.split(",")]
+
+    monkeypatch.setattr(patient_files, "_POPULATIONS", {"people": resolve})
+    stage = folder / "b/colon.usdc"
+    assert find_stages(["people:7", "people:9", str(stage), "people:8"]) == [
+        Path("7.usda"),
+        Path("9.usda"),
+        stage,
+        Path("8.usda"),
+    ]
+    assert asked == ["7,9", "8"]
+
+
 @pytest.mark.usefixtures("population")
 def test_a_name_is_registered_once() -> None:
     for name in ("people", "c"):

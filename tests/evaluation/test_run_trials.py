@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from tiny import write_tiny_colon
 
 from arcgym.cli.main import main
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
@@ -40,6 +41,22 @@ def test_rows_do_not_depend_on_the_number_of_worlds(tmp_path: Path, conditions: 
     assert evaluate(tmp_path / "four", conditions, "--num_envs", "4") == one
 
 
+def test_rows_do_not_depend_on_the_company_of_patients(tmp_path: Path, tiny_colon_path: Path) -> None:
+    """Three patients with two trials each: all in six worlds, in two worlds that change patients, and each alone."""
+    stages = [str(tiny_colon_path)]
+    for name, bend in (("bent", 0.5), ("turned", 1.0)):
+        (tmp_path / name).mkdir()
+        stages.append(str(write_tiny_colon(tmp_path / name, bend=bend)))
+    path = tmp_path / "three_v1.csv"
+    write_conditions(path, [Trial(k, stages[k % 3], 100 + k) for k in range(6)], "Six trials.")
+    together = evaluate(tmp_path / "together", path)
+    assert [row["patient"] for row in together] == 2 * stages
+    # Each row's patient is the world's own one: lengths of tubes are the same, courses are not.
+    assert len({row["reward"] for row in together}) == 6
+    assert evaluate(tmp_path / "two", path, "--num_envs", "2") == together
+    assert evaluate(tmp_path / "alone", path, "--num_patients", "1", "--num_envs", "1") == together
+
+
 def test_an_evaluation_that_was_cut_off_goes_on(tmp_path: Path, conditions: Path) -> None:
     whole = evaluate(tmp_path / "run", conditions)
     file = tmp_path / "run" / "trials.csv"
@@ -52,7 +69,21 @@ def test_the_shipped_conditions_are_whole() -> None:
     from arcgym.evaluation.trials import read_conditions
 
     sizes = {name: len(read_conditions(suite.conditions_path).trials) for name, suite in read_suites().items()}
-    assert sizes == {"paper": 30, "five_colons": 50, "left_colon": 50, "cecum": 50}
+    assert (sizes["paper"], sizes["five_colons"], sizes["population"], sizes["ct"]) == (30, 50, 200, 20)
+    assert read_suites()["left_colon_in_situ"].overrides == ("env.scene.colon.material=in_situ",)
+
+
+def test_the_conditions_are_of_the_present_population() -> None:
+    """Another generator makes other patients: it needs a condition file of another name."""
+    from arcgym.anatomy.generator.splits import read_splits
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    splits, path = read_splits(), read_suites()["population"].conditions_path
+    assert f"splits {splits.version}, generator {splits.generator}" in path.read_text()
+    assert [trial.patient for trial in read_conditions(path).trials] == [
+        f"population:{seed}" for seed in splits.seeds["test"]
+    ]
 
 
 def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) -> None:

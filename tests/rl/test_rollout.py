@@ -15,10 +15,13 @@ from arcgym.rl.rollout import run_policy, zero_policy
 def wrap(env, success: list[bool] | None = None) -> RslRlVecEnvWrapper:
     succeeds = torch.tensor(success or [False, False])
     env.termination_manager = SimpleNamespace(
-        success=succeeds, active_terms=["arrived"], get_term=lambda name: succeeds
+        success=succeeds,
+        active_terms=["arrived"],
+        get_term=lambda name: succeeds,
+        get_term_cfg=lambda name: SimpleNamespace(success=True, time_out=False),
     )
     env.step_dt = 0.5
-    env.metrics_manager = SimpleNamespace(finished={"progress": torch.tensor([0.25, 0.75])})
+    env.metrics_manager = SimpleNamespace(active_terms=["progress"], finished={"progress": torch.tensor([0.25, 0.75])})
     return RslRlVecEnvWrapper(env)
 
 

@@ -40,14 +40,15 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
     """Return the stages that a configuration names.
 
     Args:
-        usd_path: A stage, a folder of folders with a stage each, ``name:split`` of a population, or a list of these.
+        usd_path: A stage, a folder of folders with a stage each, ``name:split`` of a population, ``population:20000``
+            for one of its patients by seed, or a list of these.
         count: How many of the stages to take, from the first; None for all.
 
     Raises:
         ValueError: If there is no such population or split, a folder has no stages, a stage comes twice, or there are
             fewer stages than asked for.
     """
-    entries = [usd_path] if isinstance(usd_path, str) else list(usd_path)
+    entries = _joined([usd_path] if isinstance(usd_path, str) else list(usd_path))
     paths = [path for entry in entries for path in _stages_of(entry, count)]
     if not paths:
         raise ValueError("ColonCfg.usd_path is an empty list, expected at least one stage.")
@@ -58,6 +59,19 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
     if twice is not None:
         raise ValueError(f"ColonCfg.usd_path names {twice} twice.")
     return paths
+
+
+def _joined(entries: list[str]) -> list[str]:
+    """Return the entries with neighbors that are single patients of a population made one: they are made together."""
+    joined: list[str] = []
+    for entry in entries:
+        before, _, seed = entry.partition(":")
+        last = joined[-1] if joined else ""
+        if seed.isdigit() and last.startswith(f"{before}:") and last.rpartition(",")[2].rpartition(":")[2].isdigit():
+            joined[-1] = f"{last},{seed}"
+        else:
+            joined.append(entry)
+    return joined
 
 
 def _stages_of(entry: str, count: int | None) -> Sequence[Path]:

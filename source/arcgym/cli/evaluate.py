@@ -36,6 +36,7 @@ class EvaluateArguments:
     robot: str | None = argument("robot (default: the one that the checkpoint was trained with)", None)
     conditions: str | None = argument("condition file (default: the suite's)", None)
     num_envs: int = argument("largest number of worlds (default: 30)", 30, type=positive)
+    num_patients: int = argument("largest number of patients in memory (default: 64)", 64, type=positive)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
     overrides: list[str] = dataclasses.field(default_factory=list)
     """Texts ``env.path=value``."""
@@ -62,7 +63,7 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
     from arcgym.evaluation.summary import summarize, to_markdown
 
-    options = EvaluationOptions(agents, args.suite, overrides, args.num_envs, args.device)
+    options = EvaluationOptions(agents, args.suite, overrides, args.num_envs, args.num_patients, args.device)
     folder = evaluate(tasks, conditions, lambda task, path: _load(task, path, overrides), options, Path(args.out))
     table = to_markdown(summarize(folder.rows))
     (folder.path / "summary.md").write_text(table)

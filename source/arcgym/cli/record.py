@@ -107,14 +107,14 @@ def _record(
     env_cfg.scene.colon.usd_path = list(stages)
     check_environment(env_cfg, args.device, [out])
     images = mdp.PostStepImagesRecorderCfg(width=args.size, height=args.size, samples=args.samples)
-    device = place(env_cfg, agent_cfg, args.device)
+    place(env_cfg, agent_cfg, args.device)
     together = args.together and len(stages) > 1
     groups = (stages,) if together else tuple((stage,) for stage in stages)
     episodes = args.episodes * len(stages) if together else args.episodes
     plan = GenerationPlan(
         args.task, episodes, out, groups, args.agent, images if args.images else None, args.observations
     )
-    load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint, device)
+    load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint)
     report = generate(plan, env_cfg, agent_cfg, load)
     print(f"recorded: {report}")
     for line in report.skipped:

@@ -73,13 +73,11 @@ def make_drivers(args: Any) -> tuple[dict[str, Any], dict[str, Any] | None]:
     if not (args.driver == "policy" or args.checkpoint or args.load_run):
         return drivers, None
     from arcgym.cli.task import PLAY, load_run_cfgs
-    from arcgym.rl.device import choose_device
     from arcgym.rl.params import read_params
     from arcgym.rl.playing import load_policy
 
     _, agent_cfg, checkpoint = load_run_cfgs(args)
-    device = choose_device(args.device)
-    drivers["policy"] = lambda env: load_policy(env, agent_cfg, checkpoint, device)
+    drivers["policy"] = lambda env: load_policy(env, agent_cfg, checkpoint)
     saved = None if args.no_params else read_params(checkpoint.parent)
     fits = saved is not None and saved.task.removesuffix(PLAY) == args.task.removesuffix(PLAY)
     return drivers, saved.env if saved is not None and fits else None

@@ -8,18 +8,15 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
-from rsl_rl.utils import resolve_callable
-
 from arcgym.evaluation.batched_policy import BatchedPolicy
 from arcgym.rl.rollout import Policy
+from arcgym.rl.trained_policy import trained_policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
 
 def trained_agent(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> Policy:
-    """Return the policy of a checkpoint, its mean actions."""
-    runner = resolve_callable(agent_cfg.class_name)(env, agent_cfg.to_dict(), log_dir=None, device=env.device)
-    runner.load(str(checkpoint), load_cfg={"actor": True})
-    return BatchedPolicy(runner.get_inference_policy(env.device), env.num_envs)
+    """Return the policy of a checkpoint, whose answer for a world does not depend on the number of worlds."""
+    return BatchedPolicy(trained_policy(env, agent_cfg, checkpoint), env.num_envs)
 
 
 def file_sha256(path: Path) -> str:

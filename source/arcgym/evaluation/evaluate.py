@@ -17,12 +17,15 @@ from arcgym.envs.provenance import versions
 from arcgym.evaluation.agents import file_sha256, trained_agent
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.run_trials import run_trials
+from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
+from arcgym.managers import EventTermCfg
 from arcgym.rl.device import place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.params import differences
 from arcgym.rl.rollout import UNTRAINED
 from arcgym.utils.coerce import to_plain
+from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
 from arcgym.utils.registry import load_cfg_from_registry
 
@@ -58,6 +61,9 @@ class EvaluationOptions:
     num_envs: int = 30
     """Largest number of worlds at a time. Results do not depend on it."""
 
+    num_patients: int = 64
+    """Largest number of patients in the memory of the device at a time. Results do not depend on it."""
+
     device: str | None = None
     """``cpu``, ``cuda`` or ``cuda:<n>``; None takes the first GPU, or the CPU where there is none."""
 
@@ -82,8 +88,8 @@ def evaluate(
         done = folder.done(task)
         left = [trial for trial in conditions.trials if trial.trial not in done]
         print(f"{task}: {len(left)} of {len(conditions.trials)} trials to run", flush=True)
-        for (agent, patient), trials in _batches(left, options.agents):
-            _run_batch(task, agent, patient, trials, load_cfgs, options, folder)
+        for agent, trials in _batches(left, options.agents, options.num_patients):
+            _run_batch(task, agent, trials, load_cfgs, options, folder)
     return folder
 
 
@@ -113,35 +119,43 @@ def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
     return {path: list(values) for path, values in found.items() if path not in SET_HERE}
 
 
-def _batches(trials: Sequence[Trial], agents: Sequence[str]) -> list[tuple[tuple[str, str], list[Trial]]]:
-    """Return the trials that can share an environment, by agent and patient."""
+def _batches(trials: Sequence[Trial], agents: Sequence[str], most: int) -> list[tuple[str, list[Trial]]]:
+    """Return the trials that can share an environment: of one agent, and of so many patients at most."""
 
-    def key(trial: Trial) -> tuple[str, str]:
-        return agents[trial.group % len(agents)], trial.patient
+    def agent_of(trial: Trial) -> str:
+        return agents[trial.group % len(agents)]
 
-    return [(pair, list(members)) for pair, members in groupby(sorted(trials, key=key), key)]
+    batches = []
+    for agent, members in groupby(sorted(trials, key=agent_of), agent_of):
+        of_patient: dict[str, list[Trial]] = {}
+        for trial in members:
+            of_patient.setdefault(trial.patient, []).append(trial)
+        groups = list(of_patient.values())
+        parts = [groups[first : first + most] for first in range(0, len(groups), most)]
+        batches += [(agent, [trial for group in part for trial in group]) for part in parts]
+    return batches
 
 
 def _run_batch(
     task: str,
     agent: str,
-    patient: str,
     trials: list[Trial],
     load_cfgs: LoadCfgs,
     options: EvaluationOptions,
     folder: ResultFolder,
 ) -> None:
-    """Run the trials of one patient with one agent in an environment of their own."""
+    """Run trials with one agent in an environment that holds all their patients."""
     checkpoint = None if agent in UNTRAINED else Path(agent)
     env_cfg, agent_cfg = load_cfgs(task, checkpoint)
     folder.note_changes(task, changes_of(task, env_cfg))
+    patients = list(dict.fromkeys(trial.patient for trial in trials))
+    _hold_patients(env_cfg, patients)
     env_cfg.scene.num_envs = min(options.num_envs, len(trials))
-    env_cfg.scene.colon.usd_path, env_cfg.scene.colon.num_patients = patient, None
-    env_cfg.seed, env_cfg.recorders = 0, None
+    env_cfg.recorders = None
     place(env_cfg, agent_cfg, options.device)
     env = make_env(task, env_cfg, agent_cfg)
     try:
-        with counted(f"{task}, {patient}", len(trials)) as show:
+        with counted(task if len(patients) > 1 else f"{task}, {patients[0]}", len(trials)) as show:
             started = len(folder.rows)
 
             def keep(row: dict[str, Any]) -> None:
@@ -149,9 +163,26 @@ def _run_batch(
                 show(len(folder.rows) - started)
 
             make_policy = UNTRAINED.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
-            run_trials(env, make_policy, trials, keep)
+            run_trials(env, make_policy, trials, keep, patients)
     finally:
         env.close()
+
+
+def _hold_patients(env_cfg: Any, patients: list[str]) -> None:
+    """Put patients into an environment, each world of which takes that of its trial.
+
+    Raises:
+        UsageError: There are several, and the task has no event that comes before its reset.
+    """
+    several = len(patients) > 1
+    env_cfg.scene.colon.usd_path, env_cfg.scene.colon.num_patients = patients if several else patients[0], None
+    if several:
+        if next(iter(vars(env_cfg.events)), None) != "patient":
+            raise UsageError(
+                "The task's events do not begin with 'patient', so that worlds cannot change their patients: put "
+                "patient = EventTermCfg(func=mdp.randomize_patient, mode='reset') first, or give --num_patients 1."
+            )
+        env_cfg.events.patient = EventTermCfg(func=give_patient_of_trial, mode="reset")
 
 
 def _accelerator() -> str:

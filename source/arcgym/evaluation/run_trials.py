@@ -5,18 +5,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import torch
 
 from arcgym.evaluation.trial_queue import TrialQueue
 from arcgym.evaluation.trials import Trial
-from arcgym.rl.first_episodes import NON_FINITE
+from arcgym.rl.episode_sums import EpisodeRow, EpisodeSums
 from arcgym.rl.rollout import Policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
-TrialRow = dict[str, Any]
-"""One trial's results by column."""
+OF_THE_BATCH = "patient_index"
+"""Metric that depends on what other patients there are; a trial names its patient itself."""
+
+TrialRow = EpisodeRow
+"""One trial's results by column: the trial's fields, then the episode's."""
 
 
 def run_trials(
@@ -24,6 +26,7 @@ def run_trials(
     make_policy: Callable[[RslRlVecEnvWrapper], Policy],
     trials: Sequence[Trial],
     on_row: Callable[[TrialRow], None],
+    patients: Sequence[str] = (),
 ) -> None:
     """Run every trial once.
 
@@ -33,12 +36,13 @@ def run_trials(
     Args:
         env: Environment; its worlds start anew.
         make_policy: Makes the policy, once the first trials have begun.
-        trials: The trials, all of the patient in ``env``.
-        on_row: Called with the row of each trial that ends: the fields of the trial, ``success`` (0 or 1), ``end`` (the
-            termination term), ``reward`` (its sum), ``seconds``, ``cost_<name>`` (the sum of each cost), and the
-            environment's metrics by name.
+        trials: The trials, of patients in ``env``.
+        on_row: Called with the row of each trial that ends: the fields of the trial, and those of
+            :meth:`arcgym.rl.episode_sums.EpisodeSums.take`.
+        patients: Patients in ``env``, as the trials name them, where there are several. Its event ``patient`` is
+            :func:`arcgym.evaluation.trial_queue.give_patient_of_trial`.
     """
-    queue = TrialQueue(trials, env.num_envs)
+    queue = TrialQueue(trials, env.num_envs, patients)
     env.unwrapped.random.seed_source = queue
     try:
         env.reset()
@@ -48,7 +52,7 @@ def run_trials(
 
 
 def _run(env: RslRlVecEnvWrapper, policy: Policy, queue: TrialQueue, on_row: Callable[[TrialRow], None]) -> None:
-    obs, sums = env.get_observations(), _EpisodeSums(env)
+    obs, sums = env.get_observations(), EpisodeSums(env)
     with torch.inference_mode():
         while queue.left:
             running = queue.running
@@ -60,46 +64,5 @@ def _run(env: RslRlVecEnvWrapper, policy: Policy, queue: TrialQueue, on_row: Cal
             for world, row in zip(ended, sums.take(ended), strict=True):
                 trial = running[world]
                 if trial is not None:
+                    row.pop(OF_THE_BATCH, None)
                     on_row({**vars(trial), **row})
-
-
-class _EpisodeSums:
-    """Sums over the episode of every world, and what the environment says when it ends."""
-
-    def __init__(self, env: RslRlVecEnvWrapper) -> None:
-        self._env = env.unwrapped
-        self._sums: dict[str, torch.Tensor] = {}
-
-    def add(self, rewards: torch.Tensor, costs: dict[str, torch.Tensor]) -> None:
-        """Take in a step: rewards and each cost's part, shape (N,)."""
-        step = torch.full_like(rewards, self._env.step_dt, dtype=torch.float64)
-        values = {"reward": rewards, "seconds": step, **{f"cost_{name}": value for name, value in costs.items()}}
-        for name, value in values.items():
-            self._sums[name] = self._sums.get(name, torch.zeros_like(step)) + value
-
-    def take(self, worlds: list[int]) -> list[TrialRow]:
-        """Return the rows of worlds whose episode has just ended, and start their sums again."""
-        if not worlds:
-            return []
-        env = self._env
-        ends = {name: env.termination_manager.get_term(name)[worlds].tolist() for name in _by_importance(env)}
-        success = env.termination_manager.success[worlds].int().tolist()
-        columns = {name: value[worlds].tolist() for name, value in self._sums.items()}
-        metrics = {name: value[worlds].tolist() for name, value in env.metrics_manager.finished.items()}
-        for value in self._sums.values():
-            value[worlds] = 0.0
-        return [
-            {
-                "success": success[k],
-                "end": next((name for name in ends if ends[name][k]), NON_FINITE),
-                **{name: value[k] for name, value in columns.items()},
-                **{name: value[k] for name, value in metrics.items() if name != "success"},
-            }
-            for k in range(len(worlds))
-        ]
-
-
-def _by_importance(env: Any) -> list[str]:
-    """Return the names of the termination terms: success first, then failures, then time limits."""
-    terms = {name: env.termination_manager.get_term_cfg(name) for name in env.termination_manager.active_terms}
-    return sorted(terms, key=lambda name: (not terms[name].success, terms[name].time_out))

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import torch
 
@@ -18,19 +19,26 @@ class TrialQueue:
     not count.
     """
 
-    def __init__(self, trials: Sequence[Trial], num_envs: int) -> None:
+    def __init__(self, trials: Sequence[Trial], num_envs: int, patients: Sequence[str] = ()) -> None:
         """Hold the trials.
 
         Args:
             trials: Trials in the order in which they are handed out.
             num_envs: Number of worlds N.
+            patients: Patients of the environment, in the order of ``colon.patients``.
         """
+        self._places = {patient: place for place, patient in enumerate(patients)}
         self._waiting = list(reversed(trials))
         self._running: list[Trial | None] = [None] * num_envs
 
     def __call__(self, env_ids: torch.Tensor) -> torch.Tensor:
         """Give the worlds that begin an episode their trials, and return the trials' seeds, shape (n,)."""
         return torch.tensor([self._next(world) for world in env_ids.tolist()], dtype=torch.long)
+
+    def patients(self, env_ids: torch.Tensor) -> torch.Tensor:
+        """Return the patients of the trials that run in some worlds, index into ``colon.patients``, shape (n,)."""
+        trials = [self._running[world] for world in env_ids.tolist()]
+        return torch.tensor([0 if trial is None else self._places[trial.patient] for trial in trials])
 
     @property
     def running(self) -> list[Trial | None]:
@@ -46,3 +54,10 @@ class TrialQueue:
         self._running[world] = self._waiting.pop() if self._waiting else None
         trial = self._running[world]
         return trial.seed if trial else 0
+
+
+def give_patient_of_trial(env: Any, env_ids: torch.Tensor) -> None:
+    """Event that puts the patients of their trials into worlds that begin one; it comes before the reset."""
+    queue = env.random.seed_source
+    if isinstance(queue, TrialQueue):
+        env.scene["colon"].write_patient_to_sim(queue.patients(env_ids), env_ids)

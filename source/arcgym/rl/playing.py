@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rsl_rl.utils import resolve_callable
-
 from arcgym.rl.checkpoint import read_checkpoint
 from arcgym.rl.device import place
 from arcgym.rl.exporter import export_policy_as_jit, export_policy_as_onnx
@@ -18,6 +16,7 @@ from arcgym.rl.make_env import VideoOptions, make_env
 from arcgym.rl.preflight import check_environment, check_run
 from arcgym.rl.rollout import UNTRAINED, Policy, RolloutResult, run_policy
 from arcgym.rl.run_folder import LOG_ROOT
+from arcgym.rl.trained_policy import trained_policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 from arcgym.utils.progress import counted
 
@@ -59,14 +58,14 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
     """
     folder = options.checkpoint.parent if options.checkpoint else LOG_ROOT / agent_cfg.experiment_name / options.policy
     _check(env_cfg, agent_cfg, options, folder)
-    device = place(env_cfg, agent_cfg, options.device)
+    place(env_cfg, agent_cfg, options.device)
     records = _record_to(options, env_cfg)
     video = VideoOptions(folder.resolve() / "videos" / "play", options.video_length) if options.video_length else None
     env = make_env(task, env_cfg, agent_cfg, video)
     try:
         print(env.unwrapped.summary())
         if options.checkpoint:
-            policy = load_policy(env, agent_cfg, options.checkpoint, device)
+            policy = load_policy(env, agent_cfg, options.checkpoint)
         else:
             policy = UNTRAINED[options.policy](env)
         with counted("playing", options.steps or int(env.max_episode_length)) as show:
@@ -83,11 +82,9 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
     return result
 
 
-def load_policy(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path, device: str) -> Policy:
+def load_policy(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> Policy:
     """Return the trained policy, exported beside its checkpoint."""
-    runner = resolve_callable(agent_cfg.class_name)(env, agent_cfg.to_dict(), log_dir=None, device=device)
-    runner.load(str(checkpoint), load_cfg={"actor": True})
-    policy = runner.get_inference_policy(device)
+    policy = trained_policy(env, agent_cfg, checkpoint)
     print(f"checkpoint: {checkpoint}")
     for export in (export_policy_as_jit, export_policy_as_onnx):
         print(f"exported: {export(policy, checkpoint.parent / 'exported')}")

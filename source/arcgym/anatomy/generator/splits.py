@@ -46,3 +46,18 @@ def split_seeds(name: str) -> range:
     if name not in seeds:
         raise ValueError(f"Unknown split '{name}' of the population. {did_you_mean(name, seeds)}")
     return seeds[name]
+
+
+def given_seeds(text: str) -> list[int]:
+    """Return seeds that commas separate, such as ``20000,20001``, all of them in some split.
+
+    Raises:
+        ValueError: If one is in no split; names the splits.
+    """
+    known = read_splits().seeds
+    seeds = [int(part) for part in text.split(",")]
+    for seed in seeds:
+        if not any(seed in split for split in known.values()):
+            ranges = ", ".join(f"{name} {split[0]} to {split[-1]}" for name, split in known.items())
+            raise ValueError(f"Seed {seed} is in no split of the population; there are {ranges}.")
+    return seeds

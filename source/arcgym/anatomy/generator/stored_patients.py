@@ -16,7 +16,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from arcgym.anatomy.generator.splits import read_splits, split_seeds
+from arcgym.anatomy.generator.splits import given_seeds, read_splits, split_seeds
 from arcgym.utils.paths import cache_dir
 from arcgym.utils.progress import report
 
@@ -30,14 +30,14 @@ def population_stages(split: str, count: int | None) -> list[Path]:
     """Return the stages of a split's patients by ascending seed; those that are missing are generated.
 
     Args:
-        split: Name of a split, see :mod:`arcgym.anatomy.generator.splits`.
+        split: Name of a split, see :mod:`arcgym.anatomy.generator.splits`, or seeds that commas separate.
         count: Number of patients, from the first; None for all of a split that is not large.
 
     Raises:
         ValueError: If there is no such split, it has fewer patients, it is large and no number is given, or a patient
             cannot be generated.
     """
-    seeds = split_seeds(split)
+    seeds = given_seeds(split) if split.replace(",", "").isdigit() else split_seeds(split)
     if count is None and len(seeds) > MOST:
         raise ValueError(
             f"population:{split} has {len(seeds)} patients, which would take hours to generate: say how many with "

@@ -1,0 +1,60 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Write condition files of the benchmark that are not there yet; a file that is there is never changed.
+
+python scripts/tools/make_conditions.py
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable
+from pathlib import Path
+
+from arcgym.anatomy.generator.splits import read_splits
+from arcgym.evaluation.suites import FOLDER
+from arcgym.evaluation.trials import Trial, write_conditions
+
+GROUPS = 5
+"""Training seeds that the trials on many patients are shared by."""
+
+
+def seed_of(name: str, trial: int) -> int:
+    """Return the seed of a trial: the first 31 bits of a hash of its name."""
+    return int.from_bytes(hashlib.sha256(f"{name}/{trial}".encode()).digest()[:4], "big") >> 1
+
+
+def trials_of(name: str, patients: Iterable[str], each: int) -> list[Trial]:
+    """Return so many trials on each patient, one after another."""
+    names = [patient for patient in patients for _ in range(each)]
+    return [Trial(trial, patient, seed_of(name, trial), trial % GROUPS) for trial, patient in enumerate(names)]
+
+
+def main() -> None:
+    """Write the files."""
+    splits = read_splits()
+    unseen = [f"population:{seed}" for seed in splits.seeds["test"]]
+    files = {
+        "population_v1": (
+            unseen,
+            1,
+            f"A trial on each of the 200 patients of the test split (splits {splits.version}, "
+            f"generator {splits.generator}).",
+        ),
+        "ct_v1": ([f"ct_{number}/colon.usda" for number in (1, 2)], 10, "Ten trials on each of the two CT patients."),
+        "robustness_v1": (
+            [f"colon_{number}/colon.usda" for number in range(1, 6)],
+            2,
+            "Two trials on each of the five patients, for each variant.",
+        ),
+    }
+    for name, (patients, each, comment) in files.items():
+        path: Path = FOLDER / "conditions" / f"{name}.csv"
+        if not path.exists():
+            seeds = f"Seeds: the first 31 bits of SHA-256 of '{name}/<trial>'."
+            write_conditions(path, trials_of(name, patients, each), f"{comment}\n{seeds}")
+            print(path)
+
+
+if __name__ == "__main__":
+    main()
