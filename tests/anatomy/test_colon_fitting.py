@@ -62,14 +62,14 @@ def test_contact_surface_has_the_folds(fitted: FittedColon, surface: TriangleSur
     dense = np.concatenate([contact, 0.5 * (contact + np.roll(contact, -1, 1))])
     off = np.percentile(cKDTree(dense.reshape(-1, 3)).query(inside)[0], 95)
     assert off < 0.003
-    assert fitted.contact.rows == 13 * SHAPE.contact + 1 + 6 and fitted.contact.columns == 36
+    assert fitted.contact.rows == 13 * SHAPE.contact + 1 + 6 and fitted.contact.columns == 42
 
 
 def test_contact_rows_belong_to_their_cell_of_the_wall(fitted: FittedColon) -> None:
     """Row 3 r + 1 and column 3 j + 2 lie a third of the way from ring r on and two from sector j to the next."""
     contact, sectors = fitted.contact, SHAPE.sectors
-    vertex = (3 * 4 + 1) * contact.columns + 3 * 11 + 2
-    carriers = [4 * sectors + 11, 5 * sectors + 11, 5 * sectors, 4 * sectors]
+    vertex = (3 * 4 + 1) * contact.columns + 3 * 13 + 2
+    carriers = [4 * sectors + 13, 5 * sectors + 13, 5 * sectors, 4 * sectors]
     assert contact.skin_indices[vertex].tolist() == carriers
     assert contact.skin_weights[vertex] == pytest.approx([2 / 9, 1 / 9, 2 / 9, 4 / 9])
     assert (
@@ -90,7 +90,7 @@ def test_contact_surface_is_closed_but_at_the_verge(fitted: FittedColon) -> None
 def test_contact_surface_is_read_as_written(fitted: FittedColon, tmp_path: Path) -> None:
     stage = replace(tiny_colon_stage(texture_folder=tmp_path), wall=fitted.wall, contact=fitted.contact)
     read = read_colon(write_colon(stage, tmp_path / "colon.usda")).contact
-    assert read is not None and read.columns == 36
+    assert read is not None and read.columns == 42
     for name in ("points", "skin_indices", "skin_weights"):
         assert np.array_equal(getattr(read, name), getattr(fitted.contact, name)), name
 
@@ -160,6 +160,6 @@ def test_validation_checks_the_contact_surface(fitted: FittedColon, tmp_path: Pa
     assert len(about) == 4 and failed(about) == []
     moved = replace(fitted.contact, points=fitted.contact.points + np.float32(0.01))
     assert "distance to the fine one" in str(failed(inspect_stage(replace(stage, contact=moved))))
-    flipped = fitted.contact.points.reshape(-1, 36, 3)[:, ::-1].reshape(-1, 3)
+    flipped = fitted.contact.points.reshape(-1, 42, 3)[:, ::-1].reshape(-1, 3)
     inside_out = replace(stage, contact=replace(fitted.contact, points=flipped))
     assert "contact surface: wound outwards" in str(failed(inspect_stage(inside_out)))

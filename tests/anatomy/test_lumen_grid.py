@@ -101,7 +101,7 @@ def test_rings_take_the_wide_way_where_the_cut_takes_a_hole() -> None:
 def test_grid_begins_at_the_verge_and_ends_at_the_pole(tube: tuple[ConformalMap, np.ndarray]) -> None:
     mapped, way = tube
     grid = fit_grid(mapped, way, GridShape(rings=8))
-    assert grid.points.shape == (7 * 6 + 1 + 12, 72, 3)
+    assert grid.points.shape == (7 * 6 + 1 + 12, 84, 3)
     assert grid.arc[0] == pytest.approx(0.0, abs=1e-3) and grid.arc[-1] == pytest.approx(0.08, abs=1e-6)
     assert (np.diff(grid.arc) > 0).all()
     assert np.abs(grid.points[0, :, 1]).max() < 1e-3

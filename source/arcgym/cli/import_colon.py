@@ -59,7 +59,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rings", type=int, default=160, help="rings of the wall (default: 160, as in generated colons)"
     )
-    parser.add_argument("--sectors", type=int, default=12, help="wall vertices around a ring (default: 12)")
+    parser.add_argument("--sectors", type=int, default=14, help="wall vertices around a ring (default: 14)")
 
 
 def run(args: argparse.Namespace) -> int:

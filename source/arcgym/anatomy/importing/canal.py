@@ -25,7 +25,7 @@ class CanalSettings:
     """Size of the canal. Our choices where nothing else is said."""
 
     radius: float = 0.0108
-    """Radius of the tube [m]: a wall of 12 sectors then leaves more than 10 mm."""
+    """Radius of the tube [m]: a wall of 14 sectors then leaves more than 10 mm."""
     straight: float = 0.030
     """Length of the straight part [m]; the anatomical anal canal is 3 to 4 cm long (Gray's Anatomy)."""
     bend_radius: tuple[float, ...] = (0.036, 0.048, 0.070)
