@@ -49,9 +49,9 @@ def test_pulled_tip(tiny_colon_path) -> None:
     for _ in range(12):
         env.step(policy())
     assert env.scene["endoscope"].data.tip_arc_length - start > 0.03
-    assert policy.expert._furthest > 0.0
+    assert float(policy.expert.memory()[0]) > 0.0
     policy.reset(torch.tensor([1]))
-    assert policy.expert._furthest == -1.0
+    assert float(policy.expert.memory()[0]) == -1.0
 
 
 def test_pushed_scope_gets_on(pushed) -> None:

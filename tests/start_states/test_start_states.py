@@ -55,8 +55,8 @@ def build(tiny: TinySim, sim: SimulationCfg | None = None, **scope) -> Interacti
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Segments that are driven to from here on."""
     made: list[str] = []
-    original = find.make
-    monkeypatch.setattr(find, "make", lambda a, b, until, **of: made.append(until) or original(a, b, until, **of))
+    original = find.make_all
+    monkeypatch.setattr(find, "make_all", lambda a, b, until, of: made.append(until) or original(a, b, until, of))
     return made
 
 
@@ -230,15 +230,13 @@ def test_every_patient_starts_from_states_of_its_own(tmp_path: Path, cache: Path
     assert sorted(path.parent.name for path in (cache / "start_states").rglob("*.npz")) == ["long", "short"]
 
 
-def test_patients_in_which_the_expert_does_not_arrive_are_named(tmp_path: Path, cache: Path, monkeypatch) -> None:
-    def fail(scene, segment, patient) -> None:
-        if patient != 1:
-            raise StartStateError(f"not in {patient}")
-
+def test_patients_in_which_the_expert_does_not_arrive_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     patients = [SimpleNamespace(name=f"p{k}") for k in range(3)]
     scene = SimpleNamespace(
         colon=SimpleNamespace(patients=patients), endoscope=SimpleNamespace(path=Path("robot.usda"))
     )
-    monkeypatch.setattr(find, "ensure", fail)
+    arrived, gave_up = SimpleNamespace(names=("rectum", "sigmoid")), SimpleNamespace(names=("rectum",))
+    monkeypatch.setattr(find, "find_stored", lambda scene, segment, patient: arrived if patient == 1 else None)
+    monkeypatch.setattr(find, "_make", lambda scene, segment, missing: dict.fromkeys(missing, gave_up))
     with pytest.raises(StartStateError, match=r"robot.usda does not reach the sigmoid of 2 of 3 patients \(p0, p2\)"):
         find.ensure_all(scene, "sigmoid")

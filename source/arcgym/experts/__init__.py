@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scripted experts: they drive robots to the start states and are a baseline. They see what no camera sees.
+"""Scripted experts: they drive robots to the start states and are a baseline. They see what no camera sees: the wall.
 
 ``EndoscopeCfg.expert`` names the expert of a robot; one of your own is a subclass of :class:`ExpertBase`.
 """

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import Any, ClassVar
 
 import torch
 
@@ -14,16 +14,29 @@ from arcgym.utils.string import resolve_callable
 
 
 class ExpertBase(ABC):
-    """Commands the endoscopes of all worlds, each on its own. N worlds."""
+    """Commands the endoscopes of all worlds, each on its own. N worlds.
 
-    def __init__(self, scene: InteractiveScene, speed: float = 0.04):
+    Several worlds of one patient can work together: each with other settings (:meth:`vary`), and those that fall behind
+    go on from where another one is (:meth:`take_over`), see :class:`arcgym.start_states.Drive`.
+    """
+
+    VARIED: ClassVar[dict[str, tuple[float, float]]] = {}
+    """Settings that :meth:`vary` draws, with their ranges; each is an attribute of shape (N,)."""
+    PERIOD: ClassVar[int] = 25
+    """Control steps after which worlds that work together change places."""
+
+    def __init__(self, scene: InteractiveScene, speed: float | torch.Tensor = 0.04):
         """Keep the scene.
 
         Args:
             scene: The scene; its state is read anew at every :meth:`act`.
-            speed: Speed where the way is free [m/s].
+            speed: Speed where the way is free [m/s], one or one a world.
         """
-        self.scene, self.speed = scene, speed
+        self.scene = scene
+        self.speed = self.each(speed)
+        """Speed where the way is free [m/s], shape (N,)."""
+        self.disturbance = torch.zeros(scene.num_envs, 3, device=scene.device)
+        """Added to where the tip is steered, in its frame, as a share of a unit vector, shape (N, 3)."""
 
     @abstractmethod
     def act(self) -> None:
@@ -31,6 +44,30 @@ class ExpertBase(ABC):
 
     def reset(self, env_ids: torch.Tensor) -> None:  # noqa: B027 - an expert without memory needs none
         """Forget the past of the worlds ``env_ids``, int64, shape (n,), which start anew; nothing by default."""
+
+    def memory(self) -> list[torch.Tensor]:
+        """Return what the expert remembers of every world, N entries each; nothing by default."""
+        return []
+
+    def merit(self) -> torch.Tensor:
+        """How well each world gets on, shape (N,): the arc length of the tip [m]."""
+        return self.scene["endoscope"].data.tip_arc_length
+
+    def take_over(self, env_ids: torch.Tensor, sources: torch.Tensor) -> None:
+        """Let the worlds ``env_ids`` remember what the worlds ``sources`` do, both int64, shape (n,)."""
+        for array in self.memory():
+            array[env_ids] = array[sources]
+
+    def vary(self, env_ids: torch.Tensor, generator: torch.Generator | None = None) -> None:
+        """Draw the settings of the worlds ``env_ids``, int64, shape (n,), from their ranges."""
+        for name, (low, high) in self.VARIED.items():
+            share = torch.rand(len(env_ids), generator=generator, device=self.scene.device)
+            getattr(self, name)[env_ids] = low + (high - low) * share
+
+    def each(self, value: float | torch.Tensor) -> torch.Tensor:
+        """Return a setting for every world, shape (N,)."""
+        given = torch.as_tensor(value, dtype=torch.float32, device=self.scene.device)
+        return given.reshape(-1).expand(self.scene.num_envs).clone()
 
 
 def make_expert(scene: InteractiveScene, **settings: Any) -> ExpertBase:

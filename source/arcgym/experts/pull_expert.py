@@ -4,62 +4,100 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import torch
+from torch.nn.functional import normalize
 
 from arcgym.experts.expert_base import ExpertBase
-from arcgym.experts.lumen_ahead import lumen_direction
+from arcgym.experts.lumen_way import LumenWay, along
+from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.math import quat_apply_inverse
 
 
 class PullExpert(ExpertBase):
-    """Pulls the tip towards the centerline ahead and turns it that way; backs off where it does not get on."""
+    """Pulls the tip along the way that is open and turns it there; slides along what it touches, and backs off."""
 
-    PATIENCE = 20
-    """Control steps without 4 mm of progress after which the tip backs off."""
-    RETREAT = 12
-    """Control steps of backing off."""
+    VARIED: ClassVar[dict[str, tuple[float, float]]] = {
+        "speed": (0.02, 0.06),
+        "look": (0.008, 0.03),
+        "gaze": (0.01, 0.04),
+        "turn_gain": (2.0, 10.0),
+        "axis": (0.0, 0.8),
+        "slide": (0.0, 1.0),
+        "back": (0.0, 0.8),
+    }
 
-    def __init__(self, scene: InteractiveScene, speed: float = 0.04, ahead: float = 0.035, turn_gain: float = 4.0):
-        """Keep the settings.
+    def __init__(
+        self,
+        scene: InteractiveScene,
+        speed: float | torch.Tensor = 0.04,
+        look: float = 0.02,
+        gaze: float = 0.03,
+        turn_gain: float = 4.0,
+        axis: float = 0.5,
+        slide: float = 1.0,
+        back: float = 0.5,
+    ):
+        """Keep the settings; each may be one number or one a world.
 
         Args:
             scene: The scene.
-            speed: Speed where the tip looks along the lumen [m/s]; 35 % of it where it looks across.
-            ahead: Distance looked ahead [m].
-            turn_gain: Angular velocity per sine of the angle to the target [rad/s].
+            speed: Speed where the tip looks along the way [m/s]; 35 % of it where it looks across.
+            look: Length of way ahead that the tip is pulled to [m].
+            gaze: Length of way ahead that it turns to [m].
+            turn_gain: Angular velocity per sine of the angle to what it turns to [rad/s].
+            axis: Share of the tip's own axis in the direction of the pull: a long head passes a bend lengthwise.
+            slide: How much of the pull into what the tip touches is turned along it.
+            back: How much the tip moves back along its axis while its front stands against a wall.
         """
         super().__init__(scene, speed)
-        self.ahead, self.turn_gain = ahead, turn_gain
-        self._furthest = torch.full((scene.num_envs,), -1.0, device=scene.device)
-        self._waited = torch.zeros(scene.num_envs, dtype=torch.long, device=scene.device)
-        self._retreat = torch.zeros_like(self._waited)
+        self.look, self.gaze, self.turn_gain = self.each(look), self.each(gaze), self.each(turn_gain)
+        self.axis, self.slide, self.back = self.each(axis), self.each(slide), self.each(back)
+        self._way = LumenWay(scene)
+        self._retreat = Retreat(scene.num_envs, scene.device, patience=20, first=6, longest=40)
+        self._side = torch.zeros(scene.num_envs, 3, device=scene.device)
+        self._forward = torch.zeros(scene.num_envs, 3, device=scene.device)
+        self._forward[:, 2] = 1.0
 
     def act(self) -> None:
         """Set the velocity commands."""
-        self._watch_progress()
         data = self.scene["endoscope"].data
-        direction = lumen_direction(self.scene, self.ahead)
-        pace = self.speed * (0.35 + 0.65 * direction[:, 2:].clamp(min=0.0))
-        back = quat_apply_inverse(data.tip_quat_w, -self.speed * data.tip_lumen_direction_w)
-        forward = torch.zeros_like(direction)
-        forward[:, 2] = 1.0
-        turn = self.turn_gain * torch.linalg.cross(forward, direction)
-        velocity = torch.where(self._retreat[:, None] > 0, back, pace * direction)
-        self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
+        backs, begins = self._retreat.update(data.tip_arc_length)
+        random = normalize(torch.randn_like(self._side), dim=1)
+        self._side = torch.where(begins[:, None], random, self._side)
+        way = self._way.find()
+        aim, gaze = self._seen(way, self.look), self._seen(way, self.gaze)
+        pace = self.speed * (0.35 + 0.65 * gaze[:, 2].clamp(min=0.0))
+        onward = pace[:, None] * (self._direction(aim, gaze) + self.disturbance)
+        away = self.speed[:, None] * (0.5 * self._side - data.tip_lumen_direction_w)
+        velocity = torch.where(backs[:, None], quat_apply_inverse(data.tip_quat_w, away), onward)
+        gaze = normalize(gaze + 0.5 * self.disturbance, dim=1)
+        turn = torch.linalg.cross(self._forward, gaze)
+        turn = torch.where(gaze[:, 2:] < 0.0, normalize(turn, dim=1), turn)
+        self.scene["endoscope"].set_tip_velocity_command(velocity, self.turn_gain[:, None] * turn)
 
     def reset(self, env_ids: torch.Tensor) -> None:
         """Forget how far some worlds came."""
-        self._furthest[env_ids] = -1.0
-        self._waited[env_ids] = 0
-        self._retreat[env_ids] = 0
+        self._retreat.reset(env_ids)
 
-    def _watch_progress(self) -> None:
-        arc = self.scene["endoscope"].data.tip_arc_length
-        gained = arc > self._furthest + 0.004
-        self._furthest = torch.where(gained, arc, self._furthest)
-        self._waited = torch.where(gained, 0, self._waited + 1)
-        self._retreat = (self._retreat - 1).clamp(min=0)
-        tired = self._waited > self.PATIENCE
-        self._retreat = torch.where(tired, self.RETREAT, self._retreat)
-        self._waited = torch.where(tired, -self.RETREAT, self._waited)
+    def memory(self) -> list[torch.Tensor]:
+        """Return how far each world came, and to which side it backs off."""
+        return [*self._retreat.memory, self._side]
+
+    def _seen(self, way: torch.Tensor, length: torch.Tensor) -> torch.Tensor:
+        """Return the unit vector from the tip to a point of the way, in the tip's frame, shape (N, 3)."""
+        data = self.scene["endoscope"].data
+        return normalize(quat_apply_inverse(data.tip_quat_w, along(way, length) - data.tip_pos_w), dim=1)
+
+    def _direction(self, aim: torch.Tensor, gaze: torch.Tensor) -> torch.Tensor:
+        """Return the direction of the pull in the tip's frame: to the aim, along the axis, not into what it touches."""
+        data = self.scene["endoscope"].data
+        force = data.link_force_w[:, -1]
+        off = quat_apply_inverse(data.tip_quat_w, force) / (force.norm(dim=1, keepdim=True) + 0.3)
+        against = (-2.0 * off[:, 2] - 0.2).clamp(0.0, 1.0)
+        axis = self.axis * (1.0 - against) - self.back * against * (1.0 - gaze[:, 2]).clamp(0.0, 1.0)
+        pull = normalize((1.0 - axis.abs())[:, None] * aim + axis[:, None] * self._forward, dim=1)
+        into = (pull * off).sum(dim=1).clamp(max=0.0)
+        return pull + (self.slide * (0.2 - 0.8 * into))[:, None] * off

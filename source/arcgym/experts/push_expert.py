@@ -4,51 +4,119 @@
 
 from __future__ import annotations
 
+import math
+from typing import ClassVar
+
 import torch
+from torch.nn.functional import normalize
 
 from arcgym.experts.expert_base import ExpertBase
-from arcgym.experts.lumen_ahead import lumen_direction
+from arcgym.experts.lumen_way import LumenWay, along
+from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
+from arcgym.utils.math import quat_apply_inverse
 
 LARGEST_BENDING = 2.9
 """Largest bending commanded [rad]."""
+JIGGLE_PERIOD = 10
+"""Control steps of one pull and push."""
+TWIST_PERIOD = 40
+"""Control steps of one turn of the shaft to and fro."""
+
+LOOPED = 0.2
+"""Arc length that a world is behind by a length of scope in loops: one that has straightened gets on better."""
 
 
 class PushExpert(ExpertBase):
-    """Steers the bending section towards the centerline ahead and pushes, slower where the lumen is off to a side."""
+    """Bends the tip towards the way that is open and pushes; withdraws where it does not get on.
 
-    def __init__(self, scene: InteractiveScene, speed: float = 0.04, ahead: float = 0.04, gain: float = 0.35):
-        """Keep the settings.
+    As an examiner does, it may jiggle the shaft, turn it to and fro, and withdraw so far that loops straighten.
+    """
+
+    VARIED: ClassVar[dict[str, tuple[float, float]]] = {
+        "speed": (0.015, 0.05),
+        "look": (0.015, 0.05),
+        "gain": (0.1, 0.5),
+        "largest": (1.5, LARGEST_BENDING),
+        "jiggle": (0.0, 0.03),
+        "twist": (0.0, 0.8),
+    }
+
+    PERIOD = 40
+
+    def __init__(
+        self,
+        scene: InteractiveScene,
+        speed: float | torch.Tensor = 0.04,
+        look: float = 0.035,
+        gain: float = 0.35,
+        largest: float = LARGEST_BENDING,
+        jiggle: float = 0.0,
+        twist: float = 0.0,
+    ):
+        """Keep the settings; each may be one number or one a world.
 
         Args:
             scene: The scene.
-            speed: Insertion speed while the lumen is ahead [m/s].
-            ahead: Distance looked ahead [m].
-            gain: Share of the angle to the target by which the command changes each step.
+            speed: Insertion speed while the way is ahead [m/s].
+            look: Length of way ahead that the tip is bent to [m].
+            gain: Share of the angle to it by which the command changes each step.
+            largest: Largest bending commanded [rad].
+            jiggle: Amplitude of a to and fro of the shaft while it is pushed [m/s].
+            twist: Amplitude of turning the shaft to and fro [rad/s].
         """
         super().__init__(scene, speed)
-        self.ahead, self.gain = ahead, gain
+        self.look, self.gain, self.largest = self.each(look), self.each(gain), self.each(largest)
+        self.jiggle, self.twist = self.each(jiggle), self.each(twist)
         self.bending = torch.zeros(scene.num_envs, 2, device=scene.device)
         """Commanded pitch and yaw [rad], shape (N, 2)."""
         self.velocity = torch.zeros(scene.num_envs, device=scene.device)
         """Commanded insertion [m/s], shape (N,)."""
+        self._way = LumenWay(scene)
+        self._retreat = Retreat(scene.num_envs, scene.device, patience=25, first=10, longest=60)
+        self._turn = torch.zeros_like(self.velocity)
+        self._steps = torch.zeros_like(self.velocity)
 
     def act(self) -> None:
         """Set bending and insertion commands."""
-        direction = lumen_direction(self.scene, self.ahead)
-        angle = torch.acos(direction[:, 2].clamp(-1.0, 1.0))
-        error = torch.stack([-direction[:, 1], direction[:, 0]], dim=1)
-        error = torch.nn.functional.normalize(error, dim=1) * angle[:, None]
-        self.bending += self.gain * error
-        norm = self.bending.norm(dim=1, keepdim=True)
-        self.bending *= (LARGEST_BENDING / norm.clamp(min=1.0e-6)).clamp(max=1.0)
+        backs, begins = self._retreat.update(self.scene["endoscope"].data.tip_arc_length)
+        self._turn = torch.where(begins, 1.2 * torch.rand_like(self._turn) - 0.6, self._turn)
+        self._steps += 1.0
+        angle = self._bend(torch.where(backs, 0.5, 1.0))
         pace = torch.where(angle < 0.5, 1.0, torch.where(angle < 1.0, 0.5, 0.15))
-        self.velocity += (self.speed * pace - self.velocity).clamp(-0.03, 0.03)
+        wanted = torch.where(backs, -self.speed, self.speed * pace)
+        self.velocity += (wanted - self.velocity).clamp(-0.03, 0.03)
+        jiggle = torch.where(backs, 0.0, self.jiggle) * (2.0 * math.pi / JIGGLE_PERIOD * self._steps).sin()
+        turning = self.twist * (2.0 * math.pi / TWIST_PERIOD * self._steps).sin()
         endoscope = self.scene["endoscope"]
         endoscope.set_bending_command(self.bending[:, 0], self.bending[:, 1])
-        endoscope.set_insertion_command(self.velocity, torch.zeros_like(self.velocity))
+        endoscope.set_insertion_command(self.velocity + jiggle, torch.where(backs, self._turn, turning))
 
     def reset(self, env_ids: torch.Tensor) -> None:
         """Take up the bending that some worlds start with, and stand still there."""
         self.bending[env_ids] = self.scene["endoscope"].data.bending[env_ids]
         self.velocity[env_ids] = 0.0
+        self._steps[env_ids] = 0.0
+        self._retreat.reset(env_ids)
+
+    def merit(self) -> torch.Tensor:
+        """Return the arc length of the tip less a share of the scope that lies in loops [m], shape (N,)."""
+        data = self.scene["endoscope"].data
+        return data.tip_arc_length - LOOPED * (data.inserted_length - data.tip_arc_length)
+
+    def memory(self) -> list[torch.Tensor]:
+        """Return the commands of each world, and how far it came."""
+        return [*self._retreat.memory, self.bending, self.velocity, self._turn, self._steps]
+
+    def _bend(self, share: torch.Tensor) -> torch.Tensor:
+        """Bend towards the way by a share of the gain, shape (N,); return the angle to it [rad], shape (N,)."""
+        data = self.scene["endoscope"].data
+        target = along(self._way.find(), self.look) - data.tip_pos_w
+        direction = normalize(quat_apply_inverse(data.tip_quat_w, target), dim=1)
+        direction = normalize(direction + 0.3 * self.disturbance, dim=1)
+        angle = torch.acos(direction[:, 2].clamp(-1.0, 1.0))
+        error = torch.stack([-direction[:, 1], direction[:, 0]], dim=1)
+        self.bending += (share * self.gain * angle)[:, None] * normalize(error, dim=1)
+        norm = self.bending.norm(dim=1)
+        self.bending *= (self.largest / norm.clamp(min=1.0e-6)).clamp(max=1.0)[:, None]
+        return angle

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scripted expert drives a robot up the colon, and its state at the start of each segment is kept."""
+"""Scripted experts drive a robot up the colons of a scene, and the states at the start of each segment are kept."""
 
 from __future__ import annotations
 
@@ -12,127 +12,143 @@ from arcgym.experts import make_expert
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import Snapshot, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
+from arcgym.start_states.population import Population
+from arcgym.start_states.route import Peaks, Route, what_holds
+from arcgym.start_states.settling import CONTROL_STEP, settle
 from arcgym.utils.threads import one_thread
 
-CONTROL_STEP = 0.1
-"""Time between two decisions of the expert [s]."""
-SETTLING = 1.0
-"""Time without commands before a state is kept, at least, and between two looks at its forces [s]."""
-LONGEST_SETTLING = 10.0
-"""Time after which it is kept though its forces still change [s]."""
-STEADY = 0.01, 0.01
-"""Change of forces between two looks that counts as none: as a share, and in newtons."""
-GAIN = 0.005
-"""Way within the patience below that counts as progress [m]."""
+OUT_OF_PLACE = -1.0
+"""Arc length that a world has whose state is broken or behind the wall [m]."""
 
 
 class Drive:
-    """Drives all worlds of a scene; the first world that enters a segment gives its start state.
+    """Drives all worlds of a scene; in each patient the first world that enters a segment gives its start state.
 
-    The first segment starts from the rest pose. Whenever a tip enters another one, the complete state is kept once its
-    forces have settled without commands, with velocities of zero; the drive then goes on from before.
+    The first segment starts from the rest pose. With several worlds a patient they differ in their settings, and every
+    few seconds those that fall behind go on from where the foremost are. Worlds whose scope has got behind the wall do
+    not count. The states are kept once their forces have settled without commands, with velocities of zero.
     """
 
-    def __init__(self, scene: InteractiveScene, speed: float = 0.04, patience: float = 20.0, max_time: float = 180.0):
+    def __init__(
+        self,
+        scene: InteractiveScene,
+        speed: float = 0.04,
+        patience: float = 20.0,
+        max_time: float = 180.0,
+        seed: int = 0,
+    ):
         """Set up the expert.
 
         Args:
-            scene: Scene at rest, usually one world.
-            speed: Speed of the expert [m/s].
-            patience: Time without progress after which the drive gives up [s].
+            scene: Scene at rest, with as many worlds for each of its patients.
+            speed: Speed of the first world's expert [m/s].
+            patience: Time without progress after which the drive gives up a patient [s].
             max_time: Time after which it gives up anyway [s].
+            seed: Seed of the settings of the other worlds.
 
         Raises:
-            ValueError: If the robot has no expert.
+            ValueError: If the robot has no expert, or the worlds cannot be shared out evenly.
         """
         self.scene, self.patience, self.max_time = scene, patience, max_time
-        self.bounds = scene["colon"].stage.segment_bounds()
-        self.states: dict[str, Snapshot] = {}
-        """State at the start of each segment passed so far."""
+        self.routes = [Route(dict(patient.bounds)) for patient in scene.colon.patients]
+        """How far it has come in each patient."""
         self.time = 0.0
         """Simulated time [s]."""
-        self.arc = 0.0
-        """Largest arc length of a tip [m]."""
-        self.problem = ""
-        """Why the drive ended early; empty while it has not."""
         self.expert = make_expert(scene, speed=speed)
+        self.population = Population(scene, self.expert, seed)
+        self._peaks = Peaks(scene)
         self._steps = round(CONTROL_STEP / scene.sim.physics_dt)
-        self._progress = (0.0, 0.0)
+        self._count = 0
+        self._settled: set[tuple[int, str]] = set()
+
+    @property
+    def bounds(self) -> dict[str, tuple[float, float]]:
+        """Arc length at start and end of each segment of the first patient [m]."""
+        return self.routes[0].bounds
+
+    @property
+    def states(self) -> dict[str, Snapshot]:
+        """State at the start of each segment of the first patient passed so far."""
+        return self.routes[0].states
+
+    @property
+    def arc(self) -> float:
+        """Largest arc length of a tip in the first patient [m]."""
+        return self.routes[0].arc
+
+    @property
+    def problem(self) -> str:
+        """Why the drive ended early in the first patient, and what held it; empty while it has not."""
+        return self.routes[0].failure
 
     def run(self, until: str, report: Callable[[Drive], None] = lambda drive: None) -> bool:
-        """Drive until the start state of a segment is there.
+        """Drive until the start state of a segment is there in all patients, or nothing gets on.
 
         Args:
-            until: The segment.
+            until: The segment; in a patient without it the last one.
             report: Called after every control step.
 
         Returns:
-            Whether it arrived; otherwise :attr:`problem` says why not.
+            Whether it arrived in all; otherwise :attr:`Route.problem` says why not.
         """
         with torch.inference_mode(), one_thread():
-            self._keep(next(iter(self.bounds)), world=0)
-            while until not in self.states and not self.problem:
+            for patient, route in enumerate(self.routes):
+                route.until = until if until in route.bounds else list(route.bounds)[-1]
+                if not route.entries:
+                    self._enter(route, next(iter(route.bounds)), patient)
+            while any(route.running for route in self.routes):
                 self._step()
                 report(self)
-        return until in self.states
+            self._settle()
+        return all(route.until in route.entries for route in self.routes)
 
-    def snapshots(self, about: dict[str, object]) -> SnapshotSet:
-        """Return the states kept so far, with what the file shall say about them."""
-        return SnapshotSet(tuple(self.states), tuple(self.states.values()), fingerprint(self.scene.sim), about)
+    def snapshots(self, about: dict[str, object], patient: int = 0) -> SnapshotSet:
+        """Return the states kept so far of a patient, with what the file shall say about them."""
+        states = self.routes[patient].states
+        return SnapshotSet(tuple(states), tuple(states.values()), fingerprint(self.scene.sim, patient), about)
 
     def _step(self) -> None:
+        self.population.disturb()
         self.expert.act()
         self.scene.sim.step(self._steps)
-        self.time += CONTROL_STEP
-        arcs = self.scene["endoscope"].data.tip_arc_length
-        broken = self.scene.sim.non_finite
-        if bool(broken.all()):
-            self.problem = "the simulation broke"
-            return
-        ahead = torch.where(broken, -1.0, arcs)
-        world = int(ahead.argmax())
-        arc = float(ahead[world])
-        self.arc = max(self.arc, arc)
-        for segment, (start, _) in self.bounds.items():
-            if arc > start and segment not in self.states:
-                self._keep(segment, world)
-        self._watch()
+        self._count += 1
+        self.time = self._count * CONTROL_STEP
+        self._peaks.update()
+        arcs = torch.where(self._misplaced(), OUT_OF_PLACE, self.scene["endoscope"].data.tip_arc_length)
+        front = arcs.view(self.population.each, -1).max(dim=0)
+        broken = self.scene.sim.non_finite.view(self.population.each, -1).all(dim=0)
+        places = zip(self.routes, front.values.tolist(), front.indices.tolist(), broken.tolist(), strict=True)
+        for patient, (route, arc, row, lost) in enumerate(places):
+            if route.running:
+                route.problem = "the simulation broke" if lost else ""
+                self._follow(route, arc, row * len(self.routes) + patient)
+        if self.population.each > 1 and self._count % self.expert.PERIOD == 0:
+            merit = torch.where(arcs == OUT_OF_PLACE, OUT_OF_PLACE, self.expert.merit())
+            self._peaks.take_over(*self.population.exchange(merit))
 
-    def _watch(self) -> None:
-        """Give up where the tip no longer gets on."""
-        reached, since = self._progress
-        if self.arc > reached + GAIN:
-            self._progress = (self.arc, self.time)
-        elif self.time - since > self.patience:
-            self.problem = f"no progress in {self.patience:g} s"
-        if self.time > self.max_time:
-            self.problem = f"not there after {self.max_time:g} s"
-
-    def _keep(self, segment: str, world: int) -> None:
-        """Keep the state of a world after a while without commands; the simulation itself stays where it is."""
+    def _misplaced(self) -> torch.Tensor:
+        """Return the worlds that do not count, shape (N,), bool."""
         sim = self.scene.sim
-        worlds = torch.arange(sim.num_envs)
-        now = tuple(sim.read_snapshot(index) for index in range(sim.num_envs))
-        sim.load_snapshots(SnapshotSet(tuple(map(str, range(sim.num_envs))), now, fingerprint(sim)))
-        sim.write_snapshot(worlds)
-        self._settle(world)
-        self.states[segment] = sim.read_snapshot(world).at_rest()
-        sim.write_snapshot(worlds)
-        sim.forward()
+        return sim.non_finite | sim.wall_penetrated if sim.cfg.solver == "two_level" else sim.non_finite
 
-    def _settle(self, world: int) -> None:
-        """Wait until the largest force on a window of scope and the push on the base of a world stay the same."""
-        sim, share, least = self.scene.sim, *STEADY
-        steps, before = round((SETTLING - CONTROL_STEP) / sim.physics_dt), self._forces(world)
-        for _ in range(round(LONGEST_SETTLING / SETTLING)):
-            sim.step(steps)
-            sim.step(self._steps)
-            now = self._forces(world)
-            if bool(((now - before).abs() <= share * now + least).all()):
-                return
-            before = now
+    def _follow(self, route: Route, arc: float, world: int) -> None:
+        """Take note of a patient's foremost world."""
+        for segment in route.advance(arc, self.time):
+            self._enter(route, segment, world)
+        if route.running:
+            route.watch(self.patience, self.max_time)
+            if route.problem:
+                route.held_by = what_holds(self.scene, world)
 
-    def _forces(self, world: int) -> torch.Tensor:
-        """Largest force on a window and push on the base, means over a control step [N], shape (2,)."""
-        data = self.scene["endoscope"].data
-        return torch.stack([data.window_force_norm[world].amax(), data.base_force[world].abs()])
+    def _enter(self, route: Route, segment: str, world: int) -> None:
+        route.entries[segment] = self._peaks.entry(world, self.time)
+        route.states[segment] = self.scene.sim.read_snapshot(world)
+
+    def _settle(self) -> None:
+        """Let the states settle that have not."""
+        kept = [(patient, name) for patient, route in enumerate(self.routes) for name in route.states]
+        fresh = [key for key in kept if key not in self._settled]
+        raw = [(patient, self.routes[patient].states[name]) for patient, name in fresh]
+        for (patient, name), state in zip(fresh, settle(self.scene, raw), strict=True):
+            self.routes[patient].states[name] = state
+        self._settled |= set(fresh)

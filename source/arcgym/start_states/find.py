@@ -4,15 +4,20 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Sequence
 from pathlib import Path
 
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SnapshotSet
 from arcgym.start_states import store
 from arcgym.start_states.errors import StartStateError
-from arcgym.start_states.making import key_of, make
+from arcgym.start_states.making import key_of, make_all
 from arcgym.start_states.progress import say
 from arcgym.utils.progress import report
+
+AT_ONCE = 32
+"""Patients whose states are made at once."""
 
 
 def ensure(scene: InteractiveScene, segment: str, patient: int = 0) -> SnapshotSet:
@@ -28,45 +33,52 @@ def ensure(scene: InteractiveScene, segment: str, patient: int = 0) -> SnapshotS
     Raises:
         StartStateError: If the robot's expert does not get there, with how far it came and what can be used.
     """
-    found = find_stored(scene, segment, patient)
-    if found is not None:
-        return found
-    key = key_of(scene, patient)
-    path = store.in_cache(scene.colon, scene.endoscope, key, patient)
-    with store.locked(path):
-        found = store.load(path)
-        if found is None or not _settled(found, segment):
-            _say_why(path, found, store.outdated(path, key))
-            found, _ = make(scene.cfg, scene.sim.cfg, segment, patient=scene.colon.patients[patient].path)
-    if segment not in found.names:
-        raise StartStateError(_failure(scene, segment, found, patient))
-    return found
+    return _ensure(scene, segment, [patient])[0]
 
 
 def ensure_all(scene: InteractiveScene, segment: str) -> list[SnapshotSet]:
-    """Return the start states of every patient of the scene, see :func:`ensure`.
+    """Return the start states of every patient of the scene, see :func:`ensure`; missing ones are made many at once.
 
     Raises:
         StartStateError: If the robot's expert does not get there in some patients; names them.
     """
-    states: list[SnapshotSet] = []
-    failures: dict[str, StartStateError] = {}
-    for index, patient in enumerate(scene.colon.patients):
-        report(f"start states of {patient.name} ({index + 1} of {len(scene.colon.patients)})")
-        try:
-            states.append(ensure(scene, segment, index))
-        except StartStateError as error:
-            failures[patient.name] = error
-    if len(failures) == 1:
-        raise next(iter(failures.values()))
-    if failures:
-        names = ", ".join(list(failures)[:5])
-        raise StartStateError(
-            f"The expert of {scene.endoscope.path.name} does not reach the {segment} of {len(failures)} of "
-            f"{len(scene.colon.patients)} patients ({names}{', ...' if len(failures) > 5 else ''}). Leave them out of "
-            "env.scene.colon.usd_path, or begin at the anus with env.start=rest."
-        )
-    return states
+    return _ensure(scene, segment, range(len(scene.colon.patients)))
+
+
+def _ensure(scene: InteractiveScene, segment: str, patients: Sequence[int]) -> list[SnapshotSet]:
+    found = {patient: find_stored(scene, segment, patient) for patient in patients}
+    missing = [patient for patient, states in found.items() if states is None]
+    for first in range(0, len(missing), AT_ONCE):
+        report(f"start states: {first} of {len(missing)} patients made")
+        found |= _make(scene, segment, missing[first : first + AT_ONCE])
+    failed = [patient for patient, states in found.items() if states is None or segment not in states.names]
+    if len(failed) == 1:
+        raise StartStateError(_failure(scene, segment, found[failed[0]], failed[0]))
+    if failed:
+        raise StartStateError(_failures(scene, segment, failed))
+    return [states for states in found.values() if states is not None]
+
+
+def _make(scene: InteractiveScene, segment: str, patients: Sequence[int]) -> dict[int, SnapshotSet]:
+    """Make the states of some patients at once, but for those that another process makes meanwhile."""
+    keys = {patient: key_of(scene, patient) for patient in patients}
+    paths = {patient: store.in_cache(scene.colon, scene.endoscope, keys[patient], patient) for patient in patients}
+    made: dict[int, SnapshotSet] = {}
+    with contextlib.ExitStack() as stack:
+        for path in sorted(paths.values()):
+            stack.enter_context(store.locked(path))
+        for patient, path in paths.items():
+            stored = store.load(path)
+            if stored is not None and _settled(stored, segment):
+                made[patient] = stored
+            else:
+                _say_why(path, stored, store.outdated(path, keys[patient]))
+        left = [patient for patient in patients if patient not in made]
+        if left:
+            stages = [scene.colon.patients[patient].path for patient in left]
+            sets = make_all(scene.cfg, scene.sim.cfg, segment, stages)
+            made |= {patient: states for patient, (states, _) in zip(left, sets, strict=True)}
+    return made
 
 
 def find_stored(scene: InteractiveScene, segment: str, patient: int = 0) -> SnapshotSet | None:
@@ -109,11 +121,21 @@ def _say_why(path: Path, found: SnapshotSet | None, changed: list[str]) -> None:
         say(f"start states in {path.parent} are stale: {' and '.join(changed)} changed; making new ones")
 
 
-def _failure(scene: InteractiveScene, segment: str, found: SnapshotSet, patient: int) -> str:
+def _failure(scene: InteractiveScene, segment: str, found: SnapshotSet | None, patient: int) -> str:
     colon = scene.colon.patients[patient].path
+    assert found is not None  # those that are missing were made as far as the expert came
     return (
         f"The expert of {scene.endoscope.path.name} does not reach the {segment} of {colon}: it came "
         f"{float(found.about['arc']):.2f} m far, into the {found.names[-1]} ({found.about['problem']}). Tasks of "
         f"{', '.join(found.names)} can be used (env.segment={found.names[-1]}), or env.start=rest; "
         "'arcgym snapshots --task NAME --force --speed 0.02' tries again."
+    )
+
+
+def _failures(scene: InteractiveScene, segment: str, failed: Sequence[int]) -> str:
+    names = [scene.colon.patients[patient].name for patient in failed]
+    return (
+        f"The expert of {scene.endoscope.path.name} does not reach the {segment} of {len(failed)} of "
+        f"{len(scene.colon.patients)} patients ({', '.join(names[:5])}{', ...' if len(failed) > 5 else ''}). Leave "
+        "them out of env.scene.colon.usd_path, or begin at the anus with env.start=rest."
     )

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,10 @@ from arcgym.utils.configclass import replace
 
 SPEED = 0.04
 """Speed of the experts unless told otherwise [m/s]."""
+MAX_TIME = 240.0
+"""Simulated time after which a drive gives up a patient unless told otherwise [s]."""
+CPU_WORLDS, GPU_WORLDS = 4, 12
+"""Worlds for each patient: on a CPU each costs time, on a GPU next to none."""
 
 
 def make(
@@ -28,17 +33,17 @@ def make(
     until: str,
     *,
     speed: float = SPEED,
-    max_time: float = 180.0,
+    max_time: float = MAX_TIME,
     path: Path | None = None,
     patient: Path | None = None,
 ) -> tuple[SnapshotSet, Path]:
     """Drive a robot up a colon and write the start states of the segments that it enters.
 
     Args:
-        scene_cfg: Scene of a task; its colon and robot are taken, one world of each and no sensors.
+        scene_cfg: Scene of a task; its colon and robot are taken, and no sensors.
         sim_cfg: Settings of the simulation, with the device.
         until: Last segment whose start state is wanted.
-        speed: Speed of the expert [m/s].
+        speed: Speed of the first world's expert [m/s].
         max_time: Simulated time after which to give up [s].
         path: File to write; the cache's by default.
         patient: Stage of the patient, in place of the scene's first.
@@ -50,28 +55,70 @@ def make(
     Raises:
         StartStateError: If the colon has no such segment, or the robot no expert.
     """
-    scene = build_scene(scene_cfg, sim_cfg, patient)
-    key = key_of(scene)
-    bounds = scene.colon.stage.segment_bounds()
-    if until not in bounds:
-        raise StartStateError(f"Segment '{until}' is not in {scene.colon.path}; it has {', '.join(bounds)}.")
+    patients = None if patient is None else [patient]
+    return make_all(scene_cfg, sim_cfg, until, patients, speed=speed, max_time=max_time, path=path)[0]
+
+
+def make_all(
+    scene_cfg: InteractiveSceneCfg,
+    sim_cfg: SimulationCfg,
+    until: str,
+    patients: Sequence[Path] | None = None,
+    *,
+    speed: float = SPEED,
+    max_time: float = MAX_TIME,
+    path: Path | None = None,
+) -> list[tuple[SnapshotSet, Path]]:
+    """Drive a robot up several colons at once, see :func:`make`; states and file of each.
+
+    Args:
+        scene_cfg: Scene of a task.
+        sim_cfg: Settings of the simulation.
+        until: Last segment whose start state is wanted.
+        patients: Stages of the patients; None for the scene's first.
+        speed: Speed of the first world's expert [m/s].
+        max_time: Simulated time after which to give up a patient [s].
+        path: File of the first patient; the cache's by default.
+
+    Raises:
+        StartStateError: If a colon has no such segment, or the robot no expert.
+    """
+    scene = build_scene(scene_cfg, sim_cfg, patients)
+    for patient in scene.colon.patients:
+        if until not in patient.bounds:
+            raise StartStateError(f"Segment '{until}' is not in {patient.path}; it has {', '.join(patient.bounds)}.")
     try:
         drive = Drive(scene, speed=speed, max_time=max_time)
     except ValueError as error:
         raise StartStateError(str(error)) from error
-    label = f"start states: {scene.endoscope.path.stem} in {scene.colon.path.parent.name}"
+    label = f"start states: {scene.endoscope.path.stem} in {_names(scene)}"
     say(f"{label}, made by {type(drive.expert).__name__} on {scene.device}; this happens once")
     began = time.perf_counter()
-    with shown(label, bounds[until][0]) as report:
+    with shown(label, drive.bounds[until][0]) as report:
         drive.run(until, report)
-    states = drive.snapshots(store.describe(key, drive.arc, drive.problem, speed))
-    path = path or store.in_cache(scene.colon, scene.endoscope, key)
-    took = f"{label}: {', '.join(states.names)} after {time.perf_counter() - began:.0f} s"
+    took = time.perf_counter() - began
+    return [_keep(drive, patient, speed, path, took) for patient in range(len(drive.routes))]
+
+
+def _names(scene: InteractiveScene) -> str:
+    """Return the patient of a scene, or how many it has, in words."""
+    patients = scene.colon.patients
+    return patients[0].name if len(patients) == 1 else f"{len(patients)} patients"
+
+
+def _keep(drive: Drive, patient: int, speed: float, path: Path | None, took: float) -> tuple[SnapshotSet, Path]:
+    """Write the states of a patient, unless its file has more; return both."""
+    scene, route = drive.scene, drive.routes[patient]
+    key = key_of(scene, patient)
+    states = drive.snapshots(store.describe(key, route.arc, route.failure, speed), patient)
+    path = path or store.in_cache(scene.colon, scene.endoscope, key, patient)
+    name = scene.colon.patients[patient].name
+    said = f"start states: {scene.endoscope.path.stem} in {name}: {', '.join(states.names)} after {took:.0f} s"
     stored = store.load(path)
-    if stored is not None and len(stored.names) > len(states.names) and not stored.mismatch(scene.sim):
-        say(f"{took}; {path} has more and is kept")
+    if stored is not None and len(stored.names) > len(states.names) and not stored.mismatch(scene.sim, patient):
+        say(f"{said}; {path} has more and is kept")
     else:
-        say(f"{took} -> {path}")
+        say(f"{said} -> {path}")
         _write(states, path)
     return states, path
 
@@ -82,12 +129,15 @@ def key_of(scene: InteractiveScene, patient: int = 0) -> StateKey:
 
 
 def build_scene(
-    scene_cfg: InteractiveSceneCfg, sim_cfg: SimulationCfg, patient: Path | None = None
+    scene_cfg: InteractiveSceneCfg, sim_cfg: SimulationCfg, patients: Sequence[Path] | None = None
 ) -> InteractiveScene:
-    """Return the one world in which a robot is driven, with the patient of a stage or the scene's first."""
-    own: dict[str, Any] = {"num_patients": 1} if patient is None else {"usd_path": str(patient), "num_patients": None}
-    cfg = InteractiveSceneCfg(num_envs=1, colon=replace(scene_cfg.colon, **own), endoscope=scene_cfg.endoscope)
-    return InteractiveScene(cfg, sim_cfg)
+    """Return the worlds in which a robot is driven, some for each patient of the stages, or the scene's first."""
+    own: dict[str, Any] = {"num_patients": 1}
+    if patients is not None:
+        own = {"usd_path": [str(patient) for patient in patients], "num_patients": None}
+    colon, worlds = replace(scene_cfg.colon, **own), CPU_WORLDS if sim_cfg.device == "cpu" else GPU_WORLDS
+    count = worlds * (1 if patients is None else len(patients))
+    return InteractiveScene(InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=scene_cfg.endoscope), sim_cfg)
 
 
 def _write(states: SnapshotSet, path: Path) -> None:

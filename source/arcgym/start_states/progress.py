@@ -38,8 +38,10 @@ def shown(label: str, goal: float) -> Iterator[Callable[[Drive], Any]]:
         line = progress.add_task(label, total=goal, way="compiling")
 
         def report(drive: Drive) -> None:
-            segment = list(drive.states)[-1]
-            way = f"{drive.arc:.2f} of {goal:.2f} m, {segment}, {drive.time:.0f} s simulated"
-            progress.update(line, completed=min(drive.arc, goal), way=way)
+            arc = min(route.arc for route in drive.routes)
+            left = sum(route.running for route in drive.routes)
+            way = f"{arc:.2f} of {goal:.2f} m, {drive.time:.0f} s simulated"
+            way += f", {left} of {len(drive.routes)} patients left" if len(drive.routes) > 1 else ""
+            progress.update(line, completed=min(arc, goal), way=way)
 
         yield report

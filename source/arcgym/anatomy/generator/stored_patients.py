@@ -64,9 +64,14 @@ def main(folder: str, *seeds: str) -> None:
     from arcgym.anatomy.generator.population import draw_spec
 
     for seed in map(int, seeds):
-        out = stage_of(Path(folder), seed).parent
-        if not out.exists():
-            make_to_folder(draw_spec(seed), out)
+        stage = stage_of(Path(folder), seed)
+        if stage.is_file():
+            continue
+        try:
+            make_to_folder(draw_spec(seed), stage.parent)
+        except (OSError, ValueError):
+            if not stage.is_file():  # else another process, which makes the same one, was first
+                raise
 
 
 def _generate(folder: Path, seeds: Sequence[int]) -> None:

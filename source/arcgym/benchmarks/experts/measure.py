@@ -1,0 +1,112 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Drives the expert of a robot up several patients at once, and notes how far it came in each."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from arcgym.assets import CAPSULE_CFG, MAGNETIC_CFG, PROXIMAL_CFG, ColonCfg
+from arcgym.scene import InteractiveSceneCfg
+from arcgym.scene.interactive_scene import InteractiveScene
+from arcgym.sim import SimulationCfg
+from arcgym.start_states import Drive, store
+from arcgym.start_states.making import SPEED, key_of
+from arcgym.start_states.route import Route
+from arcgym.start_states.settling import CONTROL_STEP
+
+ROBOTS = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
+"""Robots by name."""
+
+OUT_OF_TIME = "no computing time left"
+"""Problem of a patient in which the drive was stopped from outside."""
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """One robot in one tissue, with some worlds for each patient of a batch."""
+
+    robot: str
+    """Name out of :data:`ROBOTS`."""
+    tissue: str
+    """Tissue preset."""
+    worlds: int
+    """Worlds for each patient."""
+    max_time: float
+    """Simulated time after which the drive gives up a patient [s]."""
+    device: str
+    """Device of the simulation."""
+    seed: int = 0
+    """Seed of the experts' settings."""
+    deadline: float = float("inf")
+    """Time of :func:`time.monotonic` at which it gives up the patients that are under way [s]."""
+    keep_states: bool = False
+    """Whether to keep the start states in the cache folder."""
+
+
+def attempt(
+    plan: Attempt,
+    stages: Sequence[Path],
+    done: Callable[[dict[str, Any]], None],
+    tell: Callable[[str], None] = lambda text: None,
+) -> None:
+    """Drive up all patients of a batch.
+
+    Args:
+        plan: What drives, and how long.
+        stages: Stages of the patients.
+        done: Called with the row of each patient as soon as the drive has ended there.
+        tell: Called with a line about all of them every 10 simulated seconds.
+    """
+    colon = ColonCfg(usd_path=[str(stage) for stage in stages], material=plan.tissue)
+    count = plan.worlds * len(stages)
+    cfg = InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=ROBOTS[plan.robot])
+    scene = InteractiveScene(cfg, SimulationCfg(device=plan.device))
+    drive = Drive(scene, max_time=plan.max_time, seed=plan.seed)
+    began, written = time.monotonic(), set[int]()
+
+    def report(drive: Drive) -> None:
+        for patient, route in enumerate(drive.routes):
+            if route.running and time.monotonic() > plan.deadline:
+                route.problem = OUT_OF_TIME
+            if not route.running and patient not in written:
+                written.add(patient)
+                about = {"robot": plan.robot, "tissue": plan.tissue, "worlds": plan.worlds, "seed": plan.seed}
+                spent = {"wall_time": round(time.monotonic() - began, 1)}
+                done({"patient": scene.colon.patients[patient].name, **about, **row_of(route), **spent})
+
+        if round(drive.time / CONTROL_STEP) % 100 == 0:
+            tell(_progress(drive, time.monotonic() - began))
+
+    drive.run("cecum", report)
+    if plan.keep_states:
+        _keep(scene, drive)
+
+
+def _progress(drive: Drive, spent: float) -> str:
+    """Return where the tips are, after so much time [s]."""
+    arcs = sorted(route.arc for route in drive.routes)
+    left = sum(route.running for route in drive.routes)
+    way = f"{arcs[0]:.2f} to {arcs[-1]:.2f} m, median {arcs[len(arcs) // 2]:.2f} m"
+    return f"{drive.time:.0f} s simulated in {spent:.0f} s: {way}; {left} of {len(arcs)} patients under way"
+
+
+def row_of(route: Route) -> dict[str, Any]:
+    """Return what is written down of one patient."""
+    end = max(end for _, end in route.bounds.values())
+    entries = {name: dataclasses.asdict(entry) for name, entry in route.entries.items()}
+    figures = {"length": round(end, 4), "reached": round(route.arc, 4), "time": round(route.time, 1)}
+    return figures | {"segments": entries, "problem": route.problem, "held_by": route.held_by}
+
+
+def _keep(scene: InteractiveScene, drive: Drive) -> None:
+    """Write the start states of each patient into the cache folder."""
+    for patient, route in enumerate(drive.routes):
+        key = key_of(scene, patient)
+        about = store.describe(key, route.arc, route.failure, SPEED)
+        drive.snapshots(about, patient).save(store.in_cache(scene.colon, scene.endoscope, key, patient))

@@ -1,0 +1,80 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Worlds of one patient that work together: those that fall behind go on from where the foremost are."""
+
+from __future__ import annotations
+
+import torch
+
+from arcgym.experts import ExpertBase
+from arcgym.scene.interactive_scene import InteractiveScene
+
+MEMORY = 0.85
+"""Share of the disturbance that is left after a control step: it lasts about 0.7 s."""
+DISTURBANCE = 0.25
+"""Size of what is added to the disturbance in a control step."""
+FRONT = 4
+"""One of so many worlds of a patient is followed."""
+BEHIND = 2
+"""One of so many worlds of a patient is moved."""
+
+
+class Population:
+    """The worlds of each patient: N worlds, P patients, W = N / P worlds of each. World ``n`` has patient ``n % P``.
+
+    The first of each patient's worlds keeps the expert's own settings and no disturbance until it falls behind.
+    """
+
+    def __init__(self, scene: InteractiveScene, expert: ExpertBase, seed: int = 0):
+        """Draw the settings.
+
+        Args:
+            scene: The scene.
+            expert: Its expert.
+            seed: Seed of settings, disturbances and of who takes over from whom.
+
+        Raises:
+            ValueError: If the worlds cannot be shared out evenly.
+        """
+        self.scene, self.expert = scene, expert
+        self.patients = len(scene.colon.patients)
+        self.each = scene.num_envs // self.patients
+        if self.each * self.patients != scene.num_envs:
+            raise ValueError(f"{scene.num_envs} worlds cannot be shared out evenly among {self.patients} patients.")
+        self.random = torch.Generator(scene.device).manual_seed(seed)
+        worlds = torch.arange(scene.num_envs, device=scene.device)
+        expert.vary(worlds[self.patients :], self.random)
+        self._plain = worlds < self.patients
+
+    def disturb(self) -> None:
+        """Let the disturbances drift on by a control step."""
+        noise = torch.randn(self.expert.disturbance.shape, generator=self.random, device=self.scene.device)
+        drift = MEMORY * self.expert.disturbance + DISTURBANCE * noise
+        self.expert.disturbance.copy_(torch.where(self._plain[:, None], 0.0, drift))
+
+    def exchange(self, score: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Let the rear half of each patient's worlds take over the states of the foremost, with new settings.
+
+        Args:
+            score: Higher is farther, shape (N,).
+
+        Returns:
+            The worlds that were moved and those whose states they took, int64, shape (n,).
+        """
+        order = score.view(self.each, self.patients).argsort(dim=0, descending=True)
+        front, rear = order[: max(1, self.each // FRONT)], order[self.each - self.each // BEHIND :]
+        pick = torch.randint(len(front), rear.shape, generator=self.random, device=self.scene.device)
+        number = torch.arange(self.patients, device=self.scene.device)
+        moved, sources = ((rows * self.patients + number).flatten() for rows in (rear, front.gather(0, pick)))
+        if len(moved):
+            self._move(moved, sources)
+        return moved, sources
+
+    def _move(self, moved: torch.Tensor, sources: torch.Tensor) -> None:
+        sim = self.scene.sim
+        sim.write_state({name: array[sources] for name, array in sim.world_arrays().items()}, moved)
+        sim.forward()
+        self.expert.take_over(moved, sources)
+        self.expert.vary(moved, self.random)
+        self.expert.disturbance[moved] = 0.0
+        self._plain[moved] = False

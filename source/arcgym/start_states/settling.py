@@ -1,0 +1,82 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""States without commands: worlds are left alone until their forces no longer change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import torch
+
+from arcgym.scene.interactive_scene import InteractiveScene
+from arcgym.sim import Snapshot
+
+CONTROL_STEP = 0.1
+"""Time over which forces are averaged [s]."""
+SETTLING = 1.0
+"""Time without commands before a state is kept, at least, and between two looks at its forces [s]."""
+LONGEST_SETTLING = 10.0
+"""Time after which it is kept though its forces still change [s]."""
+STEADY = 0.01, 0.01
+"""Change of forces between two looks that counts as none: as a share, and in newtons."""
+
+
+def settle(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> list[Snapshot]:
+    """Return states after a while without commands, at rest; the scene's own state is left as it is.
+
+    Args:
+        scene: Scene; its worlds are used, as many states at a time as its patients allow.
+        states: Patient and state of each.
+    """
+    sim = scene.sim
+    now = {name: array.clone() for name, array in sim.world_arrays().items()}
+    settled: list[Snapshot | None] = [None] * len(states)
+    for batch in _batches([patient for patient, _ in states], len(scene.colon.patients), scene.num_envs):
+        worlds, which = list(batch), list(batch.values())
+        arrays = {name: np.stack([states[k][1].arrays[name] for k in which]) for name in now}
+        sim.write_state({name: torch.from_numpy(array).to(scene.device) for name, array in arrays.items()}, worlds)
+        sim.forward()
+        for world, state in _until_steady(scene, worlds):
+            settled[batch[world]] = state.at_rest()
+    sim.write_state(now)
+    sim.forward()
+    return [state for state in settled if state is not None]
+
+
+def _batches(owners: Sequence[int], patients: int, worlds: int) -> Iterator[dict[int, int]]:
+    """Yield which state each world takes; world ``n`` can take those of patient ``n % patients``."""
+    waiting = {patient: [k for k, owner in enumerate(owners) if owner == patient] for patient in range(patients)}
+    while any(waiting.values()):
+        places = [world for world in range(worlds) if waiting[world % patients]]
+        batch: dict[int, int] = {}
+        for world in places:
+            if waiting[world % patients]:
+                batch[world] = waiting[world % patients].pop(0)
+        yield batch
+
+
+def _until_steady(scene: InteractiveScene, worlds: Sequence[int]) -> Iterator[tuple[int, Snapshot]]:
+    """Yield each world's state once its largest force on a window and the push on its base stay the same."""
+    sim, (share, least) = scene.sim, STEADY
+    control = round(CONTROL_STEP / sim.physics_dt)
+    steps = round(SETTLING / sim.physics_dt) - control
+    waiting, before = list(worlds), _forces(scene)
+    for look in range(round(LONGEST_SETTLING / SETTLING)):
+        sim.step(steps)
+        sim.step(control)
+        now = _forces(scene)
+        steady = ((now - before).abs() <= share * now + least).all(dim=1).cpu()
+        last = look == round(LONGEST_SETTLING / SETTLING) - 1
+        for world in [world for world in waiting if last or steady[world]]:
+            waiting.remove(world)
+            yield world, sim.read_snapshot(world)
+        if not waiting:
+            return
+        before = now
+
+
+def _forces(scene: InteractiveScene) -> torch.Tensor:
+    """Return the largest force on a window and the push on the base, means over a control step [N], shape (N, 2)."""
+    data = scene["endoscope"].data
+    return torch.stack([data.window_force_norm.amax(dim=1), data.base_force.abs()], dim=1)

@@ -1,0 +1,39 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a drive notes of a patient, and the table of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from arcgym.benchmarks.experts.measure import row_of
+from arcgym.benchmarks.experts.table import failures, read_rows, table
+from arcgym.start_states.route import Entry, Route
+
+
+def test_a_route_ends_without_progress_or_time() -> None:
+    route = Route({"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.4)}, until="sigmoid")
+    assert route.advance(0.05, 1.0) == ["rectum"]
+    route.watch(patience=3.0, max_time=9.0)
+    assert route.running
+    route.advance(0.054, 4.5)  # 4 mm in 3.5 s
+    route.watch(patience=3.0, max_time=9.0)
+    assert route.problem == "no progress in 3 s" and not route.running
+
+
+def test_the_table_has_shares_medians_and_high_figures(tmp_path: Path) -> None:
+    rows = []
+    for patient, time, problem in (("a", 10.0, ""), ("b", 30.0, "no progress in 20 s")):
+        route = Route({"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.4)}, arc=0.2, problem=problem, held_by="1 N")
+        route.entries = {"rectum": Entry(0.0, 0.0, 0.0, 0.0), "sigmoid": Entry(time, 1.0, 2.0, 3.0)}
+        rows.append({"patient": patient, "robot": "capsule", "tissue": "paper", **row_of(route)})
+    lines = table(rows).splitlines()
+    assert lines[2].startswith("| capsule | paper | sigmoid | 2 of 2 | 20 (29) | 1.0 (1.0) | 2.0 (2.0) |")
+    assert "| descending | 0 of 2 | – |" in lines[3]
+    assert failures(rows) == "- b, capsule, paper: 0.20 of 0.40 m, in the sigmoid, no progress in 20 s; 1 N"
+
+
+def test_a_line_that_was_cut_off_is_left_out(tmp_path: Path) -> None:
+    path = tmp_path / "rows.jsonl"
+    path.write_text('{"patient": "a"}\n{"patient": "b", "rob')
+    assert read_rows(path) == [{"patient": "a"}]

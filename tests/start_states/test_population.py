@@ -1,0 +1,63 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Worlds of a patient that work together: four worlds of each of two tubes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import torch
+from tiny import write_tiny_colon
+from tiny_sim import TinySim
+
+from arcgym.experts import PullExpert
+from arcgym.scene import InteractiveSceneCfg
+from arcgym.scene.interactive_scene import InteractiveScene
+from arcgym.sim import SimulationCfg
+from arcgym.start_states.population import Population
+
+
+def scene_of(folder: Path, worlds: int) -> InteractiveScene:
+    tube, paths = TinySim(folder), []
+    for name, length in (("short", 0.20), ("long", 0.22)):
+        (folder / name).mkdir()
+        paths.append(str(write_tiny_colon(folder / name, length=length)))
+    cfg = InteractiveSceneCfg(
+        num_envs=worlds, colon=tube.colon_cfg(usd_path=paths, rigid=True), endoscope=tube.scope_cfg("capsule")
+    )
+    return InteractiveScene(cfg, SimulationCfg())
+
+
+def test_those_behind_go_on_from_the_foremost_of_their_patient(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, 8)
+    expert = PullExpert(scene)
+    population = Population(scene, expert)
+    assert expert.speed[:2].tolist() == pytest.approx([0.04] * 2) and len(set(expert.speed.tolist())) == 7
+    velocity = torch.zeros(8, 3)
+    velocity[:, 2] = torch.linspace(0.02, 0.06, 8)
+    for _ in range(2):
+        scene["endoscope"].set_tip_velocity_command(velocity, torch.zeros(8, 3))
+        scene.sim.step(48)
+    before, speed = scene["endoscope"].data.joint_pos.clone(), expert.speed.clone()
+    arc = scene["endoscope"].data.tip_arc_length.clone()
+    moved, sources = population.exchange(arc)
+    assert sorted(zip(moved.tolist(), sources.tolist(), strict=True)) == [(0, 6), (1, 7), (2, 6), (3, 7)]
+    now = scene["endoscope"].data.joint_pos
+    assert torch.equal(now[:4], before[[6, 7, 6, 7]]) and torch.equal(now[4:], before[4:])
+    assert torch.equal(scene["endoscope"].data.tip_arc_length[:4], arc[[6, 7, 6, 7]])
+    assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[:4], speed[:4]).any()
+
+
+def test_the_first_world_of_a_patient_is_not_disturbed(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, 4)
+    expert = PullExpert(scene)
+    population = Population(scene, expert)
+    population.disturb()
+    assert not expert.disturbance[:2].any() and expert.disturbance[2:].all()
+
+
+def test_patients_have_as_many_worlds_each(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, 3)
+    with pytest.raises(ValueError, match="3 worlds cannot be shared out evenly among 2 patients"):
+        Population(scene, PullExpert(scene))
