@@ -72,6 +72,10 @@ def counts(text: str) -> list[int]:
     return [positive(part) for part in text.split(",")]
 
 
+DEFAULT_AGENT = "rsl_rl_cfg_entry_point"
+"""Registry key of a task's first agent."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class TaskArguments:
     """Arguments of every subcommand that runs a task."""
@@ -80,7 +84,7 @@ class TaskArguments:
     num_envs: int | None = argument("number of worlds (default: the task's)", None, type=positive)
     seed: int | None = argument("seed of environment and networks (default: the agent's)", None, type=int)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
-    agent: str = argument("agent: ppo (default), sac, a2c, ... or a registry key", "rsl_rl_cfg_entry_point")
+    agent: str = argument("agent: ppo (default), sac, a2c, ... or a registry key", DEFAULT_AGENT)
     headless: bool = argument("accepted for Isaac Lab's sake: there is no window", False)
     overrides: list[str] = dataclasses.field(default_factory=list)
     """Texts ``env.path=value`` and ``agent.path=value``."""

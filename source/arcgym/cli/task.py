@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from arcgym.cli.arguments import RunArguments, TaskArguments
+from arcgym.cli.arguments import DEFAULT_AGENT, RunArguments, TaskArguments
 from arcgym.utils.errors import UsageError
 
 AGENT_FIELDS = (
@@ -42,13 +43,14 @@ def agent_key(name: str) -> str:
     """Return the registry key of an agent: ``sac`` is ``rsl_rl_sac_cfg_entry_point``, ``ppo`` the default agent's."""
     if name.endswith("cfg_entry_point"):
         return name
-    return "rsl_rl_cfg_entry_point" if name == "ppo" else f"rsl_rl_{name}_cfg_entry_point"
+    return DEFAULT_AGENT if name == "ppo" else f"rsl_rl_{name}_cfg_entry_point"
 
 
 def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     """Return configurations as a run had them, changed by overrides and arguments, and the checkpoint of that run.
 
-    Prints where they come from and what the command line changes. A run of another task gives the agent alone.
+    Prints where they come from and what the command line changes. A run of another task gives the agent alone. With the
+    path of a checkpoint and no agent named, the agent is the one that its run was trained with.
 
     Raises:
         UsageError: The task, an override, the checkpoint or the run's parameters are wrong.
@@ -57,6 +59,7 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     from arcgym.rl.run_folder import find_checkpoint
     from arcgym.utils.coerce import to_plain
 
+    args = _with_trained_agent(args)
     _, asked = load_cfgs(args)
     checkpoint = find_checkpoint(asked.experiment_name, asked.load_run, asked.load_checkpoint)
     env_cfg, agent_cfg = _registered(args.task, args.agent)
@@ -80,6 +83,17 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
         if path not in passing:
             print(f"changed: {path}: {old} -> {new}")
     return env_cfg, agent_cfg, checkpoint
+
+
+def _with_trained_agent(args: RunArguments) -> RunArguments:
+    """Return the arguments with the agent of the run that a checkpoint's path names, where none was asked for."""
+    from arcgym.rl.params import read_params
+
+    path = Path(args.checkpoint or "")
+    if args.no_params or args.agent != DEFAULT_AGENT or not path.is_file():
+        return args
+    saved = read_params(path.parent)
+    return replace(args, agent=saved.agent_key) if saved is not None and saved.agent_key else args
 
 
 def _registered(task: str, agent: str) -> tuple[Any, Any]:

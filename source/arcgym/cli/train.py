@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
-from arcgym.cli.task import load_cfgs, load_run_cfgs
+from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs
 
 TAKES_OVERRIDES = True
 
@@ -55,6 +55,13 @@ def run(namespace: argparse.Namespace) -> int:
     interval = args.video_interval if args.video else None
     folder = Path(args.log_dir) if args.log_dir else None
     options = TrainOptions(
-        args.device, args.distributed, checkpoint, interval, args.video_length, folder, args.evaluate
+        device=args.device,
+        distributed=args.distributed,
+        checkpoint=checkpoint,
+        video_interval=interval,
+        video_length=args.video_length,
+        folder=folder,
+        evaluates=args.evaluate,
+        agent=agent_key(args.agent),
     )
     return train(args.task, env_cfg, agent_cfg, options)

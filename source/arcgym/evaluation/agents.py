@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.batched_policy import BatchedPolicy
+from arcgym.rl.constrained_runner import ConstrainedPolicy
 from arcgym.rl.rollout import Policy
 from arcgym.rl.trained_policy import trained_policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
@@ -16,7 +17,10 @@ from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 
 def trained_agent(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> Policy:
     """Return the policy of a checkpoint, whose answer for a world does not depend on the number of worlds."""
-    return BatchedPolicy(trained_policy(env, agent_cfg, checkpoint), env.num_envs)
+    policy = trained_policy(env, agent_cfg, checkpoint)
+    if isinstance(policy, ConstrainedPolicy):
+        return ConstrainedPolicy(BatchedPolicy(policy.policy, env.num_envs), policy.constraint)
+    return BatchedPolicy(policy, env.num_envs)
 
 
 def file_sha256(path: Path) -> str:

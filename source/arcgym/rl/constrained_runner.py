@@ -9,7 +9,6 @@ from typing import Any
 
 import torch
 from rsl_rl.env import VecEnv
-from rsl_rl.models import MLPModel
 from tensordict import TensorDict
 from torch import nn
 
@@ -52,8 +51,8 @@ class ConstrainedVecEnv(VecEnv):
 class ConstrainedPolicy(nn.Module):
     """A policy and the rules, to be called like the policy. Exported files hold the policy alone."""
 
-    def __init__(self, policy: MLPModel, constraint: ActionConstraint):
-        """Put the rules behind ``policy``."""
+    def __init__(self, policy: Any, constraint: ActionConstraint):
+        """Put the rules behind ``policy``, a network or what is called like one."""
         super().__init__()
         self.policy, self.constraint = policy, constraint
 

@@ -43,6 +43,9 @@ class RunParams:
     task: str
     """Task that the run was started with."""
 
+    agent_key: str | None
+    """Registry key of its agent; None where the run does not say."""
+
     env: Plain
     """Configuration of the environment."""
 
@@ -68,7 +71,8 @@ def read_params(run: Path) -> RunParams | None:
             raise UsageError(f"{path} is no YAML of plain values: {error}") from error
         if not isinstance(contents[name], dict):
             raise UsageError(f"{path} holds {type(contents[name]).__name__}, expected names with values.")
-    return RunParams(folder, str(contents["run"].get("task", "")), contents["env"], contents["agent"])
+    about = contents["run"]
+    return RunParams(folder, str(about.get("task", "")), about.get("agent"), contents["env"], contents["agent"])
 
 
 def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = ()) -> None:

@@ -51,6 +51,9 @@ class TrainOptions:
     evaluates: bool = False
     """Whether each world's first episode is run with the last policy when learning has ended."""
 
+    agent: str = "rsl_rl_cfg_entry_point"
+    """Registry key of the agent; noted in the run's ``params``, where playing and evaluating find it."""
+
 
 def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = TrainOptions()) -> int:
     """Check everything, build environment and runner, learn, and say where the results are.
@@ -69,7 +72,7 @@ def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = Train
         if not is_main_process():
             silence = stack.enter_context(open(os.devnull, "w"))
             stack.enter_context(contextlib.redirect_stdout(silence))
-        folder = _start_folder(task, env_cfg, agent_cfg, options.folder) if is_main_process() else None
+        folder = _start_folder(task, env_cfg, agent_cfg, options) if is_main_process() else None
         with removed_on_failure(folder):
             env = make_env(task, env_cfg, agent_cfg, _video(options, folder))
             runner = _make_runner(env, agent_cfg, folder, device)
@@ -79,15 +82,15 @@ def train(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions = Train
         return _learn(runner, env, agent_cfg, folder, device if options.evaluates else None)
 
 
-def _start_folder(task: str, env_cfg: Any, agent_cfg: Any, wanted: Path | None) -> Path:
+def _start_folder(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions) -> Path:
     """Return the folder of this run, with its parameters in it."""
-    if wanted is None:
+    if options.folder is None:
         folder = create_run_folder(agent_cfg.experiment_name, agent_cfg.run_name)
     else:
-        folder = claim_folder(wanted)
+        folder = claim_folder(options.folder)
     with removed_on_failure(folder):
         env_cfg.log_dir = str(folder)
-        about = {"task": task, "arcgym": arcgym.__version__, "command": sys.argv}
+        about = {"task": task, "agent": options.agent, "arcgym": arcgym.__version__, "command": sys.argv}
         write_params(folder, run=about, env=env_cfg, agent=agent_cfg)
     return folder
 
