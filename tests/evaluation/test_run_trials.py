@@ -91,3 +91,16 @@ def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) 
     changes = read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule"]
     assert changes["start"] == ["segment", "rest"] and changes["episode_length_s"] == [None, 0.4]
     assert not [path for path in changes if path.startswith("scene.colon")]
+
+
+def test_the_expert_withdraws_and_sees_mucosa(tmp_path: Path, tiny_colon_path: Path) -> None:
+    """From 16 cm deep back to 5 cm at 10 mm/s: success after about 11 s, with most of that mucosa seen on the way."""
+    path = tmp_path / "back_v1.csv"
+    write_conditions(path, [Trial(0, str(tiny_colon_path), 7)], "One trial.")
+    words = f"evaluate --agent expert --tasks ARC-Withdrawal-Capsule --device cpu --out {tmp_path / 'run'}"
+    small = ["env.segment=transverse", "env.scene.camera.width=32", "env.scene.camera.height=32"]
+    main([*words.split(), "--conditions", str(path), *small])
+    (row,) = read_trial_rows(tmp_path / "run")
+    assert row["end"] == "success" and row["progress"] == 1.0
+    assert 8.0 < row["seconds"] < 20.0
+    assert 0.4 < row["coverage"] <= 1.0 and row["polyps"] == 0.0

@@ -34,6 +34,16 @@ def test_success_is_by_arc_length(env) -> None:
     assert mdp.success(env, segment="rectum").tolist() == [1.0, 1.0]
 
 
+def test_a_withdrawal_goes_from_the_start_of_the_segment_back_to_the_rectum(env) -> None:
+    """The sigmoid begins at 10 cm: a way of 5 cm to the end at 5 cm."""
+    env.cfg.direction = "withdrawal"
+    env.scope.tip_arc_length[:] = torch.tensor([0.08, 0.05])
+    torch.testing.assert_close(mdp.segment_progress(env), torch.tensor([0.4, 1.0]))
+    assert mdp.success(env).tolist() == [False, True]
+    env.episode_length_buf[:] = 10
+    torch.testing.assert_close(mdp.mean_speed(env), torch.tensor([0.02, 0.05]))
+
+
 def test_unknown_segment_lists_the_known(env) -> None:
     with pytest.raises(ValueError, match="'colon' is not in colon.usda.*rectum.*sigmoid"):
         mdp.success(env, segment="colon")

@@ -72,6 +72,17 @@ def test_horizon_is_counted_in_control_steps_of_a_tenth_second(segment: str, ste
     assert round(cfg.max_episode_length_s / step) == steps
 
 
+def test_a_withdrawal_rewards_what_is_seen_and_starts_at_a_segment() -> None:
+    cfg = load_cfg_from_registry("ARC-Withdrawal-Proximal", "env_cfg_entry_point")
+    validate(cfg)
+    assert (cfg.segment, cfg.direction, cfg.max_episode_length_s) == ("cecum", "withdrawal", 480.0)
+    assert cfg.rewards.coverage.func is mdp.coverage_gain and cfg.terminations.stuck is None
+    assert load_cfg_from_registry("ARC-Cecum-Proximal", "env_cfg_entry_point").terminations.stuck is not None
+    cfg.start = "rest"
+    with pytest.raises(ValueError, match=r"start is 'rest', at the anus: .* env.start=segment"):
+        validate(cfg)
+
+
 def test_another_segment_brings_its_time_limit() -> None:
     cfg = load_cfg_from_registry("ARC-Rectum-Proximal", "env_cfg_entry_point")
     apply_overrides({"env": cfg}, ["env.segment=splenic"])
@@ -105,7 +116,7 @@ def test_one_call_registers_a_robot_of_ones_own() -> None:
         assert (
             tasks[:2] == ["ARC-Sigmoid-Slow", "ARC-Sigmoid-Slow-Play"]
             and "ARC-LeftColon-Slow" in tasks
-            and len(tasks) == 8
+            and len(tasks) == 10
         )
         cfg = load_cfg_from_registry("ARC-Sigmoid-Slow-Play", "env_cfg_entry_point")
         assert (cfg.segment, cfg.decimation, cfg.scene.num_envs) == ("sigmoid", 96, 4)

@@ -12,7 +12,18 @@ from arcgym.evaluation.suites import Suite, read_suites
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
 TASK_FIELDS = (
-    *("segment", "start", "episode_length_s", "decimation", "force_tiers", "events", "terminations", "sim."),
+    *(
+        "segment",
+        "start",
+        "direction",
+        "robustness",
+        "episode_length_s",
+        "decimation",
+        "force_tiers",
+        "events",
+        "terminations",
+        "sim.",
+    ),
     *("metrics", "lumen", "scene.colon", "scene.endoscope"),
 )
 """Beginnings of the paths that make a task what it is: observations, actions and rewards are the agent's."""

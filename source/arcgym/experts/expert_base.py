@@ -11,6 +11,7 @@ import torch
 
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.string import resolve_callable
+from arcgym.utils.world_random import WorldRandom
 
 
 class ExpertBase(ABC):
@@ -38,6 +39,9 @@ class ExpertBase(ABC):
         self.disturbance = torch.zeros(scene.num_envs, 3, device=scene.device)
         """Added to where the tip is steered, in its frame, as a share of a unit vector, shape (N, 3)."""
 
+        self.random: WorldRandom | None = None
+        """Random numbers of the worlds' episodes, which make an expert's episode repeatable; None takes torch's."""
+
     @abstractmethod
     def act(self) -> None:
         """Look at the scene and set the commands of every world; called once a control step of 0.1 s."""
@@ -57,6 +61,18 @@ class ExpertBase(ABC):
         """Let the worlds ``env_ids`` remember what the worlds ``sources`` do, both int64, shape (n,)."""
         for array in self.memory():
             array[env_ids] = array[sources]
+
+    def uniform(self, tag: str, *shape: int) -> torch.Tensor:
+        """Draw from [0, 1) for every world, shape (N, ...); other tags give other numbers."""
+        if self.random is None:
+            return torch.rand(self.scene.num_envs, *shape, device=self.scene.device)
+        return self.random.uniform(f"expert: {tag}", *shape)
+
+    def normal(self, tag: str, *shape: int) -> torch.Tensor:
+        """Draw from the standard normal distribution for every world, shape (N, ...); see :meth:`uniform`."""
+        if self.random is None:
+            return torch.randn(self.scene.num_envs, *shape, device=self.scene.device)
+        return self.random.normal(f"expert: {tag}", *shape)
 
     def vary(self, env_ids: torch.Tensor, generator: torch.Generator | None = None) -> None:
         """Draw the settings of the worlds ``env_ids``, int64, shape (n,), from their ranges."""

@@ -21,6 +21,8 @@ SWEEPS = 24
 """Sweeps that pull it taut; an even number."""
 BEHIND = 3
 """Rings behind the tip's whose faces count."""
+AHEAD = 3
+"""Rings beyond the way's end whose faces count."""
 
 
 class LumenWay:
@@ -44,8 +46,7 @@ class LumenWay:
         self._room = wp.zeros(shape, dtype=float, device=scene.device)
         self._tip = wp.zeros(scene.num_envs, dtype=wp.vec3, device=scene.device)
         self._ring = wp.zeros(scene.num_envs, dtype=int, device=scene.device)
-        spacing = float(scene["colon"].data.centerline_arc.diff(dim=1).median())
-        self._rings_ahead = int(REACH / spacing) + 3
+        self._last_ring = wp.zeros_like(self._ring)
 
     def find(self) -> torch.Tensor:
         """Return the way ahead of every tip, its first point the tip's front [m], shape (N, K + 1, 3)."""
@@ -55,9 +56,10 @@ class LumenWay:
         wp.to_torch(self._bands[0]).copy_(start)
         wp.to_torch(self._tip).copy_(data.tip_pos_w)
         wp.to_torch(self._ring).copy_(torch.searchsorted(colon.centerline_arc, arc.contiguous())[:, 0])
+        wp.to_torch(self._last_ring).copy_(torch.searchsorted(colon.centerline_arc, arc + REACH)[:, 0] + AHEAD)
         carried = sim.contact.carried
         points = sim.nodal_pos if carried is None else carried.update(sim.nodal_pos)
-        wall = [points, sim.contact.surface, self._ring, BEHIND, self._rings_ahead]
+        wall = [points, sim.contact.surface, self._ring, BEHIND, self._last_ring]
         self._launch(kernels.measure_room, [self._bands[0], *wall, CLEARANCE], [self._room])
         for sweep in range(SWEEPS):
             now, then = self._bands[sweep % 2], self._bands[1 - sweep % 2]

@@ -49,14 +49,14 @@ def measure_room(
     surface: LumenSurface,
     ring: wp.array[int],
     behind: int,
-    ahead: int,
+    last_ring: wp.array[int],
     clearance: float,
     room: wp.array2d[float],
 ):
     """Distance that each point shall keep from the wall: 80 % of what it has, ``clearance`` at most. Launch (W, K)."""
     w, k = wp.tid()
     first = wp.max(ring[w] - behind, 0)
-    last = wp.min(ring[w] + ahead, surface.ring_patch.shape[0] - 2)
+    last = wp.min(last_ring[w], surface.ring_patch.shape[0] - 2)
     gap = off_wall(points[w, k], x, surface, first, last, w, 1.0)[3]
     room[w, k] = wp.clamp(0.8 * gap, 0.0, clearance)
 
@@ -69,14 +69,14 @@ def pull_taut(
     surface: LumenSurface,
     ring: wp.array[int],
     behind: int,
-    ahead: int,
+    last_ring: wp.array[int],
     room: wp.array2d[float],
     out: wp.array2d[wp.vec3],
 ):
     """Move each point between its neighbors, then off the wall; the last one is only moved off. Launch (W, K)."""
     w, k = wp.tid()
     first = wp.max(ring[w] - behind, 0)
-    last = wp.min(ring[w] + ahead, surface.ring_patch.shape[0] - 2)
+    last = wp.min(last_ring[w], surface.ring_patch.shape[0] - 2)
     p = points[w, k]
     if k < points.shape[1] - 1:
         before = tip[w]

@@ -44,7 +44,8 @@ class PullExpert(ExpertBase):
 
         Args:
             scene: The scene.
-            speed: Speed where the tip looks along the way [m/s]; 35 % of it where it looks across.
+            speed: Speed where the tip looks along the way [m/s]; 35 % of it where it looks across. A negative one
+                pulls the tip back along the lumen, its view kept on the way ahead.
             look: Length of way ahead that the tip is pulled to [m].
             gaze: Length of way ahead that it turns to [m].
             turn_gain: Angular velocity per sine of the angle to what it turns to [rad/s].
@@ -65,14 +66,15 @@ class PullExpert(ExpertBase):
         """Set the velocity commands."""
         data = self.scene["endoscope"].data
         backs, begins = self._retreat.update(data.tip_arc_length)
-        random = normalize(torch.randn_like(self._side), dim=1)
-        self._side = torch.where(begins[:, None], random, self._side)
+        withdraws = self.speed < 0.0
+        random = normalize(self.normal("side", 3), dim=1)
+        self._side = torch.where((begins & ~withdraws)[:, None], random, self._side)
         way = self._way.find()
         aim, gaze = self._seen(way, self.look), self._seen(way, self.gaze)
         pace = self.speed * (0.35 + 0.65 * gaze[:, 2].clamp(min=0.0))
         onward = pace[:, None] * (self._direction(aim, gaze) + self.disturbance)
-        away = self.speed[:, None] * (0.5 * self._side - data.tip_lumen_direction_w)
-        velocity = torch.where(backs[:, None], quat_apply_inverse(data.tip_quat_w, away), onward)
+        away = self.speed.abs()[:, None] * (0.5 * self._side - data.tip_lumen_direction_w)
+        velocity = torch.where((backs | withdraws)[:, None], quat_apply_inverse(data.tip_quat_w, away), onward)
         gaze = normalize(gaze + 0.5 * self.disturbance, dim=1)
         turn = torch.linalg.cross(self._forward, gaze)
         turn = torch.where(gaze[:, 2:] < 0.0, normalize(turn, dim=1), turn)

@@ -58,7 +58,7 @@ class PushExpert(ExpertBase):
 
         Args:
             scene: The scene.
-            speed: Insertion speed while the way is ahead [m/s].
+            speed: Insertion speed while the way is ahead [m/s]; a negative one withdraws.
             look: Length of way ahead that the tip is bent to [m].
             gain: Share of the angle to it by which the command changes each step.
             largest: Largest bending commanded [rad].
@@ -80,7 +80,8 @@ class PushExpert(ExpertBase):
     def act(self) -> None:
         """Set bending and insertion commands."""
         backs, begins = self._retreat.update(self.scene["endoscope"].data.tip_arc_length)
-        self._turn = torch.where(begins, 1.2 * torch.rand_like(self._turn) - 0.6, self._turn)
+        backs, begins = backs & (self.speed > 0.0), begins & (self.speed > 0.0)
+        self._turn = torch.where(begins, 1.2 * self.uniform("turn") - 0.6, self._turn)
         self._steps += 1.0
         angle = self._bend(torch.where(backs, 0.5, 1.0))
         pace = torch.where(angle < 0.5, 1.0, torch.where(angle < 1.0, 0.5, 0.15))

@@ -9,7 +9,11 @@ from typing import Any
 
 import torch
 
+from arcgym.envs.mdp.segments import is_withdrawal
 from arcgym.experts import make_expert
+
+WITHDRAWAL_SPEED = -0.01
+"""Speed of the experts on the way back [m/s]: three minutes for the colon."""
 
 
 class ExpertPolicy:
@@ -30,7 +34,10 @@ class ExpertPolicy:
             ValueError: If the robot has none.
         """
         self._env = env.unwrapped
+        if is_withdrawal(self._env):
+            settings.setdefault("speed", WITHDRAWAL_SPEED)
         self.expert = make_expert(self._env.scene, **settings)
+        self.expert.random = self._env.random
 
     @torch.inference_mode(False)
     @torch.no_grad()

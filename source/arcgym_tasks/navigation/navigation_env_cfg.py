@@ -214,6 +214,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """Beginning of an episode: ``segment``, a stored state at the segment's start, or ``rest``, straight in the anus,
     with the whole way to the segment's end to go. States that are missing are made when they are first needed."""
 
+    direction: Literal["insertion", "withdrawal"] = "insertion"
+    """``insertion``: to the end of the segment. ``withdrawal``: from the start of the segment back to the rectum."""
+
     episode_length_s: float | None = None  # type: ignore[assignment]
     """Longest episode [s]; None takes the time limit of segment and start, see
     :data:`arcgym_tasks.navigation.segments.TIME_LIMIT_S`."""
@@ -267,6 +270,11 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "segment", SEGMENTS)
         require(self, "start", get_args(Start))
         require(self, "reward", ("shaped", "paper"))
+        require(self, "direction", ("insertion", "withdrawal"))
+        if self.direction == "withdrawal" and self.start == "rest":
+            raise FieldError(
+                self, "start", "is 'rest', at the anus: a withdrawal starts at a segment, env.start=segment."
+            )
         super().validate_config()
         mdp.resolve_lumen(self.lumen)
         if self.sim.solver == "newton":

@@ -5,7 +5,21 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Literal
+
+
+@dataclass(frozen=True)
+class Made:
+    """A configuration that a task sets in a field, made anew for each use."""
+
+    target: str
+    """Its class, ``"module:Class"``."""
+
+    def __repr__(self) -> str:
+        """Return the name of the class."""
+        return self.target.rpartition(":")[2]
+
 
 Start = Literal["segment", "rest"]
 """Where an episode begins: at the start of its segment, or at rest in the anus."""
@@ -18,9 +32,19 @@ for every robot."""
 JOURNEYS: dict[str, dict[str, Any]] = {
     "LeftColon": {"segment": "splenic", "start": "rest"},
     "Cecum": {"segment": "cecum", "start": "rest", "episode_length_s": 240.0},
+    "Withdrawal": {
+        "segment": "cecum",
+        "direction": "withdrawal",
+        "episode_length_s": 480.0,
+        "rewards": Made("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalRewardsCfg"),
+        "terminations": Made("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalTerminationsCfg"),
+        "metrics": Made("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalMetricsCfg"),
+    },
 }
-"""Tasks of one continuous insertion from the anus: name in the task, and the fields of its configuration. ``LeftColon``
-ends past the splenic flexure, ``Cecum`` at the end of the colon. A line here makes a task for every robot."""
+"""Tasks of one continuous way: name in the task, and the fields of its configuration. ``LeftColon`` goes from the anus
+past the splenic flexure, ``Cecum`` to the end of the colon, ``Withdrawal`` from the entrance of the cecum back to the
+rectum, in the eight minutes that guidelines ask for at least (Rex et al., Gastrointest. Endosc. 100, 2024). A line here
+makes a task for every robot."""
 
 
 def time_limit_s(segment: str, start: Start = "segment") -> float:

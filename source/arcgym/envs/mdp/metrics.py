@@ -104,8 +104,8 @@ def mean_speed(env: ManagerBasedRLEnv, segment: str | None = None) -> torch.Tens
     Args:
         segment: Name of the segment; None takes the task's, ``env.cfg.segment``.
     """
-    start, _ = segment_span(env, segment)
-    advance = env.scene["endoscope"].data.tip_arc_length - start
+    start, end = segment_span(env, segment)
+    advance = (env.scene["endoscope"].data.tip_arc_length - start) * (end - start).sign()
     return advance / (env.episode_length_buf.clamp(min=1) * env.step_dt)
 
 

@@ -18,6 +18,14 @@ if TYPE_CHECKING:
 
 __all__ = ["segment_progress", "segment_span", "success"]
 
+WITHDRAWN_ARC = 0.05
+"""Arc length at which a withdrawal is complete [m]: the tip is in the lower rectum, above the anal canal."""
+
+
+def is_withdrawal(env: ManagerBasedEnv) -> bool:
+    """Return whether the task's goal is the anus (``env.cfg.direction`` is ``withdrawal``)."""
+    return getattr(env.cfg, "direction", "insertion") == "withdrawal"
+
 
 def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[torch.Tensor, torch.Tensor]:
     """Return start and end of a segment in each world's patient, rest arc length from the anal verge [m], shape (N,).
@@ -27,7 +35,8 @@ def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[torc
     Args:
         env: The environment; its scene holds ``colon``.
         segment: A name of :data:`arcgym.anatomy.segments.SEGMENTS`. None takes the task's, ``env.cfg.segment``, which
-            begins at the anus where the episode does (``env.cfg.start`` is ``rest``).
+            begins at the anus where the episode does (``env.cfg.start`` is ``rest``). A withdrawal's begins where the
+            segment does and ends at :data:`WITHDRAWN_ARC`, below it.
 
     Raises:
         ValueError: If a patient does not have the segment, with those it has.
@@ -36,6 +45,8 @@ def segment_span(env: ManagerBasedEnv, segment: str | None = None) -> tuple[torc
     colon = env.scene["colon"]
     colon.require_segment(name)
     start, end = colon.data.segment_spans[:, SEGMENTS.index(name)].unbind(dim=1)
+    if segment is None and is_withdrawal(env):
+        return start, torch.full_like(end, WITHDRAWN_ARC)
     begins_at_anus = segment is None and getattr(env.cfg, "start", None) == "rest"
     return torch.zeros_like(start) if begins_at_anus else start, end
 
@@ -57,8 +68,11 @@ def segment_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.
 def success(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
     """Whether the tip has reached the end of the segment, by arc length along the lumen, bool, shape (N,).
 
+    A withdrawal ends below :data:`WITHDRAWN_ARC`.
+
     Args:
         segment: Name of the segment; None takes the task's, ``env.cfg.segment``.
     """
     _, end = segment_span(env, segment)
-    return env.scene["endoscope"].data.tip_arc_length >= end
+    arc = env.scene["endoscope"].data.tip_arc_length
+    return arc <= end if segment is None and is_withdrawal(env) else arc >= end
