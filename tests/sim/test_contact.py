@@ -259,3 +259,16 @@ def test_a_link_penetrates_the_wall_where_its_axis_comes_close_to_it(
     sim.scope_readout.clear()
     wall_force(sim)
     assert sim.wall_penetrated.tolist() == [penetrated]
+
+
+@pytest.mark.parametrize(("share", "ratio"), [(2.0 / 3.0, 0.4387), (0.0, 1.0)])
+def test_contacts_of_a_soft_shell_give_as_its_tissue_does(tiny_sim: TinySim, share: float, ratio: float) -> None:
+    """0.5 MPa, 2 mm and 0.49: 2/3 * 1000 / (1 - 0.49^2) = 877.3 N/m of 2000; ten times the modulus has all of them."""
+    contact = ContactCfg(tissue_share=share)
+    sim = tiny_sim("capsule", num_envs=2, colon={"youngs_modulus": 5.0e5}, contact=contact)
+    sim.colon.write_stiffness_scale_to_sim(torch.tensor([1.0, 10.0]))
+    sim.endoscope.data.joint_pos[:] = torch.tensor([*(0.014 * SIDE + [0.0, 0.0, 0.1]), 0.0, 0.0, 0.0, 1.0])
+    sim.forward()
+    sim.coupling.find_contacts()
+    soft, hard = sim.contact.records.weight.numpy().reshape(2, -1).sum(axis=1)
+    assert hard > 0.0 and soft / hard == pytest.approx(ratio, rel=1e-3)

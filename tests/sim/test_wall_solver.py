@@ -100,8 +100,9 @@ def test_nothing_moves_beyond_mobile_until(tiny_sim: TinySim) -> None:
 
 
 def pressed(tiny_sim: TinySim, steps: int, **wall: object) -> tuple[np.ndarray, np.ndarray]:
-    """Place [m] and force [N] of every vertex after pressing for ``steps`` steps."""
-    sim = tiny_sim("capsule", colon=SOFT, wall=WallSolverCfg(**wall), contact=ContactCfg(friction=0.0))
+    """Place [m] and force [N] of every vertex after pressing for ``steps`` steps, with a contact that hardly gives."""
+    hard = ContactCfg(friction=0.0, tissue_share=0.0)
+    sim = tiny_sim("capsule", colon=SOFT, wall=WallSolverCfg(**wall), contact=hard)
     press(sim)
     step_wall(sim, steps)
     return sim.nodal_pos.numpy()[:, 0], force_on_wall(sim)

@@ -14,6 +14,7 @@ import warp as wp
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
 
+from arcgym.anatomy.shell import ShellMesh
 from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.sim import model_building
@@ -110,6 +111,8 @@ class Simulation:
         )
         slots = len(self.contact.records.face)
         self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device)
+        if isinstance(colon.wall, ShellMesh):
+            self.contact.soften(self.wall.tissue.moduli, cfg.contact.tissue_share)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
         self.wall_readout = WallReadout(lumen, rest, colon.wall.ring, anchors, scale, self.patient, self.device)
 

@@ -162,7 +162,8 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     sim = SimulationCfg(device=device)
     sim.dt *= 0.5 if setting == "dt_half" else 1.0
     factor = {"contact_double": 2.0, "contact_half": 0.5}.get(setting, 1.0)
-    sim.contact = replace(sim.contact, stiffness=factor * sim.contact.stiffness)
+    stiffness, share = factor * sim.contact.stiffness, factor * sim.contact.tissue_share
+    sim.contact = replace(sim.contact, stiffness=stiffness, tissue_share=share)
     if setting in ("links_half", "wall_half"):
         sim.contact = replace(sim.contact, capacity=2 * sim.contact.capacity, patch_capacity=48)
     scene = InteractiveSceneCfg(num_envs=num_envs, colon=colon, endoscope=replace(endoscope, usd_path=str(path)))

@@ -58,7 +58,8 @@ class ContactRecords:
 class ContactLaw:
     """Penalty contact with Coulomb friction that holds elastically until it slides."""
 
-    stiffness: float  # of a shallow contact inside a face [N/m]
+    stiffness: float  # of a shallow contact inside a face on a hard wall, the largest [N/m]
+    tissue_share: float  # of it on a soft shell, over E t / (1 - nu^2); 0 where the wall itself is squeezed
     hardening: float  # depth at which the stiffness has doubled, as a secant [m]
     damping: float  # [N s/m], approach only
     friction_stiffness: float  # across the wall, of a contact that sticks [N/m]
@@ -95,6 +96,19 @@ def normal_force(law: ContactLaw, depth: float) -> wp.vec2:
     if hard >= MAX_HARDENING:
         return law.stiffness * wp.vec2(depth * secant, secant)
     return law.stiffness * wp.vec2(depth * secant, 1.0 + 3.0 * hard * hard)
+
+
+@wp.func
+def softness(law: ContactLaw, moduli: wp.vec3) -> float:
+    """Return the stiffness of a contact with a shell over ``law.stiffness``, at most 1.
+
+    Args:
+        law: Contact law.
+        moduli: Of the shell: mu t [N/m], lambda t of plane stress [N/m]; E t / (1 - nu^2) is lambda t + 2 mu t.
+    """
+    if law.tissue_share == 0.0:
+        return 1.0
+    return wp.min(law.tissue_share * (moduli[1] + 2.0 * moduli[0]) / law.stiffness, 1.0)
 
 
 @wp.struct

@@ -8,7 +8,7 @@ W worlds, L links a world, S contact slots a world, V wall vertices.
 
 import warp as wp
 
-from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactRecords, LinkShapes, carried
+from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactLaw, ContactRecords, LinkShapes, carried, softness
 from arcgym.sim.contact.contact_search_kernels import Candidates, sum_before
 from arcgym.sim.contact.lumen_kernels import FAR, LumenSurface
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
@@ -165,6 +165,8 @@ def locate_contacts(
     surface: LumenSurface,
     nearest: wp.array2d[float],
     past: PastContacts,
+    law: ContactLaw,
+    moduli: wp.array[wp.vec3],
     records: ContactRecords,
 ):
     """Find point, weight and normal of each record, and what friction holds there. Launch (W, S).
@@ -180,6 +182,8 @@ def locate_contacts(
         surface: Inner faces of one world.
         nearest: Distance of each link's axis from the wall [m], shape (W, L).
         past: Contacts of the last step, from which friction goes on.
+        law: Contact law.
+        moduli: Elastic moduli of each world's wall, shape (W,).
         records: Contacts; all but ``start``, ``link``, ``face`` and ``distance`` is written.
             The lists by vertex, emptied before, get entries in any order.
     """
@@ -211,7 +215,8 @@ def locate_contacts(
     for c in range(entries):
         records.vertex_next[4 * slot + c] = wp.atomic_exch(records.vertex_head, carriers[c], w, 4 * slot + c)
     records.ring[slot] = surface.ring[face]
-    records.weight[slot] = wp.pow(EDGE_WEIGHT, edge_proximity(u[0]) + edge_proximity(u[1]) + edge_proximity(u[2]))
+    edges = edge_proximity(u[0]) + edge_proximity(u[1]) + edge_proximity(u[2])
+    records.weight[slot] = softness(law, moduli[w]) * wp.pow(EDGE_WEIGHT, edges)
     records.normal[slot] = point.normal
     if nearest[w, link] > CLEARANCE * links.radius[link]:
         records.normal[slot] = point.direction

@@ -72,6 +72,7 @@ class ContactSearch:
         self.links.radius = wp.array(radius, dtype=float, device=device)
         self.law = self._law(cfg)
         self.law.wall_radius += surface_offset
+        self.moduli = wp.zeros(num_envs, dtype=wp.vec3, device=device)
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
@@ -155,6 +156,15 @@ class ContactSearch:
             "contact_debt": wp.to_torch(self.debt).view(n, -1),
         }
 
+    def soften(self, moduli: wp.array, share: float) -> None:
+        """Have contacts give as the tissue of a shell does; without, the wall counts as hard.
+
+        Args:
+            moduli: Elastic moduli of each world's shell, read at every search, shape (W,), vec3.
+            share: ``ContactCfg.tissue_share``.
+        """
+        self.moduli, self.law.tissue_share = moduli, share
+
     def update_centers(self, x: wp.array) -> None:
         """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W), vec3."""
         wp.launch(
@@ -215,7 +225,8 @@ class ContactSearch:
         self._launch(record_kernels.allot_slots, links, [self.candidates], [records])
         inputs = [self.surface, self.candidates, stride]
         self._launch(record_kernels.fill_slots, (self.num_envs, stride), inputs, [records])
-        inputs = [x, points, body_q, self.links, self.surface, self.candidates.nearest, self.past]
+        near = [self.links, self.surface, self.candidates.nearest, self.past]
+        inputs = [x, points, body_q, *near, self.law, self.moduli]
         self._launch(record_kernels.locate_contacts, slots, inputs, [records])
         self._launch(record_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
         self._launch(record_kernels.list_rings, (self.num_envs, self.list_parts), [self.list_parts], [records])
