@@ -64,7 +64,7 @@ def test_a_row_out_of_bound_gives_status_1_and_stays_in_the_json(
     monkeypatch.setattr(table, "TABLE", (*table.TABLE, broken))
     assert main(["bench", "fidelity", "--rows", "broken", "--json"]) == 1
     (row,) = json.loads(capsys.readouterr().out.splitlines()[-1])["rows"]
-    assert set(row) == {"name", "value", "reference", "error", "bound", "ok"}
+    assert set(row) == {"name", "value", "reference", "error", "bound", "ok", "unit", "relative", "note"}
     assert row["name"] == "broken" and not row["ok"]
 
 

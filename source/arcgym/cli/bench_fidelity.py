@@ -111,4 +111,5 @@ def describe(row: Row) -> str:
 
 def as_json(row: Row) -> dict[str, object]:
     """Return the row's figures and verdict."""
-    return {key: getattr(row, key) for key in ("name", "value", "reference", "error", "bound", "ok")}
+    names = ("name", "value", "reference", "error", "bound", "ok", "unit", "relative", "note")
+    return {name: getattr(row, name) for name in names}

@@ -63,29 +63,35 @@ class Insertion:
 
 
 def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
-    """Return the figures of insertions; those that the run has are not made again.
+    """Return the figures of cases, each the mean of its insertions; those that the run has are not made again.
 
     Args:
         run: Device, folder and results.
-        cases: The insertions.
+        cases: The cases.
     """
-    missing = [case for case in cases if ("insertion", case) not in run.shared]
+    missing = [(case, k) for case in cases for k in range(WORLDS) if ("insertion", case, k) not in run.shared]
     if missing:
-        if any(case.setting == "wall_half" for case in missing):
+        if any(case.setting == "wall_half" for case, _ in missing):
             write_smooth(run.folder, refine=2)
         workers = min(len(missing), len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1)
         with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-            tasks = [pool.submit(insert, case, run.device, run.folder) for case in missing]
-            for case, task in zip(missing, tasks, strict=True):
-                run.shared["insertion", case] = task.result()
-    return [run.shared["insertion", case] for case in cases]
+            tasks = [pool.submit(insert, case, k, run.device, run.folder) for case, k in missing]
+            for (case, k), task in zip(missing, tasks, strict=True):
+                run.shared["insertion", case, k] = task.result()
+    return [mean_figures([run.shared["insertion", case, k] for k in range(WORLDS)]) for case in cases]
 
 
-def insert(case: Insertion, device: str, folder: Path) -> dict[str, float]:
-    """Drive a robot by its expert from the anus through the sigmoid, and return the means of its figures.
+def mean_figures(figures: list[dict[str, float]]) -> dict[str, float]:
+    """Return the means of the figures of insertions."""
+    return {name: float(np.mean([of[name] for of in figures])) for name in figures[0]}
+
+
+def insert(case: Insertion, number: int, device: str, folder: Path) -> dict[str, float]:
+    """Drive a robot by its expert from the anus through the sigmoid, and return the figures of the insertion.
 
     Args:
-        case: The insertion.
+        case: The case.
+        number: Which of its insertions, from 0; they differ in their speed.
         device: Device of the simulation.
         folder: Folder for the stages.
     """
@@ -94,23 +100,19 @@ def insert(case: Insertion, device: str, folder: Path) -> dict[str, float]:
     from arcgym.experts import make_expert
 
     torch.set_num_threads(1)
-    scene = build_scene(case, device, folder, num_envs=WORLDS)
-    pace = SPEED * (1.0025 if case.setting == "noise" else 1.0) * torch.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS)
-    pace = pace.to(device)
-    expert = make_expert(scene, speed=pace if case.robot == "proximal" else pace[:, None])
+    scene = build_scene(case, device, folder)
+    pace = SPEED * (1.0025 if case.setting == "noise" else 1.0)
+    expert = make_expert(scene, speed=pace * float(np.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS)[number]))
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
     steps = round(CONTROL_STEP / scene.sim.physics_dt)
-    samples, under_way = list[np.ndarray](), [np.ones(WORLDS, bool)]
+    samples, through = list[np.ndarray](), False
     with torch.inference_mode():
-        while under_way[-1].any() and len(samples) * CONTROL_STEP < LONGEST:
+        while not through and len(samples) * CONTROL_STEP < LONGEST:
             expert.act()
             scene.sim.step(steps)
-            samples.append(read_forces(scene.sim, case.robot))
-            under_way.append(under_way[-1] & (scene.endoscope.data.tip_arc_length < end).cpu().numpy())
-    forces, taken = np.array(samples), np.array(under_way[:-1])
-    figures = [figures_of(forces[taken[:, world], world]) for world in range(WORLDS)]
-    through = {"through": float(np.mean(~under_way[-1]))}
-    return {name: float(np.mean([of[name] for of in figures])) for name in figures[0]} | through
+            samples.append(read_forces(scene.sim, case.robot)[0])
+            through = bool(scene.endoscope.data.tip_arc_length[0] >= end)
+    return figures_of(np.array(samples)) | {"through": float(through)}
 
 
 def figures_of(samples: np.ndarray) -> dict[str, float]:
@@ -152,7 +154,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
         spec = halved(spec)
     if setting == "damping_fifth":
         spec = replace(spec, damping_time=0.2 * spec.damping_time, armature_time=spec.armature_time / 0.2)
-    path = write_endoscope(spec, folder / f"{case.robot}_{case.material}_{setting or 'shipped'}.usda")
+    path = write_endoscope(spec, folder / f"{case.robot}_{setting or 'shipped'}_{os.getpid()}.usda")
     colon = assets.ColonCfg(material=case.material)
     colon.usd_path = colon_path or colon.usd_path
     _, end = read_colon(find_stages(colon.usd_path)[0]).segment_bounds()["sigmoid"]
