@@ -48,11 +48,11 @@ def tasks_page() -> str:
     """Return the page of tasks."""
     cfgs = {task: load_env_cfg(task) for task in tasks()}
     parts = ["# Tasks in figures\n", "Made from the code.\n", "## Episodes\n", _episodes(cfgs)]
-    alike = _alike(cfgs)
+    others = _others(cfgs)
     for manager in MANAGERS:
         parts += [
             f"## {manager.capitalize()}\n",
-            f"{_who(alike[manager])}\n",
+            f"{_who(others[manager])}\n",
             _terms(manager, next(iter(cfgs.values()))),
         ]
     parts += ["## Differences of the `-Play` variants\n", _play()]
@@ -99,13 +99,19 @@ def _episode(task: str, cfg: Any) -> list[str]:
     return [code(task), f"{step:g} s", steps, f"{rest.max_episode_length_s:g} s", physics, str(cfg.scene.num_envs)]
 
 
-def _alike(cfgs: dict[str, Any]) -> dict[str, bool]:
-    """Return for each manager whether all tasks have the same terms."""
-    return {name: len({repr(getattr(cfg, name).to_dict()) for cfg in cfgs.values()}) == 1 for name in MANAGERS}
+def _others(cfgs: dict[str, Any]) -> dict[str, list[str]]:
+    """Return for each manager the tasks that have other terms than the first one."""
+    first = next(iter(cfgs.values()))
+    return {
+        name: [task for task, cfg in cfgs.items() if getattr(cfg, name).to_dict() != getattr(first, name).to_dict()]
+        for name in MANAGERS
+    }
 
 
-def _who(alike: bool) -> str:
-    return "The same in every task." if alike else "Of the first task above; others differ, see `arcgym train --help`."
+def _who(others: list[str]) -> str:
+    if not others:
+        return "The same in every task."
+    return f"The same in every task but {', '.join(map(code, others))}, see `arcgym train --task ... --help`."
 
 
 def _terms(manager: str, cfg: Any) -> str:

@@ -43,9 +43,10 @@ def main() -> None:
         ),
         "ct_v1": ([f"ct_{number}/colon.usda" for number in (1, 2)], 10, "Ten trials on each of the two CT patients."),
         "robustness_v1": (
-            [f"colon_{number}/colon.usda" for number in range(1, 6)],
+            unseen[:10],
             2,
-            "Two trials on each of the five patients, for each variant.",
+            f"Two trials on each of ten patients of the test split (splits {splits.version}, "
+            f"generator {splits.generator}), for each variant.",
         ),
     }
     for name, (patients, each, comment) in files.items():

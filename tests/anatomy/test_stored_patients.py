@@ -80,11 +80,14 @@ def test_the_program_makes_what_is_missing(tmp_path: Path, monkeypatch: pytest.M
         "arcgym.anatomy.generator.output.make_to_folder", lambda spec, out: made.append((spec.seed, out))
     )
     stage_of(tmp_path, 7).parent.mkdir(parents=True)
+    stage_of(tmp_path, 7).write_text("")
     stored_patients.main(str(tmp_path), "7", "8")
     assert made == [(8, stage_of(tmp_path, 8).parent)]
 
 
 def test_single_patients_are_named_by_their_seed(folder: Path) -> None:
     assert find_stages(["population:20007", "population:10000"]) == [stage_of(folder, 20007), stage_of(folder, 10000)]
+    less_gas = folder / "patient_20007_gas_0.8" / "colon.usda"
+    assert stage_of(folder, "20007*0.8") == less_gas
     with pytest.raises(ValueError, match="Seed 15000 is in no split.*test 20000 to 20199"):
         find_stages("population:15000")

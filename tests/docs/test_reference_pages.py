@@ -67,7 +67,8 @@ def test_every_task_is_listed_with_its_time_limit(pages: dict[str, str]) -> None
 def test_every_term_of_the_tasks_is_listed(pages: dict[str, str], manager: str) -> None:
     found = section(pages["tasks"], manager.capitalize())
     assert re.findall(r"^\| `(\w+)` \|", found, re.MULTILINE) == list(vars(getattr(cfg_of(), manager)))
-    assert "The same in every task." in found
+    assert "The same in every task" in found
+    assert ("`ARC-Withdrawal-Magnetic`" in found) == (manager in ("rewards", "terminations", "metrics"))
 
 
 def test_weights_are_those_of_the_configuration(pages: dict[str, str]) -> None:

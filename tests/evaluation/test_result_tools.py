@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.main import main
+from arcgym.evaluation.check import problems
 from arcgym.evaluation.compare import compare
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
@@ -109,3 +110,16 @@ def test_a_folder_without_trials_has_no_page(tmp_path: Path) -> None:
     ResultFolder(tmp_path / "mine", RUN)
     with pytest.raises(SystemExit):
         main(["results", "page", str(tmp_path / "mine")])
+
+
+def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) -> None:
+    """A variant sets env.robustness, a suite in soft tissue the material, and nothing else passes for them."""
+    suite = read_suites()["robustness"]
+    task = suite.tasks("Magnetic")[1]
+    changes = {task: {"robustness": ["none", task.partition(":")[2]]}}
+    run = {**RUN, "suite": "robustness", "conditions_sha256": read_conditions(suite.conditions_path).sha256}
+    folder = ResultFolder(tmp_path / "a", {**run, "changes": changes})
+    assert not [line for line in problems(folder.path) if "changes the task" in line]
+    changes[task]["robustness"][1] = "none"
+    other = ResultFolder(tmp_path / "b", {**run, "changes": changes})
+    assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]

@@ -104,3 +104,13 @@ def test_the_expert_withdraws_and_sees_mucosa(tmp_path: Path, tiny_colon_path: P
     assert row["end"] == "success" and row["progress"] == 1.0
     assert 8.0 < row["seconds"] < 20.0
     assert 0.4 < row["coverage"] <= 1.0 and row["polyps"] == 0.0
+
+
+def test_variants_are_tasks_of_their_own(tmp_path: Path, conditions: Path) -> None:
+    """A random agent does not look: its trials are the same with a blurred picture, and others with more friction."""
+    words = ["--tasks", "ARC-Rectum-Capsule,ARC-Rectum-Capsule:blur_2,ARC-Rectum-Capsule:sticky_3"]
+    rows = evaluate(tmp_path / "run", conditions, *words)
+    by_task = {name: [row["reward"] for row in rows if row["task"].endswith(name)] for name in ("ule", "_2", "_3")}
+    assert by_task["ule"] == by_task["_2"] and len(by_task["_3"]) == 5
+    assert by_task["_3"] != by_task["ule"]
+    assert read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule:sticky_3"]["robustness"] == ["none", "sticky_3"]

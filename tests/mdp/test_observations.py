@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import pytest
 import torch
@@ -83,3 +84,22 @@ def test_lumen_state_sees_the_image_after_a_reset(env) -> None:
     images.output["depth"][0] = 0.003
     images.frame += 1
     assert mdp.lumen_state(env)[0, 4] == -1.0
+
+
+def test_shape_is_the_shaft_seen_from_the_tip(env) -> None:
+    """Links of 4, 4 and 2 cm along +Z, their centers 8, 4 and 1 cm behind the tip, which looks to the side."""
+    env.scene["endoscope"].stage = SimpleNamespace(link_length=[0.04, 0.04, 0.02])
+    env.scope.tip_pos_w = torch.tensor([[0.0, 0.0, 0.1]] * 2)
+    env.scope.body_pos_w = torch.tensor([[[0.0, 0.0, z] for z in (0.02, 0.06, 0.09)]] * 2)
+    env.scope.tip_quat_w[1] = torch.tensor([0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5)])
+    params = {"points": 3, "spacing": 0.04}
+    term = mdp.shaft_shape(ObservationTermCfg(func=mdp.shaft_shape, params=params), env)
+    shape = term(env, **params, scale=0.1)
+    # 4 cm is nearest to the middle link, 8 and 12 cm to the first one.
+    expected = torch.tensor([[0, 0, -0.4, 0, 0, -0.8, 0, 0, -0.8], [0.4, 0, 0, 0.8, 0, 0, 0.8, 0, 0]])
+    torch.testing.assert_close(shape, expected, atol=1e-5, rtol=0.0)
+
+
+def test_insertion_depth(env) -> None:
+    env.scope.inserted_length[:] = torch.tensor([0.3, 0.5])
+    torch.testing.assert_close(mdp.insertion_depth(env), torch.tensor([[0.3], [0.5]]))

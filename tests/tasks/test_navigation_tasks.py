@@ -12,11 +12,13 @@ import gymnasium
 import pytest
 
 from arcgym.envs import mdp
+from arcgym.utils.coerce import to_plain
 from arcgym.utils.configclass import configclass, validate
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import list_tasks, load_cfg_from_registry
 from arcgym_tasks.navigation import register_robot
 from arcgym_tasks.navigation.config.proximal import ProximalEnvCfg
+from arcgym_tasks.navigation.robustness import NONE, VARIANTS
 
 TASKS = [
     f"ARC-{segment}-{robot}{variant}"
@@ -210,4 +212,54 @@ def test_an_unknown_reward_is_refused() -> None:
     cfg = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
     cfg.reward = "papers"
     with pytest.raises(TypeError, match="reward.*'shaped', 'paper'"):
+        validate(cfg)
+
+
+def test_every_variant_changes_the_task() -> None:
+    """Each configuration differs from the plain one, and from the other strengths of its kind."""
+    seen = []
+    for variant in (NONE, *VARIANTS):
+        cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+        cfg.scene.colon.usd_path = ["population:20000", "population:20001"]
+        cfg.robustness = variant
+        validate(cfg)
+        cfg.resolve()
+        plain = to_plain(cfg)
+        assert plain.pop("robustness") == variant
+        assert plain not in seen
+        seen.append(plain)
+    assert len(seen) == 40 and seen[-1]["scene"]["colon"]["usd_path"][1] == "population:20001*0.7"
+
+
+def test_a_variant_that_does_not_exist_or_fit_is_refused() -> None:
+    cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+    cfg.robustness = "blur_4"
+    with pytest.raises(ValueError, match="robustness is 'blur_4'.*blur_1"):
+        validate(cfg)
+    cfg.robustness = "collapsed_1"
+    with pytest.raises(ValueError, match="colon_1/colon.usda is a stage"):
+        cfg.resolve()
+    cfg.robustness, cfg.observations.policy.rgb = "blur_1", None
+    with pytest.raises(ValueError, match="changes env.observations.policy.rgb, which this task does not have"):
+        cfg.resolve()
+
+
+def test_friction_is_multiplied_and_set_where_it_is_not_drawn() -> None:
+    cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+    cfg.robustness = "sticky_1"
+    cfg.resolve()
+    assert cfg.events.friction.params["friction"] == (0.1, 0.3)
+    play = load_cfg_from_registry("ARC-LeftColon-Magnetic-Play", "env_cfg_entry_point")
+    play.robustness = "sticky_1"
+    play.resolve()
+    assert play.events.friction.params["friction"] == (2.0 * play.sim.contact.friction,) * 2
+
+
+def test_groups_of_observations_are_added_where_they_are_asked_for() -> None:
+    cfg = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
+    apply_overrides({"env": cfg}, ["env.extra_observations=[force,shape]"])
+    cfg.resolve()
+    assert set(vars(cfg.observations)) == {"policy", "critic", "force", "shape"}
+    apply_overrides({"env": cfg}, ["env.extra_observations=[smell]"])
+    with pytest.raises(ValueError, match="extra_observations.*'smell'.*force, insertion, shape"):
         validate(cfg)

@@ -41,7 +41,7 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
 
     Args:
         usd_path: A stage, a folder of folders with a stage each, ``name:split`` of a population, ``population:20000``
-            for one of its patients by seed, or a list of these.
+            for one of its patients by seed (``population:20000*0.8`` with less gas), or a list of these.
         count: How many of the stages to take, from the first; None for all.
 
     Raises:
@@ -64,13 +64,15 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
 def _joined(entries: list[str]) -> list[str]:
     """Return the entries with neighbors that are single patients of a population made one: they are made together."""
     joined: list[str] = []
+    single = ""
     for entry in entries:
-        before, _, seed = entry.partition(":")
-        last = joined[-1] if joined else ""
-        if seed.isdigit() and last.startswith(f"{before}:") and last.rpartition(",")[2].rpartition(":")[2].isdigit():
-            joined[-1] = f"{last},{seed}"
+        population, _, name = entry.partition(":")
+        is_single = name[:1].isdigit()
+        if is_single and population == single:
+            joined[-1] = f"{joined[-1]},{name}"
         else:
             joined.append(entry)
+        single = population if is_single else ""
     return joined
 
 

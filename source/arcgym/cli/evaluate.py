@@ -104,18 +104,22 @@ def _checkpoint(agent: str) -> Path:
 
 def _check_tasks(tasks: list[str]) -> None:
     """Raise if a task is not registered."""
+    from arcgym.evaluation.suites import split_task
     from arcgym.utils.registry import list_tasks
 
     known = {name: None for name in list_tasks(prefix="")}
     for task in tasks:
-        _choose(task, known, "task")
+        _choose(split_task(task)[0], known, "task")
 
 
 def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
     """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top."""
     from arcgym.cli.arguments import RunArguments, TaskArguments
     from arcgym.cli.task import load_cfgs, load_run_cfgs
+    from arcgym.evaluation.suites import split_task, task_overrides
 
+    overrides = (*overrides, *task_overrides(task))
+    task, _ = split_task(task)
     if checkpoint is None:
         return load_cfgs(TaskArguments(task=task, overrides=list(overrides)))
     env_cfg, agent_cfg, _ = load_run_cfgs(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
-from arcgym.evaluation.suites import Suite, read_suites
+from arcgym.evaluation.suites import Suite, read_suites, split_task, task_overrides
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
 TASK_FIELDS = (
@@ -62,8 +62,10 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
     for task, changes in run.get("changes", {}).items():
+        asked = (text.removeprefix("env.").partition("=") for text in (*suite.overrides, *task_overrides(task)))
+        allowed = {path: value for path, _, value in asked}
         for path in changes:
-            if path.startswith(TASK_FIELDS):
+            if path.startswith(TASK_FIELDS) and str(changes[path][1]) != allowed.get(path):
                 found.append(
                     f"{task} was run with {path} = {changes[path][1]}, which changes the task ({changes[path][0]})"
                 )
@@ -96,7 +98,7 @@ def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
 
 
 def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
-    robots = {row["task"].split("-")[-1] for row in rows if "task" in row}
+    robots = {split_task(row["task"])[0].split("-")[-1] for row in rows if "task" in row}
     found = []
     for robot in sorted(robots):
         for task in suite.tasks(robot):

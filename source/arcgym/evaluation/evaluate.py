@@ -17,6 +17,7 @@ from arcgym.envs.provenance import versions
 from arcgym.evaluation.agents import file_sha256, trained_agent
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.run_trials import run_trials
+from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.managers import EventTermCfg
@@ -74,7 +75,7 @@ def evaluate(
     """Run every trial of every task that has no row yet, and return the folder with all rows.
 
     Args:
-        tasks: Registered names.
+        tasks: Registered names, each with ``:variant`` behind it or without.
         conditions: Trials of each task.
         load_cfgs: Gives the configurations of a task as the agent was trained with them.
         options: Agents and settings.
@@ -114,7 +115,7 @@ def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
 
     A policy runs with the settings that it was trained with: what was made easier in training is easier here, too.
     """
-    registered = to_plain(load_cfg_from_registry(task, "env_cfg_entry_point"))
+    registered = to_plain(load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point"))
     found = differences(registered, to_plain(env_cfg))
     return {path: list(values) for path, values in found.items() if path not in SET_HERE}
 
@@ -153,7 +154,7 @@ def _run_batch(
     env_cfg.scene.num_envs = min(options.num_envs, len(trials))
     env_cfg.recorders = None
     place(env_cfg, agent_cfg, options.device)
-    env = make_env(task, env_cfg, agent_cfg)
+    env = make_env(split_task(task)[0], env_cfg, agent_cfg)
     try:
         with counted(task if len(patients) > 1 else f"{task}, {patients[0]}", len(trials)) as show:
             started = len(folder.rows)

@@ -26,14 +26,30 @@ class Suite:
     overrides: tuple[str, ...] = ()
     """Overrides of the environment's configuration, as on the command line."""
 
+    variants: tuple[str, ...] = ()
+    """Values of ``env.robustness`` that each task is evaluated with; none for the tasks as they are."""
+
     def tasks(self, robot: str) -> list[str]:
-        """Return the registered names of the tasks for a robot, such as ``Magnetic``."""
-        return [f"ARC-{segment}-{robot}" for segment in self.segments]
+        """Return the tasks for a robot, such as ``Magnetic``: registered names, with ``:variant`` where there are."""
+        names = [f"ARC-{segment}-{robot}" for segment in self.segments]
+        return [f"{name}:{variant}" for name in names for variant in self.variants] if self.variants else names
 
     @property
     def conditions_path(self) -> Path:
         """Path of the condition file."""
         return FOLDER / "conditions" / f"{self.conditions}.csv"
+
+
+def split_task(task: str) -> tuple[str, str | None]:
+    """Return registered name and variant of a task, such as ``ARC-Sigmoid-Magnetic:blur_2``; no variant is None."""
+    name, _, variant = task.partition(":")
+    return name, variant or None
+
+
+def task_overrides(task: str) -> tuple[str, ...]:
+    """Return the overrides that a task's variant stands for."""
+    _, variant = split_task(task)
+    return (f"env.robustness={variant}",) if variant else ()
 
 
 def read_suites(path: Path = FOLDER / "suites.yaml") -> dict[str, Suite]:

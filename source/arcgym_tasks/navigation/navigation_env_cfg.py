@@ -24,6 +24,7 @@ from arcgym.scene import InteractiveSceneCfg
 from arcgym.sensors import EndoscopeCameraCfg
 from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import FieldError, require
+from arcgym_tasks.navigation.robustness import NONE, VARIANTS, make_harder
 from arcgym_tasks.navigation.segments import Start, time_limit_s
 
 
@@ -71,11 +72,38 @@ class ObservationsCfg:
         lumen = ObsTerm(func=mdp.lumen_state)
         last_action = ObsTerm(func=mdp.last_action)
 
+    @configclass
+    class ForceCfg(ObsGroup):
+        """What force sensors in tip and drive feel, over 10 N; shape (N, 4)."""
+
+        tip = ObsTerm(func=mdp.tip_force_vector, scale=0.1)
+        base = ObsTerm(func=mdp.base_force, scale=0.1)
+
+    @configclass
+    class ShapeCfg(ObsGroup):
+        """The last 60 cm of the shaft in the tip's frame, as a fiber or magnetic imaging gives it; shape (N, 36)."""
+
+        shaft = ObsTerm(func=mdp.shaft_shape)
+
+    @configclass
+    class InsertionCfg(ObsGroup):
+        """Length of scope inside the anus [m], as its marks give it; shape (N, 1)."""
+
+        depth = ObsTerm(func=mdp.insertion_depth)
+
     policy: PolicyCfg = PolicyCfg()
     """Group of the actor."""
 
     critic: CriticCfg = CriticCfg()
     """Group of the critic."""
+
+
+EXTRA_OBSERVATIONS = {
+    "force": ObservationsCfg.ForceCfg,
+    "shape": ObservationsCfg.ShapeCfg,
+    "insertion": ObservationsCfg.InsertionCfg,
+}
+"""Groups that ``env.extra_observations`` adds, by name."""
 
 
 @configclass
@@ -230,6 +258,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """``shaped``: all terms of ``rewards``. ``paper``: the paper's lumen reward alone, whatever ``rewards`` has. Its
     magnetic and capsule tasks move forward at a constant speed, ``env.actions.tip.forward_velocity`` [m/s]."""
 
+    robustness: str = NONE
+    """Variant that the task is made harder by, such as ``blur_2``, a kind and one of three strengths; see
+    :data:`arcgym_tasks.navigation.robustness.VARIANTS`. ``none`` for the task as it is."""
+
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
 
@@ -238,6 +270,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     observations: ObservationsCfg = ObservationsCfg()
     """Groups ``policy`` and ``critic``."""
+
+    extra_observations: tuple[str, ...] = ()
+    """Further groups that some robots can sense, of ``force``, ``shape`` and ``insertion``:
+    ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``. ``policy`` stays the images alone."""
 
     rewards: RewardsCfg = RewardsCfg()
     """Reward terms."""
@@ -270,6 +306,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "segment", SEGMENTS)
         require(self, "start", get_args(Start))
         require(self, "reward", ("shaped", "paper"))
+        require(self, "extra_observations", tuple(EXTRA_OBSERVATIONS))
+        require(self, "robustness", (NONE, *VARIANTS))
         require(self, "direction", ("insertion", "withdrawal"))
         if self.direction == "withdrawal" and self.start == "rest":
             raise FieldError(
@@ -292,7 +330,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
             raise FieldError(self, "sim.solver", f"is 'newton', which needs {' '.join(used)}; or choose 'two_level'.")
 
     def resolve(self) -> None:
-        """Leave the paper's reward alone, if it is asked for."""
+        """Make the task harder, add groups of observations, leave the paper's reward alone, where that is asked for."""
+        make_harder(self, self.robustness)
+        for name in self.extra_observations:
+            setattr(self.observations, name, EXTRA_OBSERVATIONS[name]())
         if self.reward == "paper":
             for name in vars(self.rewards):
                 setattr(self.rewards, name, self.rewards.lumen if name == "lumen" else None)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -12,6 +13,8 @@ import yaml
 
 from arcgym.utils.string import did_you_mean
 
+PATIENT = re.compile(r"\d+(\*\d*\.?\d+)?")
+"""Form of the name of a single patient."""
 SPLITS_FILE = Path(__file__).with_name("splits.yaml")
 """The file that defines the splits."""
 
@@ -48,16 +51,21 @@ def split_seeds(name: str) -> range:
     return seeds[name]
 
 
-def given_seeds(text: str) -> list[int]:
-    """Return seeds that commas separate, such as ``20000,20001``, all of them in some split.
+def given_patients(text: str) -> list[str] | None:
+    """Return single patients that commas separate, such as ``20000,20001*0.8``; None if the text names none by seed.
+
+    A factor after the seed is one on the width of the lumen: the patient with less gas.
 
     Raises:
-        ValueError: If one is in no split; names the splits.
+        ValueError: If a seed is in no split; names the splits.
     """
+    names = text.split(",")
+    if not all(PATIENT.fullmatch(name) for name in names):
+        return None
     known = read_splits().seeds
-    seeds = [int(part) for part in text.split(",")]
-    for seed in seeds:
+    for name in names:
+        seed = int(name.partition("*")[0])
         if not any(seed in split for split in known.values()):
             ranges = ", ".join(f"{name} {split[0]} to {split[-1]}" for name, split in known.items())
             raise ValueError(f"Seed {seed} is in no split of the population; there are {ranges}.")
-    return seeds
+    return names

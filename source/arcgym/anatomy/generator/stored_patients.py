@@ -14,9 +14,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from arcgym.anatomy.generator.splits import given_seeds, read_splits, split_seeds
+from arcgym.anatomy.generator.splits import given_patients, read_splits, split_seeds
 from arcgym.utils.paths import cache_dir
 from arcgym.utils.progress import report
 
@@ -30,14 +31,15 @@ def population_stages(split: str, count: int | None) -> list[Path]:
     """Return the stages of a split's patients by ascending seed; those that are missing are generated.
 
     Args:
-        split: Name of a split, see :mod:`arcgym.anatomy.generator.splits`, or seeds that commas separate.
+        split: Name of a split, see :mod:`arcgym.anatomy.generator.splits`, or patients by seed, see
+            :func:`arcgym.anatomy.generator.splits.given_patients`.
         count: Number of patients, from the first; None for all of a split that is not large.
 
     Raises:
         ValueError: If there is no such split, it has fewer patients, it is large and no number is given, or a patient
             cannot be generated.
     """
-    seeds = given_seeds(split) if split.replace(",", "").isdigit() else split_seeds(split)
+    seeds: Sequence[int | str] = given_patients(split) or split_seeds(split)
     if count is None and len(seeds) > MOST:
         raise ValueError(
             f"population:{split} has {len(seeds)} patients, which would take hours to generate: say how many with "
@@ -53,28 +55,31 @@ def population_stages(split: str, count: int | None) -> list[Path]:
     return list(stages.values())
 
 
-def stage_of(folder: Path, seed: int) -> Path:
-    """Return where the stage of a seed lies."""
-    return folder / f"patient_{seed:05d}" / "colon.usda"
+def stage_of(folder: Path, patient: int | str) -> Path:
+    """Return where the stage of a patient lies, named by seed, or by seed and gas: ``20000*0.8``."""
+    seed, _, gas = str(patient).partition("*")
+    return folder / f"patient_{int(seed):05d}{f'_gas_{gas}' if gas else ''}" / "colon.usda"
 
 
-def main(folder: str, *seeds: str) -> None:
+def main(folder: str, *patients: str) -> None:
     """Generate patients that are not there."""
     from arcgym.anatomy.generator.output import make_to_folder
     from arcgym.anatomy.generator.population import draw_spec
 
-    for seed in map(int, seeds):
-        stage = stage_of(Path(folder), seed)
+    for patient in patients:
+        stage = stage_of(Path(folder), patient)
         if stage.is_file():
             continue
+        seed, _, gas = patient.partition("*")
+        spec = draw_spec(int(seed))
         try:
-            make_to_folder(draw_spec(seed), stage.parent)
+            make_to_folder(replace(spec, inflation=round(spec.inflation * float(gas or 1.0), 4)), stage.parent)
         except (OSError, ValueError):
             if not stage.is_file():  # else another process, which makes the same one, was first
                 raise
 
 
-def _generate(folder: Path, seeds: Sequence[int]) -> None:
+def _generate(folder: Path, seeds: Sequence[int | str]) -> None:
     """Generate patients in as many processes as there are cores.
 
     Raises:
@@ -105,7 +110,7 @@ def _generate(folder: Path, seeds: Sequence[int]) -> None:
             raise ValueError(f"A patient of the population cannot be generated: {lines[-1]}")
 
 
-def _wait(processes: Sequence[subprocess.Popen], folder: Path, seeds: Sequence[int]) -> int | None:
+def _wait(processes: Sequence[subprocess.Popen], folder: Path, seeds: Sequence[int | str]) -> int | None:
     """Wait until all have ended or one has failed, whose number is returned, and report how far it is."""
     shown = -1
     while True:

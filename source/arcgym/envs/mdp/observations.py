@@ -22,7 +22,7 @@ from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
 from arcgym.utils.math import points_at, quat_apply_inverse
-from arcgym.utils.validation import POSITIVE, expects
+from arcgym.utils.validation import POSITIVE, Range, expects
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -33,9 +33,11 @@ __all__ = [
     "depth",
     "drive_forces",
     "inserted_length",
+    "insertion_depth",
     "last_action",
     "lumen_state",
     "rgb",
+    "shaft_shape",
     "tip_axis_distance",
     "tip_bending",
     "tip_force_vector",
@@ -144,6 +146,49 @@ def inserted_length(env: ManagerBasedEnv) -> torch.Tensor:
     """Return the inserted length [m] and its excess over the tip's arc length over 0.1 m (loops), shape (N, 2)."""
     data = env.scene["endoscope"].data
     return torch.stack((data.inserted_length, (data.inserted_length - data.tip_arc_length) / 0.1), dim=1)
+
+
+@expects(scale=POSITIVE)
+def insertion_depth(env: ManagerBasedEnv, scale: float = 1.0) -> torch.Tensor:
+    """Return the length of scope inside the anus over a scale, as marks on the shaft give it, shape (N, 1).
+
+    Args:
+        scale: Length that becomes one [m].
+    """
+    return env.scene["endoscope"].data.inserted_length.unsqueeze(1) / scale
+
+
+@expects(points=Range(1), spacing=POSITIVE, scale=POSITIVE)
+class shaft_shape(ManagerTermBase):
+    """Places along the shaft in the tip's frame, each over a scale, as a fiber or magnetic imaging gives them.
+
+    Shape (N, 3 K). Each is the center of the link nearest to its distance from the front of the tip; beyond the base,
+    that of the base. A capsule's are all its own center.
+    """
+
+    def __init__(self, cfg: ObservationTermCfg, env: ManagerBasedEnv) -> None:
+        """Choose the links."""
+        super().__init__(cfg, env)
+        scope = env.scene["endoscope"]
+        length = torch.as_tensor(scope.stage.link_length, dtype=torch.float32)
+        behind = length.flip(0).cumsum(0).flip(0) - 0.5 * length
+        wanted = cfg.params.get("spacing", 0.05) * torch.arange(1, cfg.params.get("points", 12) + 1)
+        self._links = (behind[None] - wanted[:, None]).abs().argmin(dim=1).to(env.device)
+
+    def __call__(
+        self, env: ManagerBasedEnv, points: int = 12, spacing: float = 0.05, scale: float = 0.2
+    ) -> torch.Tensor:
+        """Return the places.
+
+        Args:
+            points: Number of places K, read once at construction.
+            spacing: Length of shaft between them [m], read once at construction.
+            scale: Distance that becomes one [m].
+        """
+        data = env.scene["endoscope"].data
+        away = data.body_pos_w[:, self._links] - data.tip_pos_w[:, None]
+        quat = data.tip_quat_w[:, None].expand(-1, len(self._links), -1)
+        return (quat_apply_inverse(quat, away) / scale).flatten(1)
 
 
 def wall_forces(env: ManagerBasedEnv) -> torch.Tensor:

@@ -1,0 +1,112 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""Variants of a task that ask what a policy stands, ``env.robustness=blur_2``: a kind and one of three strengths."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arcgym.envs import mdp
+from arcgym.managers import EventTermCfg
+
+NONE = "none"
+"""The task as it is."""
+
+PICTURES: dict[str, tuple[float, float, float]] = {
+    "fluid": (8.0, 16.0, 32.0),
+    "stool": (0.2, 0.5, 1.0),
+    "bubbles": (0.2, 0.5, 1.0),
+    "blur": (0.01, 0.02, 0.04),
+    "droplets": (3.0, 6.0, 12.0),
+    "noise": (5.0, 12.0, 25.0),
+    "dropped": (0.1, 0.3, 0.5),
+}
+"""Amounts of what spoils the policy's picture, see :data:`arcgym.envs.mdp.IMAGE_FAULTS`."""
+
+LIGHTS: dict[str, tuple[float, float, float]] = {"dim": (0.5, 0.25, 0.1), "blown": (2.0, 4.0, 8.0)}
+"""Factors on the brightness that the exposure aims at."""
+
+DELAYS: dict[str, tuple[int, int, int]] = {"delay": (1, 2, 4)}
+"""Age of the policy's pictures [control steps of 0.1 s]."""
+
+SOFTER: dict[str, tuple[float, float, float]] = {"soft": (0.5, 0.25, 0.1)}
+"""Factors on Young's modulus of the wall."""
+
+STICKIER: dict[str, tuple[float, float, float]] = {"sticky": (2.0, 3.0, 5.0)}
+"""Factors on the friction between scope and wall."""
+
+COLLAPSED: dict[str, tuple[float, float, float]] = {"collapsed": (0.9, 0.8, 0.7)}
+"""Factors on the width of the lumen: less gas. Patients of the population alone, who are made anew for it."""
+
+KINDS: dict[str, tuple[Any, Any, Any]] = {**PICTURES, **LIGHTS, **DELAYS, **SOFTER, **STICKIER, **COLLAPSED}
+"""Amounts of the three strengths by kind. All of them are our choices."""
+
+VARIANTS = tuple(f"{kind}_{strength}" for kind in KINDS for strength in (1, 2, 3))
+"""Names of all variants."""
+
+
+def make_harder(cfg: Any, variant: str) -> None:
+    """Change a navigation task's configuration into a variant.
+
+    Args:
+        cfg: :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg`.
+        variant: One of :data:`VARIANTS`, or ``none``.
+
+    Raises:
+        ValueError: If the task lacks what the variant changes.
+    """
+    if variant == NONE:
+        return
+    kind, _, strength = variant.rpartition("_")
+    amount = KINDS[kind][int(strength) - 1]
+    if kind in PICTURES:
+        rgb = _policy_picture(cfg, variant)
+        rgb.func, rgb.params = mdp.impaired_rgb, {**rgb.params, "kind": kind, "amount": amount}
+    elif kind in DELAYS:
+        rgb = _policy_picture(cfg, variant)
+        rgb.delay_min_lag = rgb.delay_max_lag = amount
+    elif kind in LIGHTS:
+        _multiply(cfg, "light", mdp.randomize_light, "gain", amount, 1.0)
+    elif kind in SOFTER:
+        _multiply(cfg, "stiffness", mdp.randomize_tissue_stiffness, "scale", amount, 1.0)
+    elif kind in STICKIER:
+        _multiply(cfg, "friction", mdp.randomize_friction, "friction", amount, cfg.sim.contact.friction)
+    else:
+        cfg.scene.colon.usd_path = _narrower(cfg.scene.colon.usd_path, amount)
+
+
+def _policy_picture(cfg: Any, variant: str) -> Any:
+    rgb = getattr(cfg.observations.policy, "rgb", None)
+    if rgb is None:
+        raise ValueError(
+            f"env.robustness={variant} changes env.observations.policy.rgb, which this task does not have."
+        )
+    return rgb
+
+
+def _multiply(cfg: Any, name: str, func: Any, param: str, factor: float, neutral: float) -> None:
+    """Multiply both bounds that an event draws from; where the event is off, it gets one value."""
+    event = getattr(cfg.events, name, None)
+    if event is None:
+        event = EventTermCfg(func=func, mode="reset", params={param: (neutral, neutral)})
+        setattr(cfg.events, name, event)
+    low, high = event.params[param]
+    event.params = {**event.params, param: (factor * low, factor * high)}
+
+
+def _narrower(usd_path: str | list[str], factor: float) -> str | list[str]:
+    """Return the names of the same patients of the population with less gas.
+
+    Raises:
+        ValueError: If some patient is not of the population.
+    """
+    names = [usd_path] if isinstance(usd_path, str) else list(usd_path)
+    for name in names:
+        if not name.startswith("population:"):
+            raise ValueError(
+                f"env.robustness=collapsed_... makes patients of the population anew with less gas; {name} is a stage. "
+                "Choose env.scene.colon.usd_path=population:20000, or leave the variant out."
+            )
+    changed = [f"{name}*{factor:g}" for name in names]
+    return changed[0] if isinstance(usd_path, str) else changed
