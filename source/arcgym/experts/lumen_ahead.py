@@ -9,7 +9,7 @@ import math
 import torch
 
 from arcgym.scene.interactive_scene import InteractiveScene
-from arcgym.utils.math import points_at, quat_apply, quat_apply_inverse
+from arcgym.utils.math import normalize, points_at, quat_apply, quat_apply_inverse, row_sum
 
 
 def lumen_direction(scene: InteractiveScene, ahead: float) -> torch.Tensor:
@@ -18,7 +18,7 @@ def lumen_direction(scene: InteractiveScene, ahead: float) -> torch.Tensor:
     arc = data.tip_arc_length[:, None] + ahead
     target = points_at(colon.centerline_pos_w, colon.centerline_arc, arc)[:, 0]
     local = quat_apply_inverse(data.tip_quat_w, target - data.tip_pos_w)
-    return torch.nn.functional.normalize(local, dim=1)
+    return normalize(local)
 
 
 def tip_angle(scene: InteractiveScene) -> torch.Tensor:
@@ -26,5 +26,5 @@ def tip_angle(scene: InteractiveScene) -> torch.Tensor:
     data = scene["endoscope"].data
     forward = torch.zeros_like(data.tip_pos_w)
     forward[:, 2] = 1.0
-    cosine = (quat_apply(data.tip_quat_w, forward) * data.tip_lumen_direction_w).sum(dim=1)
+    cosine = row_sum(quat_apply(data.tip_quat_w, forward) * data.tip_lumen_direction_w)
     return torch.acos(cosine.clamp(-1.0, 1.0)) * (180.0 / math.pi)

@@ -9,7 +9,7 @@ import warp as wp
 
 from arcgym.experts import lumen_way_kernels as kernels
 from arcgym.scene.interactive_scene import InteractiveScene
-from arcgym.utils.math import points_at
+from arcgym.utils.math import norm, points_at, row_cumsum
 
 REACH = 0.08
 """Length of centerline ahead of the tip along which the way is laid [m]."""
@@ -80,6 +80,6 @@ def along(way: torch.Tensor, look: torch.Tensor) -> torch.Tensor:
     Returns:
         Points [m], shape (N, 3).
     """
-    gap = (way[:, 1:] - way[:, :-1]).norm(dim=2).clamp(min=1.0e-6)
-    length = torch.cat([torch.zeros_like(gap[:, :1]), gap.cumsum(dim=1)], dim=1)
+    gap = norm(way[:, 1:] - way[:, :-1]).clamp(min=1.0e-6)
+    length = torch.cat([torch.zeros_like(gap[:, :1]), row_cumsum(gap)], dim=1)
     return points_at(way, length, look[:, None])[:, 0]

@@ -7,13 +7,12 @@ from __future__ import annotations
 from typing import ClassVar
 
 import torch
-from torch.nn.functional import normalize
 
 from arcgym.experts.expert_base import ExpertBase
 from arcgym.experts.lumen_way import LumenWay, along
 from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
-from arcgym.utils.math import quat_apply_inverse
+from arcgym.utils.math import norm, normalize, quat_apply_inverse, row_sum
 
 
 class PullExpert(ExpertBase):
@@ -67,7 +66,7 @@ class PullExpert(ExpertBase):
         data = self.scene["endoscope"].data
         backs, begins = self._retreat.update(data.tip_arc_length)
         withdraws = self.speed < 0.0
-        random = normalize(self.normal("side", 3), dim=1)
+        random = normalize(self.normal("side", 3))
         self._side = torch.where((begins & ~withdraws)[:, None], random, self._side)
         way = self._way.find()
         aim, gaze = self._seen(way, self.look), self._seen(way, self.gaze)
@@ -75,9 +74,9 @@ class PullExpert(ExpertBase):
         onward = pace[:, None] * (self._direction(aim, gaze) + self.disturbance)
         away = self.speed.abs()[:, None] * (0.5 * self._side - data.tip_lumen_direction_w)
         velocity = torch.where((backs | withdraws)[:, None], quat_apply_inverse(data.tip_quat_w, away), onward)
-        gaze = normalize(gaze + 0.5 * self.disturbance, dim=1)
+        gaze = normalize(gaze + 0.5 * self.disturbance)
         turn = torch.linalg.cross(self._forward, gaze)
-        turn = torch.where(gaze[:, 2:] < 0.0, normalize(turn, dim=1), turn)
+        turn = torch.where(gaze[:, 2:] < 0.0, normalize(turn), turn)
         self.scene["endoscope"].set_tip_velocity_command(velocity, self.turn_gain[:, None] * turn)
 
     def reset(self, env_ids: torch.Tensor) -> None:
@@ -91,15 +90,15 @@ class PullExpert(ExpertBase):
     def _seen(self, way: torch.Tensor, length: torch.Tensor) -> torch.Tensor:
         """Return the unit vector from the tip to a point of the way, in the tip's frame, shape (N, 3)."""
         data = self.scene["endoscope"].data
-        return normalize(quat_apply_inverse(data.tip_quat_w, along(way, length) - data.tip_pos_w), dim=1)
+        return normalize(quat_apply_inverse(data.tip_quat_w, along(way, length) - data.tip_pos_w))
 
     def _direction(self, aim: torch.Tensor, gaze: torch.Tensor) -> torch.Tensor:
         """Return the direction of the pull in the tip's frame: to the aim, along the axis, not into what it touches."""
         data = self.scene["endoscope"].data
         force = data.link_force_w[:, -1]
-        off = quat_apply_inverse(data.tip_quat_w, force) / (force.norm(dim=1, keepdim=True) + 0.3)
+        off = quat_apply_inverse(data.tip_quat_w, force) / (norm(force)[:, None] + 0.3)
         against = (-2.0 * off[:, 2] - 0.2).clamp(0.0, 1.0)
         axis = self.axis * (1.0 - against) - self.back * against * (1.0 - gaze[:, 2]).clamp(0.0, 1.0)
-        pull = normalize((1.0 - axis.abs())[:, None] * aim + axis[:, None] * self._forward, dim=1)
-        into = (pull * off).sum(dim=1).clamp(max=0.0)
+        pull = normalize((1.0 - axis.abs())[:, None] * aim + axis[:, None] * self._forward)
+        into = row_sum(pull * off).clamp(max=0.0)
         return pull + (self.slide * (0.2 - 0.8 * into))[:, None] * off

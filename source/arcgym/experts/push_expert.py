@@ -8,13 +8,12 @@ import math
 from typing import ClassVar
 
 import torch
-from torch.nn.functional import normalize
 
 from arcgym.experts.expert_base import ExpertBase
 from arcgym.experts.lumen_way import LumenWay, along
 from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
-from arcgym.utils.math import quat_apply_inverse
+from arcgym.utils.math import norm, normalize, quat_apply_inverse
 
 LARGEST_BENDING = 2.9
 """Largest bending commanded [rad]."""
@@ -113,11 +112,11 @@ class PushExpert(ExpertBase):
         """Bend towards the way by a share of the gain, shape (N,); return the angle to it [rad], shape (N,)."""
         data = self.scene["endoscope"].data
         target = along(self._way.find(), self.look) - data.tip_pos_w
-        direction = normalize(quat_apply_inverse(data.tip_quat_w, target), dim=1)
-        direction = normalize(direction + 0.3 * self.disturbance, dim=1)
+        direction = normalize(quat_apply_inverse(data.tip_quat_w, target))
+        direction = normalize(direction + 0.3 * self.disturbance)
         angle = torch.acos(direction[:, 2].clamp(-1.0, 1.0))
         error = torch.stack([-direction[:, 1], direction[:, 0]], dim=1)
-        self.bending += (share * self.gain * angle)[:, None] * normalize(error, dim=1)
-        norm = self.bending.norm(dim=1)
-        self.bending *= (self.largest / norm.clamp(min=1.0e-6)).clamp(max=1.0)[:, None]
+        self.bending += (share * self.gain * angle)[:, None] * normalize(error)
+        bent = norm(self.bending)
+        self.bending *= (self.largest / bent.clamp(min=1.0e-6)).clamp(max=1.0)[:, None]
         return angle

@@ -1,16 +1,38 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Batched vectors and rotations in torch. Quaternions are (x, y, z, w), as in Newton; `...` is any batch shape."""
+"""Batched vectors and rotations in torch. Quaternions are (x, y, z, w), as in Newton; `...` is any batch shape.
+
+Sums over the last dimension have a fixed order. Torch's own reductions on a GPU choose theirs by the size of the batch,
+so that a world's result would depend, in the last digit, on how many others there are.
+"""
 
 from __future__ import annotations
+
+from functools import reduce
+from itertools import accumulate
 
 import torch
 
 
 def normalize(vectors: torch.Tensor, eps: float = 1.0e-9) -> torch.Tensor:
     """Scale vectors to unit length; those shorter than `eps` become (nearly) zero. Shape (..., D) to (..., D)."""
-    return vectors / vectors.norm(dim=-1, keepdim=True).clamp(min=eps)
+    return vectors / norm(vectors).unsqueeze(-1).clamp(min=eps)
+
+
+def row_sum(values: torch.Tensor) -> torch.Tensor:
+    """Add up a few values, in their order. Shape (..., D) to (...)."""
+    return reduce(torch.add, values.unbind(dim=-1))
+
+
+def row_cumsum(values: torch.Tensor) -> torch.Tensor:
+    """Return the sums of the first one, two, ... of a few values, shape (..., D)."""
+    return torch.stack(list(accumulate(values.unbind(dim=-1))), dim=-1)
+
+
+def norm(vectors: torch.Tensor) -> torch.Tensor:
+    """Return the lengths of vectors. Shape (..., D) to (...)."""
+    return row_sum(vectors.square()).sqrt()
 
 
 def quat_apply(quat: torch.Tensor, vectors: torch.Tensor) -> torch.Tensor:

@@ -17,6 +17,7 @@ from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores, resolve
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import ManagerTermBase, RewardTermCfg
 from arcgym.sensors.depth_estimators import EstimatedDepth, TransformersDepth
+from arcgym.utils.math import row_sum
 from arcgym.utils.validation import expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -130,12 +131,12 @@ class progress(ManagerTermBase):
 
 def action_rate_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
     """Squared change of the raw action since the last step, summed over its entries, shape (N,)."""
-    return (env.action_manager.action - env.action_manager.prev_action).square().sum(dim=1)
+    return row_sum((env.action_manager.action - env.action_manager.prev_action).square())
 
 
 def action_l2(env: ManagerBasedRLEnv) -> torch.Tensor:
     """Squared raw action, summed over its entries, shape (N,)."""
-    return env.action_manager.action.square().sum(dim=1)
+    return row_sum(env.action_manager.action.square())
 
 
 def is_terminated(env: ManagerBasedRLEnv) -> torch.Tensor:

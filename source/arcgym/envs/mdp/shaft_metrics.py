@@ -28,6 +28,7 @@ from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.materials import MESOCOLON_HEIGHT
 from arcgym.envs.mdp import shaft_kernels
 from arcgym.managers import ManagerTermBase, MetricsTermCfg
+from arcgym.utils.math import norm
 from arcgym.utils.validation import expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -118,7 +119,7 @@ class path_efficiency(ManagerTermBase):
     def __call__(self, env: ManagerBasedRLEnv) -> torch.Tensor:
         """Add this step's motion to the path."""
         data = env.scene["endoscope"].data
-        self._path += torch.nan_to_num((data.tip_pos_w - self._tip).norm(dim=1), nan=0.0)
+        self._path += torch.nan_to_num(norm(data.tip_pos_w - self._tip), nan=0.0)
         self._tip.copy_(data.tip_pos_w)
         self._start = torch.where(self._start.isnan(), data.tip_arc_length, self._start)
         way = (data.tip_arc_length - self._start).abs()
@@ -144,7 +145,7 @@ class mesentery_stretch(ManagerTermBase):
         """Compare the rings with where they rest."""
         data = env.scene["colon"].data
         patient = data.patient.long()
-        moved = (data.centerline_pos_w - self._rest[patient]).norm(dim=2)
+        moved = norm(data.centerline_pos_w - self._rest[patient])
         return (moved - self._slack[patient]).clamp(min=0.0).amax(dim=1)
 
 
