@@ -57,13 +57,13 @@ def test_without_slack_the_springs_are_linear(tiny_sim: TinySim) -> None:
 
 def test_each_world_has_its_own_anchors(tiny_sim: TinySim) -> None:
     sim = tiny_sim("capsule", num_envs=3)
-    sim.colon.write_anchor_scale_to_sim(torch.tensor([0.25, 4.0]), [0, 2])
+    sim.colon.write_anchor_scale_to_sim(torch.tensor([0.5, 4.0]), [0, 2])
     sparse, default, dense = (pull_at(sim, 0.01, world) for world in range(3))
-    assert sparse == pytest.approx(0.25 * default, rel=1e-4)
+    assert sparse == pytest.approx(0.5 * default, rel=1e-4)
     assert dense == pytest.approx(4.0 * default, rel=1e-4)
 
 
-@pytest.mark.parametrize(("name", "scale"), [("sparse", 0.25), ("default", 1.0), ("dense", 4.0)])
+@pytest.mark.parametrize(("name", "scale"), [("sparse", 0.5), ("default", 1.0), ("dense", 1.75)])
 def test_anchors_are_configured_by_name(tiny_sim: TinySim, name: str, scale: float) -> None:
     assert tiny_sim("capsule", colon={"anchors": name}).anchor_scale.tolist() == [scale]
 

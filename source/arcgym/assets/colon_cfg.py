@@ -54,7 +54,7 @@ class ColonCfg:
     """Way that some segments move, half way along, before their attachment gets tight [m], over the preset's. 0 holds
     the segment as a plain spring."""
     anchors: Literal["sparse", "default", "dense"] = "default"
-    """Factor on all anchor springs: 1/4, 1 or 4. Change it, or randomise it with the event
+    """Factor on all anchor springs: 0.5, 1 or 1.75. Change it, or randomise it with the event
     :func:`arcgym.envs.mdp.randomize_anchors`, to see how much a policy depends on how firmly the colon is held."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""

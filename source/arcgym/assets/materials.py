@@ -42,9 +42,9 @@ HANGING_STIFFNESS = 30.0
 """What draws a colon back within the slack, per length [N/m^2]: a pendulum of the wall's weight, 2 pi 20 mm * 1.5 mm *
 1000 kg/m^3 * g = 1.85 N/m, on 63 mm of mesentery."""
 
-ANCHOR_SCALES = {"sparse": 0.25, "default": 1.0, "dense": 4.0}
-"""Factor on every anchor spring. The ARCGym paper compares sparse, default and dense anchors of the wall's mesh; an
-anchored ring of every four, smeared over the length, is a quarter of the stiffness. The factors are ours."""
+ANCHOR_SCALES = {"sparse": 0.5, "default": 1.0, "dense": 1.75}
+"""Factor on every anchor spring. The ARCGym paper fixes about 50 % (sparse) and 175 % (dense) of its default number of
+vertices; here as much of the stiffness is smeared over the length."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,10 @@ class TissuePreset:
     """Stiffness within the slack, per length of colon [N/m^2]."""
 
 
-SENSITIVITY_MODULI = {"soft": 0.5e6, "medium": 5.0e6, "stiff": 50.0e6}
-"""Young's moduli of the sensitivity presets [Pa]: a decade to either side of the ARCGym paper's 5 MPa."""
+SENSITIVITY_MODULI = {"soft": 0.5e6, "medium": 5.0e6, "stiff": 10.0e6}
+"""Young's moduli of the ARCGym paper's material sensitivity [Pa]."""
 SENSITIVITY_RATIOS = {"nu045": 0.45, "nu049": 0.49}
-"""Poisson's ratios of the sensitivity presets."""
+"""Poisson's ratios of the ARCGym paper's material sensitivity."""
 
 TISSUE_PRESETS = {
     "paper": TissuePreset(youngs_modulus=5.0e6, poissons_ratio=0.49),
@@ -93,8 +93,8 @@ TISSUE_PRESETS = {
 al. (1.76 MPa lengthwise, 0.63 around) since a scope's small strains lie at the foot of their curves, and a mesentery
 with slack, so that the sigmoid colon can loop.
 
-``soft_nu045`` ... ``stiff_nu049``: six settings for sensitivity tables, {0.5, 5, 50} MPa x {0.45, 0.49} with the
-anchors of ``paper``. The ARCGym paper has six as well; that these are the same is not known to us."""
+``soft_nu045`` ... ``stiff_nu049``: the six settings of the ARCGym paper's material sensitivity, {0.5, 5, 10} MPa x
+{0.45, 0.49}, with the anchors of ``paper``."""
 
 
 def solid_moduli(youngs_modulus: Value, poissons_ratio: Value) -> tuple[Value, Value, Value]:
