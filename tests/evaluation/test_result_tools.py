@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -123,3 +125,20 @@ def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) ->
     changes[task]["robustness"][1] = "none"
     other = ResultFolder(tmp_path / "b", {**run, "changes": changes})
     assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]
+
+
+def test_the_tables_of_the_floor_are_made_from_the_folders(tmp_path: Path) -> None:
+    script = Path(__file__).parents[2] / "scripts" / "tools" / "floor_tables.py"
+    for agent in ("random", "expert"):
+        run = {**RUN, "agent": agent, "machine": "a machine", "versions": {"arcgym commit": "abc1234"}}
+        folder = ResultFolder(tmp_path / agent, run)
+        for trial in CONDITIONS.trials:
+            folder.add(
+                {"task": TASKS[0], "agent": agent, **vars(trial), "success": int(agent == "expert"), "seconds": 4.0}
+            )
+    words = [sys.executable, str(script), str(tmp_path)]
+    text = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout
+    assert "Machine: a machine; commit abc1234." in text and "**`paper`**" in text
+    lines = [line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`")]
+    assert lines[0].startswith(f"| `{TASKS[0]}` | random | 30 | 0 (0–11) | 4.0 (4.0–4.0) |")
+    assert lines[1].startswith(f"| `{TASKS[0]}` | expert | 30 | 100 (89–100) |")

@@ -114,3 +114,20 @@ def test_variants_are_tasks_of_their_own(tmp_path: Path, conditions: Path) -> No
     assert by_task["ule"] == by_task["_2"] and len(by_task["_3"]) == 5
     assert by_task["_3"] != by_task["ule"]
     assert read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule:sticky_3"]["robustness"] == ["none", "sticky_3"]
+
+
+def test_the_best_and_the_worst_trial_are_filmed_and_shown(tmp_path: Path, conditions: Path, capsys) -> None:
+    """Five trials end by time: the best came farthest. Filmed in one world they come out as in five."""
+    import pyarrow.parquet
+
+    from arcgym.evaluation.page import write_page
+
+    rows = evaluate(tmp_path / "run", conditions, "--videos")
+    assert "came out otherwise" not in capsys.readouterr().out
+    ordered = sorted(rows, key=lambda row: row["progress"])
+    films = {path.name for path in (tmp_path / "run" / "videos").iterdir()}
+    names = {"worst": ordered[0], "median": ordered[2], "best": ordered[-1]}
+    assert films == {f"ARC-Rectum-Capsule_{name}_trial_{row['trial']}.mp4" for name, row in names.items()}
+    assert write_page(tmp_path / "run").read_text().count("<video controls src=data:video/mp4;base64,") == 3
+    table = pyarrow.parquet.read_table(tmp_path / "run" / "trials.parquet")
+    assert sorted(table["reward"].to_pylist()) == sorted(row["reward"] for row in rows)

@@ -35,6 +35,7 @@ class EvaluateArguments:
     tasks: str | None = argument("tasks of the suite, separated by commas (default: all of the robot)", None)
     robot: str | None = argument("robot (default: the one that the checkpoint was trained with)", None)
     conditions: str | None = argument("condition file (default: the suite's)", None)
+    videos: bool = argument("film the best, median and worst trial of each task", False)
     num_envs: int = argument("largest number of worlds (default: 30)", 30, type=positive)
     num_patients: int = argument("largest number of patients in memory (default: 64)", 64, type=positive)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
@@ -61,14 +62,26 @@ def run(namespace: argparse.Namespace) -> None:
     overrides = (*suite.overrides, *args.overrides)
 
     from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
+    from arcgym.evaluation.parquet import write_parquet
     from arcgym.evaluation.summary import summarize, to_markdown
 
     options = EvaluationOptions(agents, args.suite, overrides, args.num_envs, args.num_patients, args.device)
-    folder = evaluate(tasks, conditions, lambda task, path: _load(task, path, overrides), options, Path(args.out))
+
+    def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
+        return _load(task, checkpoint, overrides)
+
+    folder = evaluate(tasks, conditions, load, options, Path(args.out))
     table = to_markdown(summarize(folder.rows))
     (folder.path / "summary.md").write_text(table)
     print(table)
     print(f"rows: {folder.path / 'trials.csv'}")
+    parquet = write_parquet(folder.path)
+    print(f"rows as Parquet: {parquet or 'none, it needs pyarrow (pip install arcgym[study])'}")
+    if args.videos:
+        from arcgym.evaluation.videos import film
+
+        for path in film(conditions, load, options, folder):
+            print(f"video: {path}")
 
 
 def _choose(name: str, known: dict[str, Any], kind: str) -> Any:

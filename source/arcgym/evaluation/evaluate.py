@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +23,9 @@ from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.managers import EventTermCfg
 from arcgym.rl.device import place
 from arcgym.rl.make_env import make_env
-from arcgym.rl.params import differences
-from arcgym.rl.rollout import UNTRAINED
+from arcgym.rl.params import differences, read_params
+from arcgym.rl.rollout import UNTRAINED, Policy
+from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
@@ -101,6 +102,7 @@ def run_record(conditions: Conditions, options: EvaluationOptions) -> dict[str, 
         "agent": ",".join(options.agents) if not checkpoints else "checkpoint",
         "checkpoint": [str(path) for path in checkpoints],
         "checkpoint_sha256": [file_sha256(path) for path in checkpoints],
+        "trained_on": [trained_on(path) for path in checkpoints],
         "suite": options.suite,
         "conditions": conditions.name,
         "conditions_sha256": conditions.sha256,
@@ -108,6 +110,12 @@ def run_record(conditions: Conditions, options: EvaluationOptions) -> dict[str, 
         "versions": versions(),
         "machine": f"{platform.processor() or platform.machine()}, {_accelerator()}",
     }
+
+
+def trained_on(checkpoint: Path) -> Any:
+    """Return the patients that a checkpoint was trained on, as its run's parameters name them; None if it has none."""
+    saved = read_params(checkpoint.parent)
+    return None if saved is None else saved.env["scene"]["colon"]["usd_path"]
 
 
 def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
@@ -122,12 +130,9 @@ def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
 
 def _batches(trials: Sequence[Trial], agents: Sequence[str], most: int) -> list[tuple[str, list[Trial]]]:
     """Return the trials that can share an environment: of one agent, and of so many patients at most."""
-
-    def agent_of(trial: Trial) -> str:
-        return agents[trial.group % len(agents)]
-
+    chosen = {agent: [trial for trial in trials if agent_of(trial, agents) == agent] for agent in agents}
     batches = []
-    for agent, members in groupby(sorted(trials, key=agent_of), agent_of):
+    for agent, members in chosen.items():
         of_patient: dict[str, list[Trial]] = {}
         for trial in members:
             of_patient.setdefault(trial.patient, []).append(trial)
@@ -146,16 +151,10 @@ def _run_batch(
     folder: ResultFolder,
 ) -> None:
     """Run trials with one agent in an environment that holds all their patients."""
-    checkpoint = None if agent in UNTRAINED else Path(agent)
-    env_cfg, agent_cfg = load_cfgs(task, checkpoint)
-    folder.note_changes(task, changes_of(task, env_cfg))
-    patients = list(dict.fromkeys(trial.patient for trial in trials))
-    _hold_patients(env_cfg, patients)
-    env_cfg.scene.num_envs = min(options.num_envs, len(trials))
-    env_cfg.recorders = None
-    place(env_cfg, agent_cfg, options.device)
-    env = make_env(split_task(task)[0], env_cfg, agent_cfg)
-    try:
+    patients = patients_of(trials)
+    cfgs = load_cfgs(task, checkpoint_of(agent))
+    folder.note_changes(task, changes_of(task, cfgs[0]))
+    with opened(task, agent, trials, cfgs, options) as (env, make_policy):
         with counted(task if len(patients) > 1 else f"{task}, {patients[0]}", len(trials)) as show:
             started = len(folder.rows)
 
@@ -163,10 +162,47 @@ def _run_batch(
                 folder.add({"task": task, "agent": agent, **row})
                 show(len(folder.rows) - started)
 
-            make_policy = UNTRAINED.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
             run_trials(env, make_policy, trials, keep, patients)
+
+
+@contextmanager
+def opened(
+    task: str, agent: str, trials: Sequence[Trial], cfgs: tuple[Any, Any], options: EvaluationOptions
+) -> Iterator[tuple[RslRlVecEnvWrapper, Callable[[RslRlVecEnvWrapper], Policy]]]:
+    """Open an environment for trials, and give it with what makes the agent's policy.
+
+    Args:
+        task: Name of the task, with its variant.
+        agent: One of ``options.agents``.
+        trials: Trials that it shall run.
+        cfgs: Configurations of environment and agent; the environment's is changed.
+        options: As for :func:`evaluate`.
+    """
+    env_cfg, agent_cfg = cfgs
+    _hold_patients(env_cfg, patients_of(trials))
+    env_cfg.scene.num_envs = min(options.num_envs, len(trials))
+    env_cfg.recorders = None
+    place(env_cfg, agent_cfg, options.device)
+    env = make_env(split_task(task)[0], env_cfg, agent_cfg)
+    try:
+        yield env, UNTRAINED.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
     finally:
         env.close()
+
+
+def patients_of(trials: Sequence[Trial]) -> list[str]:
+    """Return the patients of trials, each once, in order."""
+    return list(dict.fromkeys(trial.patient for trial in trials))
+
+
+def agent_of(trial: Trial, agents: Sequence[str]) -> str:
+    """Return the agent that runs a trial: that of its group."""
+    return agents[trial.group % len(agents)]
+
+
+def checkpoint_of(agent: str) -> Path | None:
+    """Return the checkpoint that an agent is, None for one without."""
+    return None if agent in UNTRAINED else Path(agent)
 
 
 def _hold_patients(env_cfg: Any, patients: list[str]) -> None:

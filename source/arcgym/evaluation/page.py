@@ -14,12 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.evaluation.result_folder import read_run, read_trial_rows
+from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
 from arcgym.evaluation.summary import KEY_METRICS, summarize
+from arcgym.evaluation.video_choice import chosen_rows, video_path
 
 STYLE = """body{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}
 table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.25em .6em;text-align:right}
-td:first-child,th:first-child{text-align:left}img{max-width:100%}.scroll{overflow-x:auto}"""
+td:first-child,th:first-child{text-align:left}img{max-width:100%}.scroll{overflow-x:auto}
+.films{display:flex;flex-wrap:wrap}figure{margin:.5em;width:20em}video{width:100%}"""
 
 DISTRIBUTIONS = ("progress", "seconds", "p95_tip_force", "p95_shaft_force")
 """Figures whose distribution over the trials is drawn, if the rows have them."""
@@ -47,6 +49,7 @@ def write_page(folder: Path) -> Path:
         _picture(_success_figure(summaries)),
         "<h2>Trials</h2>",
         _picture(_distribution_figure(rows)),
+        _films(folder, rows),
         "<h2>How episodes ended</h2>",
         _table(["task", "end", "trials"], _ends(rows)),
     ]
@@ -54,6 +57,22 @@ def write_page(folder: Path) -> Path:
     path = folder / "page.html"
     path.write_text(page + "\n".join(body) + "</html>\n")
     return path
+
+
+def _films(folder: Path, rows: Sequence[Row]) -> str:
+    """Return the films of each task's best, median and worst trial, as far as they were made."""
+    parts = []
+    for task in sorted({row["task"] for row in rows}):
+        for label, row in chosen_rows([row for row in rows if row["task"] == task]).items():
+            path = video_path(folder, row, label)
+            if path.is_file():
+                end = f"{row['end']} after {row['seconds']:.1f} s"
+                caption = html.escape(f"{task}: {label}, trial {row['trial']}, {end}")
+                source = f"data:video/mp4;base64,{base64.b64encode(path.read_bytes()).decode()}"
+                parts.append(
+                    f"<figure><video controls src={source}></video><figcaption>{caption}</figcaption></figure>"
+                )
+    return f"<h2>Best, median, worst</h2><div class=films>{''.join(parts)}</div>" if parts else ""
 
 
 def _agent(run: dict[str, Any]) -> str:

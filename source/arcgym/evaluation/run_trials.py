@@ -27,6 +27,7 @@ def run_trials(
     trials: Sequence[Trial],
     on_row: Callable[[TrialRow], None],
     patients: Sequence[str] = (),
+    on_step: Callable[[], None] = lambda: None,
 ) -> None:
     """Run every trial once.
 
@@ -41,20 +42,28 @@ def run_trials(
             :meth:`arcgym.rl.episode_sums.EpisodeSums.take`.
         patients: Patients in ``env``, as the trials name them, where there are several. Its event ``patient`` is
             :func:`arcgym.evaluation.trial_queue.give_patient_of_trial`.
+        on_step: Called before every step.
     """
     queue = TrialQueue(trials, env.num_envs, patients)
     env.unwrapped.random.seed_source = queue
     try:
         env.reset()
-        _run(env, make_policy(env), queue, on_row)
+        _run(env, make_policy(env), queue, on_row, on_step)
     finally:
         env.unwrapped.random.seed_source = None
 
 
-def _run(env: RslRlVecEnvWrapper, policy: Policy, queue: TrialQueue, on_row: Callable[[TrialRow], None]) -> None:
+def _run(
+    env: RslRlVecEnvWrapper,
+    policy: Policy,
+    queue: TrialQueue,
+    on_row: Callable[[TrialRow], None],
+    on_step: Callable[[], None],
+) -> None:
     obs, sums = env.get_observations(), EpisodeSums(env)
     with torch.inference_mode():
         while queue.left:
+            on_step()
             running = queue.running
             obs, rewards, dones, extras = env.step(policy(obs))
             if hasattr(policy, "reset"):

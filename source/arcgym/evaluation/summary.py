@@ -22,6 +22,10 @@ KEY_METRICS = (
     "p95_shaft_force",
     "shaft_time_above_unsafe",
     "max_base_force",
+    "looping_ratio",
+    "path_efficiency",
+    "coverage",
+    "polyps_seen",
 )
 """Columns of the summary, if the rows have them: interquartile means over all trials."""
 
