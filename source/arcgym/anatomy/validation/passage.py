@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import binary_dilation, label, minimum
-from scipy.spatial import cKDTree
 
-from arcgym.anatomy.measures import face_normals, inner_faces
+from arcgym.anatomy.measures import inner_faces
 from arcgym.anatomy.stage.types import ColonStage, WallMesh
 
 HEAD_RADIUS = 0.0066
@@ -29,12 +28,6 @@ Clearance = Callable[[np.ndarray], np.ndarray]
 
 _STATION = 0.004
 """Distance of the places at which the head is laid [m]."""
-
-_SAMPLE = 0.002
-"""Distance of the samples of the wall [m]; at a head's radius the wall seems 0.1 mm farther at most."""
-
-_SAME = 1e-7
-"""Distance below which samples are one [m]."""
 
 _BLIND = 0.014
 """Distance of the blind end from the head's axis at the last place [m]."""
@@ -104,7 +97,7 @@ def head_passage(stage: ColonStage, radius: float = HEAD_RADIUS, length: float =
     line = stage.centerline
     if stage.contact is None:
         return wall_passage(stage.wall, line.points.astype(float), line.arc.astype(float), radius, length)
-    surface = _WallSamples(stage.contact.points.astype(float), stage.contact.faces())
+    surface = _WallDistance(stage.contact.points.astype(float), stage.contact.faces())
     return find_passage(surface.clearance, line.points.astype(float), line.arc.astype(float), radius, length)
 
 
@@ -120,41 +113,31 @@ def wall_passage(
         radius: Radius of the head [m].
         length: Its length with both round ends [m].
     """
-    surface = _WallSamples(wall.points.astype(float), inner_faces(wall.tets, wall.layer))
+    surface = _WallDistance(wall.points.astype(float), inner_faces(wall.tets, wall.layer))
     return find_passage(surface.clearance, points, arc, radius, length)
 
 
-class _WallSamples:
-    """Signed distance to a triangulated wall, by samples of it.
-
-    The side is that of the nearest sample's normal; on edges it is the mean of the faces' (Baerentzen and Aanaes, IEEE
-    TVCG 2005), for at a fold's edge the nearest face alone would tell the wrong side.
-    """
+class _WallDistance:
+    """Signed distance to a triangulated wall; the side is by the winding number, which sharp folds do not mislead."""
 
     def __init__(self, points: np.ndarray, faces: np.ndarray) -> None:
-        normals = face_normals(points, faces)
-        faces, normals = faces[(size := np.linalg.norm(normals, axis=1)) > 0.0], normals[size > 0.0]
-        corners = points[faces]
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-18)
-        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(1)
-        found, sides = [], []
-        for parts in range(1, int(np.ceil(longest.max() / _SAMPLE)) + 1):
-            here = np.ceil(longest / _SAMPLE).astype(int) == parts
-            a, b = np.meshgrid(np.arange(parts + 1), np.arange(parts + 1), indexing="ij")
-            share = np.stack([a, b, parts - a - b], -1)[a + b <= parts] / parts
-            found.append(np.einsum("kc,fcd->fkd", share, corners[here]).reshape(-1, 3))
-            sides.append(np.repeat(normals[here], len(share), axis=0))
-        samples, same = np.unique(np.round(np.concatenate(found) / _SAME), axis=0, return_inverse=True)
-        normals = np.concatenate(sides)
-        sums = [np.bincount(same.ravel(), normals[:, k], len(samples)) for k in range(3)]
-        self.samples, self.normals = _SAME * samples, np.stack(sums, 1)
-        self._tree = cKDTree(self.samples)
+        from arcgym.utils import warp_setup  # noqa: F401  isort: skip
+        import warp as wp
+
+        vertices = wp.array(points, dtype=wp.vec3, device="cpu")
+        indices = wp.array(faces.ravel().astype(np.int32), dtype=int, device="cpu")
+        self._mesh = wp.Mesh(vertices, indices, support_winding_number=True)
 
     def clearance(self, points: np.ndarray) -> np.ndarray:
         """Return the distance to the wall [m], negative outside the lumen, shape (...,) of points (..., 3)."""
-        distance, nearest = self._tree.query(points)
-        outwards = np.einsum("...i,...i->...", points - self.samples[nearest], self.normals[nearest])
-        return np.where(outwards > 0.0, -distance, distance)
+        import warp as wp
+
+        from arcgym.anatomy.validation.distance_kernels import signed_distances
+
+        places = wp.array(points.reshape(-1, 3), dtype=wp.vec3, device="cpu")
+        out = wp.zeros(len(places), dtype=float, device="cpu")
+        wp.launch(signed_distances, len(places), inputs=[self._mesh.id, places], outputs=[out], device="cpu")
+        return out.numpy().astype(float).reshape(points.shape[:-1])
 
 
 class _Heads:

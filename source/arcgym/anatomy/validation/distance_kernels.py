@@ -1,0 +1,20 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Kernel of the signed distance to a closed surface."""
+
+import warp as wp
+
+from arcgym.utils import warp_setup  # noqa: F401
+
+FAR = wp.constant(10.0)
+"""Distance beyond which nothing is looked for [m]."""
+
+
+@wp.kernel
+def signed_distances(mesh: wp.uint64, points: wp.array[wp.vec3], out: wp.array[float]):
+    """Distance of each point to the mesh, positive inside by the winding number [m]. Launch (n,)."""
+    i = wp.tid()
+    found = wp.mesh_query_point_sign_winding_number(mesh, points[i], FAR)
+    nearest = wp.mesh_eval_position(mesh, found.face, found.u, found.v)
+    out[i] = -found.sign * wp.length(nearest - points[i])
