@@ -25,7 +25,7 @@ _ENTRANCE = 0.008
 _GROUP = 8
 """Heads that are drawn at once."""
 
-LOOP = 0.080
+LOOP = 0.045
 """How much farther along the lumen another loop is [m]."""
 
 
