@@ -39,11 +39,12 @@ def check_patients(patients: Sequence[Patient], from_stage: Sequence[str]) -> No
 def _check_grid(patient: Patient, first: Patient) -> None:
     own, theirs = patient.wall, first.wall
     same = type(own) is type(theirs) and len(own.ring_arc) == len(theirs.ring_arc)
-    same = same and all(_equal(getattr(own, name, None), getattr(theirs, name, None)) for name in SHARED)
-    if not same:
+    differ = [name for name in SHARED if not _equal(getattr(own, name, None), getattr(theirs, name, None))]
+    if not same or differ:
         raise ValueError(
-            f"{patient.path} has a wall of {_grid(own)}, {first.path} one of {_grid(theirs)}: all patients of a run "
-            "need the same grid. Leave it out, or make both with the same numbers of rings and sectors."
+            f"{patient.path} has a wall of {_grid(own)}, {first.path} one of {_grid(theirs)} (they differ in "
+            f"{', '.join(differ) or 'kind'}): all patients of a run need the same grid. Leave it out, or make both with "
+            "the same numbers of rings and sectors and the same version of ARCGym."
         )
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from arcgym.anatomy.measures import tet_volumes
 from arcgym.anatomy.segments import ANCHOR_ELASTIC, ANCHOR_FIXED, ANCHOR_FREE, RETROPERITONEAL, SEGMENTS
 from arcgym.anatomy.stage.types import WallMesh
 
@@ -23,6 +22,12 @@ FIXED_RINGS_START = 3
 
 FIXED_RINGS_END = 2
 """Rings held still at the blind end, so that the simulated piece is held at both ends."""
+
+_PRISM = ((0, 1, 2, 5), (0, 1, 4, 5), (0, 3, 4, 5))
+"""Corners of the three tetrahedra of a prism: its inner triangle, then its outer one."""
+
+_MIRRORED = (False, True, False)
+"""Which of them have negative volume in a prism whose triangles wind outwards in that order."""
 
 
 def ring_arcs(length: float, spacing: float) -> np.ndarray:
@@ -62,7 +67,7 @@ def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarra
     """
     count, rings, sectors, _ = layers.shape
     points = layers.reshape(-1, 3).astype(np.float32)
-    triangles = tube_triangles(rings, sectors)
+    triangles = tube_triangles(rings, sectors)[:, ::-1]
     if capped:
         triangles = np.concatenate([triangles, (rings - 1) * sectors + polygon_triangles(sectors)])
     layer = np.repeat(np.arange(count, dtype=np.int32), rings * sectors)
@@ -70,7 +75,7 @@ def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarra
     segment = np.asarray(ring_segment, np.int32)[ring]
     return WallMesh(
         points=points,
-        tets=_extrude(points, triangles, rings * sectors),
+        tets=_extrude(triangles, rings * sectors),
         anchor=_anchors(ring, layer, segment, rings),
         segment=segment,
         ring=ring,
@@ -104,24 +109,20 @@ def polygon_triangles(sectors: int) -> np.ndarray:
     return np.array(triangles, np.int32)
 
 
-def _extrude(points: np.ndarray, triangles: np.ndarray, stride: int) -> np.ndarray:
+def _extrude(triangles: np.ndarray, stride: int) -> np.ndarray:
     """Split each prism between a triangle and its copy one layer out into three tetrahedra.
 
-    Prisms are split by ascending vertex number, so that neighbours agree on the diagonal of the face they share.
+    Prisms are split by ascending vertex number, so that neighbours agree on the diagonal of the face they share. Where
+    the layers do not cross each other, volumes are positive: the order of vertices follows from the winding of the
+    triangles, whose normals point to the outer layer, and is the same in all walls of a grid.
     """
     low = np.sort(triangles, 1)
     chain = [low[:, 0], low[:, 1], low[:, 2], *(low[:, k] + stride for k in range(3))]
-    tets = np.stack(
-        [
-            np.stack([chain[0], chain[1], chain[2], chain[5]], 1),
-            np.stack([chain[0], chain[1], chain[4], chain[5]], 1),
-            np.stack([chain[0], chain[3], chain[4], chain[5]], 1),
-        ],
-        1,
-    ).reshape(-1, 4)
-    inverted = tet_volumes(points, tets) < 0
-    tets[inverted] = tets[inverted][:, [1, 0, 2, 3]]
-    return tets.astype(np.int32)
+    tets = np.stack([np.stack([chain[k] for k in corners], 1) for corners in _PRISM], 1)
+    even = np.any([(np.roll(low, k, 1) == triangles).all(1) for k in range(3)], axis=0)
+    mirrored = ~even[:, None] ^ np.array(_MIRRORED)
+    tets[mirrored] = tets[mirrored][:, [1, 0, 2, 3]]
+    return tets.reshape(-1, 4).astype(np.int32)
 
 
 def _anchors(ring: np.ndarray, layer: np.ndarray, segment: np.ndarray, rings: int) -> np.ndarray:
