@@ -18,6 +18,7 @@ from arcgym.assets.endoscope_data import EndoscopeData
 from arcgym.assets.endoscope_spec import capsule_half_height, shared_stiffness
 from arcgym.assets.endoscope_stage import TURNS, read_endoscope
 from arcgym.assets.force_windows import ForceWindows, force_windows
+from arcgym.assets.scope_length import stage_of_length
 from arcgym.assets.usd_loading import add_endoscope_usd
 from arcgym.utils.class_type import construct
 from arcgym.utils.configclass import validate
@@ -43,6 +44,8 @@ class Endoscope:
         validate(cfg)
         self.cfg = cfg
         self.path = resolve_asset(cfg.usd_path)
+        if cfg.length is not None:
+            self.path = stage_of_length(self.path, cfg.length)
         self.stage = read_endoscope(self.path)
         drives = {name: drive for name, drive in cfg.actuators.items() if drive is not None}
         self.actuators: dict[str, ActuatorBase] = {name: construct(drive, self) for name, drive in drives.items()}

@@ -8,7 +8,7 @@ from typing import Any
 
 from arcgym.assets.actuators import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, TipPullCfg
 from arcgym.utils.configclass import MISSING, configclass
-from arcgym.utils.validation import require_non_negative, require_positive
+from arcgym.utils.validation import Range, require, require_non_negative, require_positive
 
 
 @configclass
@@ -52,6 +52,10 @@ class EndoscopeCfg:
     expert: Any = None
     """Class of the scripted expert that drives this robot to the start states, or its name ``"module:Class"``, see
     :mod:`arcgym.experts`. None: episodes can start from rest or from states made before."""
+    length: float | None = None
+    """Length of a shipped scope with a shaft [m], over its 1.68 m. All but 0.2 m can be inserted. Raise it where the
+    caecum is farther than the scope is long, as in many patients: enteroscopes are sold with 2.0 m; the cost grows with
+    the number of links."""
     shaft_rigidity: float | None = None
     """Bending rigidity EI of the hinges behind the bending section [N m^2], over the stage's."""
     tip_rigidity: float | None = None
@@ -67,6 +71,7 @@ class EndoscopeCfg:
         Raises:
             ValueError: If a value is out of its bounds or a name is unknown.
         """
+        require(self, "length", Range(0.5, 3.0), unit="m")
         require_positive(self, "shaft_rigidity", "tip_rigidity", unit="N m^2")
         require_positive(self, "torsional_rigidity", unit="N m^2/rad")
 

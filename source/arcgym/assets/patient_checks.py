@@ -43,8 +43,8 @@ def _check_grid(patient: Patient, first: Patient) -> None:
     if not same or differ:
         raise ValueError(
             f"{patient.path} has a wall of {_grid(own)}, {first.path} one of {_grid(theirs)} (they differ in "
-            f"{', '.join(differ) or 'kind'}): all patients of a run need the same grid. Leave it out, or make both with "
-            "the same numbers of rings and sectors and the same version of ARCGym."
+            f"{', '.join(differ) or 'kind'}): all patients of a run need the same grid. Leave it out, or make both "
+            "with the same numbers of rings and sectors and the same version of ARCGym."
         )
 
 
