@@ -42,6 +42,11 @@ def main() -> None:
             f"generator {splits.generator}).",
         ),
         "ct_v1": ([f"ct_{number}/colon.usda" for number in (1, 2)], 10, "Ten trials on each of the two CT patients."),
+        "cross_colon_v1": (
+            [f"colon_{number}/colon.usda" for number in (3, 4, 5)],
+            10,
+            "Ten trials on each of the colons 3, 4 and 5, for policies that were trained on 1 and 2.",
+        ),
         "robustness_v1": (
             unseen[:10],
             2,

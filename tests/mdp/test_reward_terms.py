@@ -110,3 +110,9 @@ def test_the_way_begins_at_the_anus_where_the_episode_does(env) -> None:
     env.cfg.start = "rest"
     assert mdp.segment_progress(env).tolist() == pytest.approx([0.4, 0.4])
     assert mdp.segment_progress(env, segment="sigmoid").tolist() == pytest.approx([0.25, 0.25])
+
+
+def test_a_part_of_the_reward_is_that_of_the_scores(env) -> None:
+    parts = mdp.lumen_scores(env)
+    for part in ("s_c", "s_1", "s_2", "s_3", "s_o"):
+        torch.testing.assert_close(mdp.lumen_part(env, part), getattr(parts, part))

@@ -263,3 +263,13 @@ def test_groups_of_observations_are_added_where_they_are_asked_for() -> None:
     apply_overrides({"env": cfg}, ["env.extra_observations=[smell]"])
     with pytest.raises(ValueError, match="extra_observations.*'smell'.*force, insertion, shape"):
         validate(cfg)
+
+
+@pytest.mark.parametrize("part", ["s_c", "s_1", "s_2", "s_o"])
+def test_a_part_of_the_papers_reward_may_stand_alone(part: str) -> None:
+    cfg = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
+    apply_overrides({"env": cfg}, [f"env.reward={part}"])
+    validate(cfg)
+    cfg.resolve()
+    terms = {name: term for name, term in vars(cfg.rewards).items() if term is not None}
+    assert list(terms) == ["lumen"] and terms["lumen"].params == {"part": part}

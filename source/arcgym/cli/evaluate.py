@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(namespace: argparse.Namespace) -> None:
     """Run the trials, print the summary and write it."""
-    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.suites import read_suites, split_task
     from arcgym.evaluation.trials import read_conditions
 
     args = read_fields(EvaluateArguments, namespace)
@@ -68,7 +68,7 @@ def run(namespace: argparse.Namespace) -> None:
     options = EvaluationOptions(agents, args.suite, overrides, args.num_envs, args.num_patients, args.device)
 
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
-        return _load(task, checkpoint, overrides)
+        return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
     folder = evaluate(tasks, conditions, load, options, Path(args.out))
     table = to_markdown(summarize(folder.rows))
@@ -129,10 +129,7 @@ def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tup
     """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top."""
     from arcgym.cli.arguments import RunArguments, TaskArguments
     from arcgym.cli.task import load_cfgs, load_run_cfgs
-    from arcgym.evaluation.suites import split_task, task_overrides
 
-    overrides = (*overrides, *task_overrides(task))
-    task, _ = split_task(task)
     if checkpoint is None:
         return load_cfgs(TaskArguments(task=task, overrides=list(overrides)))
     env_cfg, agent_cfg, _ = load_run_cfgs(

@@ -25,6 +25,7 @@ COMMANDS = {
     "results compare": ("arcgym.cli.results_compare", "compare two agents on the same trials"),
     "results merge": ("arcgym.cli.results_merge", "put the results of several machines into one folder"),
     "results page": ("arcgym.cli.results_page", "draw an evaluation as a page"),
+    "results paper": ("arcgym.cli.results_paper", "show an evaluation beside the paper's figures"),
     "results check": ("arcgym.cli.results_check", "check a result folder before it is published"),
     "replay": ("arcgym.cli.replay", "make a recorded episode again and compare it bit for bit"),
     "study": ("arcgym.cli.study", "train a grid of algorithms, tasks, robots and seeds"),

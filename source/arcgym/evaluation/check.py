@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
-from arcgym.evaluation.suites import Suite, read_suites, split_task, task_overrides
+from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
 TASK_FIELDS = (
@@ -62,7 +62,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
     for task, changes in run.get("changes", {}).items():
-        asked = (text.removeprefix("env.").partition("=") for text in (*suite.overrides, *task_overrides(task)))
+        asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
         allowed = {path: value for path, _, value in asked}
         for path in changes:
             if path.startswith(TASK_FIELDS) and str(changes[path][1]) != allowed.get(path):

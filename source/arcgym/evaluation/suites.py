@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -26,13 +27,21 @@ class Suite:
     overrides: tuple[str, ...] = ()
     """Overrides of the environment's configuration, as on the command line."""
 
-    variants: tuple[str, ...] = ()
-    """Values of ``env.robustness`` that each task is evaluated with; none for the tasks as they are."""
+    variants: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """Overrides of the variants that each task is evaluated in, by name; none for the tasks as they are. In the file a
+    plain list of names stands for values of ``env.robustness``."""
 
     def tasks(self, robot: str) -> list[str]:
         """Return the tasks for a robot, such as ``Magnetic``: registered names, with ``:variant`` where there are."""
         names = [f"ARC-{segment}-{robot}" for segment in self.segments]
         return [f"{name}:{variant}" for name in names for variant in self.variants] if self.variants else names
+
+    def overrides_of(self, task: str) -> tuple[str, ...]:
+        """Return the overrides of a task: the suite's, and those of its variant."""
+        _, variant = split_task(task)
+        if variant is None or variant in self.variants:
+            return (*self.overrides, *self.variants.get(variant or "", ()))
+        return (*self.overrides, f"env.robustness={variant}")
 
     @property
     def conditions_path(self) -> Path:
@@ -46,16 +55,18 @@ def split_task(task: str) -> tuple[str, str | None]:
     return name, variant or None
 
 
-def task_overrides(task: str) -> tuple[str, ...]:
-    """Return the overrides that a task's variant stands for."""
-    _, variant = split_task(task)
-    return (f"env.robustness={variant}",) if variant else ()
-
-
 def read_suites(path: Path = FOLDER / "suites.yaml") -> dict[str, Suite]:
     """Return the suites of a file by name."""
     return {name: _suite(values) for name, values in yaml.safe_load(path.read_text()).items()}
 
 
-def _suite(values: dict[str, object]) -> Suite:
-    return Suite(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})  # type: ignore[arg-type]
+def _suite(values: dict[str, Any]) -> Suite:
+    variants = values.get("variants") or {}
+    if isinstance(variants, list):
+        variants = {name: [f"env.robustness={name}"] for name in variants}
+    return Suite(
+        segments=tuple(values["segments"]),
+        conditions=values["conditions"],
+        overrides=tuple(values.get("overrides", ())),
+        variants={name: tuple(texts) for name, texts in variants.items()},
+    )

@@ -106,6 +106,10 @@ EXTRA_OBSERVATIONS = {
 """Groups that ``env.extra_observations`` adds, by name."""
 
 
+ABLATED = ("s_c", "s_1", "s_2", "s_o")
+"""Parts of the paper's reward that ``env.reward`` may leave alone."""
+
+
 @configclass
 class RewardsCfg:
     """The paper's lumen reward, with progress and safety; each is multiplied by its weight and the step of 0.1 s.
@@ -254,8 +258,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     tells wall and diverticulum from lumen more sharply; ``paper`` is the benchmark's. A name and changes to it may
     follow each other: ``env.lumen=metric env.lumen.far=0.2``."""
 
-    reward: Literal["shaped", "paper"] = "shaped"
-    """``shaped``: all terms of ``rewards``. ``paper``: the paper's lumen reward alone, whatever ``rewards`` has. Its
+    reward: Literal["shaped", "paper", "s_c", "s_1", "s_2", "s_o"] = "shaped"
+    """``shaped``: all terms of ``rewards``. ``paper``: the paper's lumen reward alone, whatever ``rewards`` has;
+    ``s_c``, ``s_1``, ``s_2`` and ``s_o``: that part of it alone, as in the paper's ablation. Its
     magnetic and capsule tasks move forward at a constant speed, ``env.actions.tip.forward_velocity`` [m/s]."""
 
     robustness: str = NONE
@@ -305,7 +310,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """
         require(self, "segment", SEGMENTS)
         require(self, "start", get_args(Start))
-        require(self, "reward", ("shaped", "paper"))
+        require(self, "reward", ("shaped", "paper", *ABLATED))
         require(self, "extra_observations", tuple(EXTRA_OBSERVATIONS))
         require(self, "robustness", (NONE, *VARIANTS))
         require(self, "direction", ("insertion", "withdrawal"))
@@ -334,7 +339,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         make_harder(self, self.robustness)
         for name in self.extra_observations:
             setattr(self.observations, name, EXTRA_OBSERVATIONS[name]())
-        if self.reward == "paper":
+        if self.reward in ABLATED:
+            self.rewards.lumen = RewTerm(func=mdp.lumen_part, weight=1.0, params={"part": self.reward})
+        if self.reward != "shaped":
             for name in vars(self.rewards):
                 setattr(self.rewards, name, self.rewards.lumen if name == "lumen" else None)
 

@@ -30,10 +30,15 @@ __all__ = [
     "estimated_lumen_reward",
     "is_terminated",
     "lumen_centering",
+    "lumen_part",
     "lumen_reward",
     "lumen_visibility",
     "progress",
 ]
+
+
+PARTS = ("s_c", "s_1", "s_2", "s_3", "s_o")
+"""Parts of the paper's reward, see :mod:`arcgym.envs.mdp.lumen`."""
 
 
 @expects(lumen=LUMEN_PRESETS)
@@ -64,6 +69,17 @@ def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) ->
         lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
     """
     return lumen_scores(env, lumen).reward
+
+
+@expects(part=PARTS, lumen=LUMEN_PRESETS)
+def lumen_part(env: ManagerBasedRLEnv, part: str, lumen: str | LumenCfg | None = None) -> torch.Tensor:
+    """One part of the paper's reward alone, as in its ablation, shape (N,).
+
+    Args:
+        part: One of :data:`PARTS`.
+        lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
+    """
+    return getattr(lumen_scores(env, lumen), part)
 
 
 class estimated_lumen_reward(ManagerTermBase):

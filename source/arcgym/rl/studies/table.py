@@ -23,6 +23,8 @@ MEANS = {
     "tip > unsafe s": "tip_time_above_unsafe",
     "largest tip N": "max_tip_force",
     "shaft > unsafe s": "shaft_time_above_unsafe",
+    "s_c": "s_c",
+    "ROI rate": "centered_rate",
 }
 """Heading and column of what is averaged over the episodes."""
 
