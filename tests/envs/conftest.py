@@ -44,7 +44,7 @@ class CounterSim:
     def step(self, n: int) -> None:
         self.counter.position += n * self.counter.velocity
 
-    def forward(self) -> None:
+    def forward(self, env_mask: object = None) -> None:
         self.num_forwards += 1
 
 

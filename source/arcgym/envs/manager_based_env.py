@@ -296,7 +296,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     def _start(self, env_ids: torch.Tensor, env_mask: torch.Tensor | None = None) -> None:
         """Put worlds to the start of an episode and draw them; the mask, bool, shape (N,), names the same worlds."""
         self._reset_idx(env_ids)
-        self.sim.forward()
+        self.sim.forward(env_mask)
         self.scene.update(0.0, env_mask=env_mask)
         self.recorder_manager.record_post_reset(env_ids)
 

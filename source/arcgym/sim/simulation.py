@@ -83,6 +83,7 @@ class Simulation:
         self.moduli: torch.Tensor = wp.to_torch(self.wall.tissue.moduli)
         self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor).fill_(colon.anchor_scale)
         self.rigid: torch.Tensor = wp.to_torch(self.wall.tissue.rigid)
+        self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=self.device)
         self._graph: wp.Graph | None = None
         self._eager_steps = 0
         colon.bind(self)
@@ -197,7 +198,7 @@ class Simulation:
             wp.to_torch(array).mul_(1.0 / n)
         self.scope_readout.finish(n)
         self.wall_readout.finish(n)
-        self._read_out()
+        self._read_out(self._all_worlds)
 
     def _step_once(self) -> None:
         if self._graph is not None:
@@ -218,14 +219,20 @@ class Simulation:
         if self.wall.moves:
             self.wall_readout.measure(self.nodal_pos)
 
-    def forward(self) -> None:
-        """Recompute link poses, ring centres, tip and camera after the state was written to."""
-        self.coupling.forward()
-        self._read_out()
+    def forward(self, env_mask: torch.Tensor | None = None) -> None:
+        """Recompute link poses, ring centres, tip and camera after the state was written to.
 
-    def _read_out(self) -> None:
+        Args:
+            env_mask: Worlds that were written to, shape (N,), bool; None for all. The others stay as they are to the
+                last bit, which they would not on a GPU: the same formula may round otherwise in another kernel.
+        """
+        mask = self._all_worlds if env_mask is None else wp.from_torch(env_mask.contiguous(), dtype=wp.bool)
+        self.coupling.forward(mask)
+        self._read_out(mask)
+
+    def _read_out(self, world_mask: wp.array) -> None:
         self.contact.update_centers(self.nodal_pos)
-        self.contact.track(self.state.body_q)
+        self.contact.track(self.state.body_q, world_mask)
         self.scope_readout.update(self.state, self.contact, self.nodal_pos)
 
     def world_arrays(self) -> dict[str, torch.Tensor]:

@@ -75,6 +75,7 @@ class ContactSearch:
         self.moduli = wp.zeros(num_envs, dtype=wp.vec3, device=device)
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
+        self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         self.bounds = lumen_kernels.Bounds()
@@ -175,16 +176,17 @@ class ContactSearch:
             device=self.device,
         )
 
-    def track(self, body_q: wp.array) -> None:
+    def track(self, body_q: wp.array, world_mask: wp.array | None = None) -> None:
         """Follow each link's ring; links whose ring is -1 are searched along the whole colon.
 
         Args:
             body_q: Link poses, shape (W*L,), transform.
+            world_mask: Worlds to look at, shape (W,), bool; None for all.
         """
         wp.launch(
             lumen_kernels.track_rings,
             (self.num_envs, self.link_count),
-            inputs=[self.centers, body_q, MAX_RING_SHIFT],
+            inputs=[self.centers, body_q, MAX_RING_SHIFT, self._all_worlds if world_mask is None else world_mask],
             outputs=[self.ring, self.ring_distance],
             device=self.device,
         )

@@ -64,6 +64,7 @@ def track_rings(
     centers: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
     max_shift: int,
+    world_mask: wp.array[wp.bool],
     ring: wp.array2d[int],
     ring_distance: wp.array2d[float],
 ):
@@ -77,10 +78,13 @@ def track_rings(
         centers: Ring centers [m], shape (W, R).
         body_q: Link poses, shape (W*L,).
         max_shift: Rings that a link may cross since the last call.
+        world_mask: Worlds to look at, shape (W,).
         ring: Ring of each link or -1, shape (W, L); updated.
         ring_distance: Distance from its center [m], shape (W, L); written.
     """
     w, link = wp.tid()
+    if not world_mask[w]:
+        return
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
     last = ring[w, link]
     lo = int(0)

@@ -165,10 +165,10 @@ class NewtonCoupling:
                 device=ours.device,
             )
 
-    def forward(self) -> None:
-        """Recompute the links' poses after joints were written to."""
+    def forward(self, world_mask: wp.array) -> None:
+        """Recompute the links' poses in ``world_mask``, shape (W,), bool, after joints were written to."""
         state = self.sim.state
-        newton.eval_fk(self.sim.model, state.joint_q, state.joint_qd, state)
+        newton.eval_fk(self.sim.model, state.joint_q, state.joint_qd, state, mask=world_mask)
 
     def reset(self, world_mask: wp.array) -> None:
         """Clear what the coupled solvers keep between steps in the masked worlds; states are copied in anyway."""

@@ -21,8 +21,8 @@ class Coupling(Protocol):
     def step(self) -> None:
         """Advance by one physics step, in place; adds each link's mean wall force to the simulation's array."""
 
-    def forward(self) -> None:
-        """Recompute the links' poses after joints were written to."""
+    def forward(self, world_mask: wp.array) -> None:
+        """Recompute the links' poses in ``world_mask``, shape (W,), bool, after joints were written to."""
 
     def reset(self, world_mask: wp.array) -> None:
         """Forget what the solvers remember of the worlds in ``world_mask``, shape (W + 1,), bool."""
@@ -95,9 +95,9 @@ class TwoLevelCoupling:
         )
         self.sim.actuation.record(work.drive_force, work.acc_lin, weight)
 
-    def forward(self) -> None:
-        """Recompute the links' poses after joints were written to."""
-        self.solver.forward(self.sim.state)
+    def forward(self, world_mask: wp.array) -> None:
+        """Recompute the links' poses in ``world_mask``, shape (W,), bool, after joints were written to."""
+        self.solver.forward(self.sim.state, world_mask)
 
     def reset(self, world_mask: wp.array) -> None:
         """Nothing to forget: neither solver keeps anything from step to step."""

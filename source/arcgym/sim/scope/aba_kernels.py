@@ -224,6 +224,7 @@ def chain_kinematics(
     chain: Chain,
     joint_q: wp.array[float],
     joint_qd: wp.array[float],
+    world_mask: wp.array[wp.bool],
     body_q: wp.array[wp.transform],
     body_qd: wp.array[wp.spatial_vector],
 ):
@@ -233,10 +234,13 @@ def chain_kinematics(
         chain: Links and joints of one world.
         joint_q: Joint coordinates [m or rad], shape (W*J,).
         joint_qd: Joint velocities [m/s or rad/s], shape (W*D,).
+        world_mask: Worlds to compute, shape (W,).
         body_q: Link poses, shape (W*L,); written.
         body_qd: Link velocities [m/s, rad/s], shape (W*L,); written.
     """
     w = wp.tid()
+    if not world_mask[w]:
+        return
     now = LinkMotion()
     now.pose = wp.transform_identity()
     for link in range(chain.links):

@@ -81,12 +81,15 @@ class SolverArticulatedChain(SolverBase):
         chain.linear = wp.array(_linear(model, links, dofs), dtype=int, device=model.device)
         return chain
 
-    def forward(self, state: newton.State) -> None:
-        """Recompute the links' poses and velocities; to the bit what :meth:`step` leaves if nothing was changed."""
+    def forward(self, state: newton.State, world_mask: wp.array) -> None:
+        """Recompute the links' poses and velocities in ``world_mask``, shape (W,), bool.
+
+        If nothing was changed this is what :meth:`step` leaves: to the bit on a CPU, to rounding on a GPU.
+        """
         wp.launch(
             chain_kinematics,
             self.num_envs,
-            inputs=[self.chain, state.joint_q, state.joint_qd],
+            inputs=[self.chain, state.joint_q, state.joint_qd, world_mask],
             outputs=[state.body_q, state.body_qd],
             device=self.model.device,
             block_dim=SERIAL_BLOCK,
