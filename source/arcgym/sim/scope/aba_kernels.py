@@ -4,7 +4,8 @@
 """Articulated-body algorithm of a serial chain (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7).
 
 One thread a world walks from the tip to the base, gathering what the chain beyond each joint resists, and back, giving
-each joint its acceleration. W worlds, L links, D degrees of freedom a world.
+each joint its acceleration. What the next link and joint need is read while this one is worked on: on a GPU the
+walk would otherwise wait for memory a dozen times a link. W worlds, L links, D degrees of freedom a world.
 """
 
 import warp as wp
@@ -13,22 +14,74 @@ from arcgym.sim.scope.scope_kernels import ArticulatedBody, Chain, ChainWork, sh
 from arcgym.utils import warp_setup  # noqa: F401
 
 
+@wp.struct
+class LinkRow:
+    """What the walk inwards needs of a link."""
+
+    own: ArticulatedBody
+    arm: wp.vec3
+    drift_lin: wp.vec3
+    drift_ang: wp.vec3
+
+
+@wp.struct
+class JointRow:
+    """What the walk inwards needs of a degree of freedom."""
+
+    axis: wp.vec3
+    stop: float
+    stop_inertia: float
+    drive: float
+    drive_inertia: float
+
+
 @wp.func
-def eliminate_joint(chain: Chain, work: ChainWork, d: int, w: int, body: ArticulatedBody) -> ArticulatedBody:
+def read_link(work: ChainWork, link: int, w: int) -> LinkRow:
+    """Read a link's row; that of the first where ``link`` is before it."""
+    k = wp.max(link, 0)
+    out = LinkRow()
+    out.own.ll = work.ll[k, w]
+    out.own.la = work.la[k, w]
+    out.own.aa = work.aa[k, w]
+    out.own.force = work.force[k, w]
+    out.own.torque = work.torque[k, w]
+    out.arm = work.arm[k, w]
+    out.drift_lin = work.drift_lin[k, w]
+    out.drift_ang = work.drift_ang[k, w]
+    return out
+
+
+@wp.func
+def read_joint(work: ChainWork, d: int, w: int) -> JointRow:
+    """Read the row of a degree of freedom; that of the first where ``d`` is before it."""
+    k = wp.max(d, 0)
+    out = JointRow()
+    out.axis = work.axis[k, w]
+    out.stop = work.stop[k, w]
+    out.stop_inertia = work.stop_inertia[k, w]
+    out.drive = work.drive[k, w]
+    out.drive_inertia = work.drive_inertia[k, w]
+    return out
+
+
+@wp.func
+def eliminate_joint(
+    chain: Chain, work: ChainWork, d: int, w: int, joint: JointRow, body: ArticulatedBody
+) -> ArticulatedBody:
     """Eliminate degree of freedom ``d``; stores the gains and offset from which its acceleration is recovered."""
-    axis = work.axis[d, w]
+    axis = joint.axis
     u_lin = body.la * axis
     u_ang = body.aa * axis
     pivot = wp.dot(axis, u_ang)
-    rest = work.stop[d, w] - wp.dot(axis, body.torque)
+    rest = joint.stop - wp.dot(axis, body.torque)
     if chain.linear[d] == 1:
         u_lin = body.ll * axis
         u_ang = axis * body.la
         pivot = wp.dot(axis, u_lin)
-        rest = work.stop[d, w] - wp.dot(axis, body.force)
-    pivot += work.stop_inertia[d, w]
-    drive = work.drive[d, w]
-    inertia = work.drive_inertia[d, w]
+        rest = joint.stop - wp.dot(axis, body.force)
+    pivot += joint.stop_inertia
+    drive = joint.drive
+    inertia = joint.drive_inertia
     at_end = drive - inertia * (rest + drive) / (pivot + inertia)
     if wp.abs(at_end) > chain.effort[d]:
         drive = wp.sign(at_end) * chain.effort[d]
@@ -55,24 +108,29 @@ def eliminate_joint(chain: Chain, work: ChainWork, d: int, w: int, body: Articul
 def inward_pass(chain: Chain, work: ChainWork, w: int) -> ArticulatedBody:
     """Walk from the tip to the base; return the articulated body of the whole chain at the root's anchor."""
     carried = ArticulatedBody()
+    next_link = read_link(work, chain.links - 1, w)
+    next_joint = read_joint(work, chain.dofs - 1, w)
     for step in range(chain.links):
         link = chain.links - 1 - step
+        row = next_link
+        next_link = read_link(work, link - 1, w)
         body = ArticulatedBody()
-        body.ll = carried.ll + work.ll[link, w]
-        body.la = carried.la + work.la[link, w]
-        body.aa = carried.aa + work.aa[link, w]
-        body.force = carried.force + work.force[link, w]
-        body.torque = carried.torque + work.torque[link, w]
+        body.ll = carried.ll + row.own.ll
+        body.la = carried.la + row.own.la
+        body.aa = carried.aa + row.own.aa
+        body.force = carried.force + row.own.force
+        body.torque = carried.torque + row.own.torque
         if link > 0 or chain.free == 0:
             first = chain.dof_start[link]
             count = chain.dof_start[link + 1] - first
             for k in range(count):
-                body = eliminate_joint(chain, work, first + count - 1 - k, w, body)
-            drift_lin = work.drift_lin[link, w]
-            drift_ang = work.drift_ang[link, w]
-            body.force += body.ll * drift_lin + body.la * drift_ang
-            body.torque += drift_lin * body.la + body.aa * drift_ang
-            carried = shift_origin(body, work.arm[link, w])
+                d = first + count - 1 - k
+                joint = next_joint
+                next_joint = read_joint(work, d - 1, w)
+                body = eliminate_joint(chain, work, d, w, joint, body)
+            body.force += body.ll * row.drift_lin + body.la * row.drift_ang
+            body.torque += row.drift_lin * body.la + body.aa * row.drift_ang
+            carried = shift_origin(body, row.arm)
         else:
             carried = body
     return carried
@@ -119,40 +177,99 @@ def free_motion(
     return out
 
 
+@wp.struct
+class JointMotion:
+    """Displacement of a joint and its rate, in the joint's frame."""
+
+    shift: wp.vec3
+    rot: wp.quat
+    rate: wp.vec3
+    spin: wp.vec3
+
+
 @wp.func
-def next_motion(
-    chain: Chain,
-    link: int,
-    w: int,
-    before: LinkMotion,
-    joint_q: wp.array[float],
-    joint_qd: wp.array[float],
-) -> LinkMotion:
-    """Return the motion of a link from that of the one before it and the joint between them."""
+def move_joint(chain: Chain, d: int, q: float, v: float, before: JointMotion) -> JointMotion:
+    """Add degree of freedom ``d`` at ``q`` with velocity ``v`` to those of its joint before it."""
+    out = before
+    axis = chain.axis[d]
+    if chain.linear[d] == 1:
+        out.shift = before.shift + q * axis
+        out.rate = before.rate + v * axis
+    else:
+        out.spin = before.spin + v * wp.quat_rotate(before.rot, axis)
+        out.rot = before.rot * wp.quat_from_axis_angle(axis, q)
+    return out
+
+
+@wp.func
+def next_motion(chain: Chain, link: int, before: LinkMotion, moved: JointMotion) -> LinkMotion:
+    """Return the motion of a link from that of the one before it and of the joint between them."""
     out = LinkMotion()
     joint = before.pose * chain.parent_frame[link]
-    shift = wp.vec3(0.0)
-    rot = wp.quat_identity()
-    rate = wp.vec3(0.0)
-    spin = wp.vec3(0.0)
-    for d in range(chain.dof_start[link], chain.dof_start[link + 1]):
-        q = joint_q[w * chain.coords + d + chain.coords - chain.dofs]
-        v = joint_qd[w * chain.dofs + d]
-        axis = chain.axis[d]
-        if chain.linear[d] == 1:
-            shift += q * axis
-            rate += v * axis
-        else:
-            spin += v * wp.quat_rotate(rot, axis)
-            rot = rot * wp.quat_from_axis_angle(axis, q)
-    here = joint * wp.transform(shift, rot)
+    here = joint * wp.transform(moved.shift, moved.rot)
     out.pose = here * wp.transform_inverse(chain.child_frame[link])
-    out.ang = before.ang + wp.transform_vector(joint, spin)
+    out.ang = before.ang + wp.transform_vector(joint, moved.spin)
     place = wp.transform_get_translation(here)
     com = wp.transform_point(out.pose, chain.com[link])
-    out.lin = before.lin + wp.transform_vector(joint, rate) + wp.cross(out.ang, com - place)
+    out.lin = before.lin + wp.transform_vector(joint, moved.rate) + wp.cross(out.ang, com - place)
     if link > 0:
         out.lin += wp.cross(before.ang, place - wp.transform_point(before.pose, chain.com[link - 1]))
+    return out
+
+
+@wp.struct
+class GainRow:
+    """What the walk outwards needs of a degree of freedom."""
+
+    offset: float
+    gain_lin: wp.vec3
+    gain_ang: wp.vec3
+    axis: wp.vec3
+    drive: float
+    drive_inertia: float
+    q: float
+    v: float
+
+
+@wp.func
+def read_gain(
+    chain: Chain, work: ChainWork, d: int, w: int, joint_q: wp.array[float], joint_qd: wp.array[float]
+) -> GainRow:
+    """Read the row of a degree of freedom; that of the last where ``d`` is beyond it."""
+    k = wp.min(d, chain.dofs - 1)
+    out = GainRow()
+    out.offset = work.offset[k, w]
+    out.gain_lin = work.gain_lin[k, w]
+    out.gain_ang = work.gain_ang[k, w]
+    out.axis = work.axis[k, w]
+    out.drive = work.drive[k, w]
+    out.drive_inertia = work.drive_inertia[k, w]
+    out.q = joint_q[w * chain.coords + k + chain.coords - chain.dofs]
+    out.v = joint_qd[w * chain.dofs + k]
+    return out
+
+
+@wp.struct
+class DriftRow:
+    """What the walk outwards needs of a link."""
+
+    arm: wp.vec3
+    drift_lin: wp.vec3
+    drift_ang: wp.vec3
+    lever: wp.vec3
+    omega: wp.vec3
+
+
+@wp.func
+def read_drift(chain: Chain, work: ChainWork, link: int, w: int, body_qd: wp.array[wp.spatial_vector]) -> DriftRow:
+    """Read a link's row; that of the last where ``link`` is beyond it."""
+    k = wp.min(link, chain.links - 1)
+    out = DriftRow()
+    out.arm = work.arm[k, w]
+    out.drift_lin = work.drift_lin[k, w]
+    out.drift_ang = work.drift_ang[k, w]
+    out.lever = work.lever[k, w]
+    out.omega = wp.spatial_bottom(body_qd[w * chain.links + k])
     return out
 
 
@@ -187,9 +304,12 @@ def solve_chain(
     ang = wp.vec3(0.0)
     now = LinkMotion()
     now.pose = wp.transform_identity()
+    next_link = read_drift(chain, work, 0, w, body_qd)
+    next_joint = read_gain(chain, work, 6 * chain.free, w, joint_q, joint_qd)
     for link in range(chain.links):
         row = w * chain.links + link
-        omega = wp.spatial_bottom(body_qd[row])
+        here = next_link
+        next_link = read_drift(chain, work, link + 1, w, body_qd)
         if link == 0 and chain.free == 1:
             inverse = wp.inverse(whole.ll)
             coupled = inverse * whole.la
@@ -198,22 +318,26 @@ def solve_chain(
             lin = -(inverse * whole.force) - coupled * ang
             now = free_motion(chain, w, lin, ang, dt, body_q, joint_q, joint_qd)
         else:
-            lin += wp.cross(ang, work.arm[link, w]) + work.drift_lin[link, w]
-            ang += work.drift_ang[link, w]
+            lin += wp.cross(ang, here.arm) + here.drift_lin
+            ang += here.drift_ang
+            moved = JointMotion()
+            moved.rot = wp.quat_identity()
             for d in range(chain.dof_start[link], chain.dof_start[link + 1]):
-                a = work.offset[d, w] - wp.dot(work.gain_lin[d, w], lin) - wp.dot(work.gain_ang[d, w], ang)
+                joint = next_joint
+                next_joint = read_gain(chain, work, d + 1, w, joint_q, joint_qd)
+                a = joint.offset - wp.dot(joint.gain_lin, lin) - wp.dot(joint.gain_ang, ang)
                 if chain.linear[d] == 1:
-                    lin += a * work.axis[d, w]
+                    lin += a * joint.axis
                 else:
-                    ang += a * work.axis[d, w]
-                work.drive_force[d, w] = work.drive[d, w] - work.drive_inertia[d, w] * a
-                v = joint_qd[w * chain.dofs + d] + dt * a
-                i = w * chain.coords + d + chain.coords - chain.dofs
+                    ang += a * joint.axis
+                work.drive_force[d, w] = joint.drive - joint.drive_inertia * a
+                v = joint.v + dt * a
+                q = joint.q + dt * v
                 joint_qd[w * chain.dofs + d] = v
-                joint_q[i] = joint_q[i] + dt * v
-            now = next_motion(chain, link, w, now, joint_q, joint_qd)
-        lever = work.lever[link, w]
-        work.acc_lin[link, w] = lin + wp.cross(ang, lever) + wp.cross(omega, wp.cross(omega, lever))
+                joint_q[w * chain.coords + d + chain.coords - chain.dofs] = q
+                moved = move_joint(chain, d, q, v, moved)
+            now = next_motion(chain, link, now, moved)
+        work.acc_lin[link, w] = lin + wp.cross(ang, here.lever) + wp.cross(here.omega, wp.cross(here.omega, here.lever))
         work.acc_ang[link, w] = ang
         body_q_out[row] = now.pose
         body_qd_out[row] = wp.spatial_vector(now.lin, now.ang)
@@ -252,6 +376,11 @@ def chain_kinematics(
             now.lin = wp.vec3(joint_qd[k], joint_qd[k + 1], joint_qd[k + 2])
             now.ang = wp.vec3(joint_qd[k + 3], joint_qd[k + 4], joint_qd[k + 5])
         else:
-            now = next_motion(chain, link, w, now, joint_q, joint_qd)
+            moved = JointMotion()
+            moved.rot = wp.quat_identity()
+            for d in range(chain.dof_start[link], chain.dof_start[link + 1]):
+                q = joint_q[w * chain.coords + d + chain.coords - chain.dofs]
+                moved = move_joint(chain, d, q, joint_qd[w * chain.dofs + d], moved)
+            now = next_motion(chain, link, now, moved)
         body_q[w * chain.links + link] = now.pose
         body_qd[w * chain.links + link] = wp.spatial_vector(now.lin, now.ang)
