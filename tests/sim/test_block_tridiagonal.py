@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import warp as wp
 
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.ring_modes import MODES
@@ -23,18 +24,22 @@ def random_system(rng: np.random.Generator, rows: int) -> tuple[np.ndarray, np.n
     return matrix.reshape(rows * MODES, rows * MODES), rng.normal(size=rows * MODES)
 
 
+DEVICES = ["cpu", pytest.param("cuda:0", marks=pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA"))]
+
+
+@pytest.mark.parametrize("device", DEVICES)
 @pytest.mark.parametrize("rows", [1, 2, 3, 8, 17])
-def test_solution_agrees_with_a_dense_solver(rows: int) -> None:
+def test_solution_agrees_with_a_dense_solver(rows: int, device: str) -> None:
     rng = np.random.default_rng(rows)
     systems = [random_system(rng, rows) for _ in range(2)]
-    blocks = np.stack([matrix.reshape(rows, MODES, rows, MODES) for matrix, _ in systems], axis=-1)
-    upper = np.zeros((rows, MODES, MODES, 2))
+    blocks = np.stack([matrix.reshape(rows, MODES, rows, MODES) for matrix, _ in systems], axis=1)
+    upper = np.zeros((rows, 2, MODES, MODES))
     for r in range(rows - 1):
-        upper[r] = blocks[r, :, r + 1]
-    system = BlockTridiagonalSolver(2, rows, "cpu")
-    system.diagonal.assign(np.stack([blocks[r, :, r] for r in range(rows)]))
+        upper[r] = blocks[r, :, :, r + 1]
+    system = BlockTridiagonalSolver(2, rows, device)
+    system.diagonal.assign(np.stack([blocks[r, :, :, r] for r in range(rows)]))
     system.upper.assign(upper)
-    system.rhs.assign(np.stack([rhs.reshape(rows, MODES) for _, rhs in systems], axis=-1))
+    system.rhs.assign(np.stack([rhs.reshape(rows, MODES) for _, rhs in systems], axis=1))
     system.solve()
-    expected = np.stack([np.linalg.solve(matrix, rhs).reshape(rows, MODES) for matrix, rhs in systems], axis=-1)
+    expected = np.stack([np.linalg.solve(matrix, rhs).reshape(rows, MODES) for matrix, rhs in systems], axis=1)
     np.testing.assert_allclose(system.rhs.numpy(), expected, atol=2e-5 * np.abs(expected).max())

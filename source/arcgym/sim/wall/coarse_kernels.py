@@ -176,7 +176,7 @@ def assemble(
     upper: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """Assemble one row of the system, mode ``a`` of ring ``r``. Launch (R, M, W).
+    """Assemble one row of the system, mode ``a`` of ring ``r``. Launch (R, W, M).
 
     Args:
         force: Force on each vertex [N], shape (V, W).
@@ -189,11 +189,11 @@ def assemble(
         records: Contacts, listed by ring.
         measured: Their normals and stiffness.
         self_contact: Contact of the wall with itself.
-        diagonal: Blocks of the rings [N/m], shape (R, M, M, W); written.
-        upper: Blocks from each ring to the next [N/m], shape (R, M, M, W); written.
-        rhs: Force on each mode [N], shape (R, M, W); written.
+        diagonal: Blocks of the rings [N/m], shape (R, W, M, M); written.
+        upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
+        rhs: Force on each mode [N], shape (R, W, M); written.
     """
-    r, a, w = wp.tid()
+    r, w, a = wp.tid()
     p = space.patient[w]
     rings = space.mass.shape[0]
     moduli = tissue.moduli[w]
@@ -203,7 +203,9 @@ def assemble(
     for part in range(3):
         own_row += moduli[part] * space.stiffness[part, r, a, p]
         next_row += moduli[part] * space.coupling[part, r, a, p]
-    own_row[a] = own_row[a] * (1.0 + regularisation) + 1.0e-6
+    for c in range(MODES):  # own_row[a], which would keep the row out of the registers
+        if c == a:
+            own_row[c] = own_row[c] * (1.0 + regularisation) + 1.0e-6
     if self_contact.in_contact[r, w] == 1:
         own_row += self_contact_row(space, self_contact, back, r, a, w)
     total = float(0.0)
@@ -211,7 +213,7 @@ def assemble(
         v = space.members[r, k]
         if v >= 0:
             total += wp.dot(space.basis[v, a, p], back * force[v, w])
-    rhs[r, a, w] = total
+    rhs[r, w, a] = total
     for which in range(2):
         lowest = r - which
         slot = int(-1)
@@ -227,8 +229,8 @@ def assemble(
                     next_row += ring_share(space, f, u, r + 1, wp.transpose(rotation[r + 1, w]) * push, p)
             slot = records.ring_next[slot]
     for c in range(MODES):
-        diagonal[r, a, c, w] = own_row[c]
-        upper[r, a, c, w] = next_row[c]
+        diagonal[r, w, a, c] = own_row[c]
+        upper[r, w, a, c] = next_row[c]
 
 
 @wp.kernel
@@ -246,7 +248,7 @@ def prolong(
         space: Ring modes of all patients.
         rotation: Rotation of each ring, shape (R, W).
         distortion: Change of each ring's shape, shape (R, W).
-        solution: Amplitude of each mode [m], shape (R, M, W).
+        solution: Amplitude of each mode [m], shape (R, W, M).
         largest_move: Longest displacement of a vertex [m].
         x: Wall positions [m], shape (V, W); moved in place.
     """
@@ -255,6 +257,6 @@ def prolong(
     r = space.ring[i]
     d = wp.vec3(0.0)
     for m in range(MODES):
-        d += solution[r, m, w] * space.basis[i, m, p]
+        d += solution[r, w, m] * space.basis[i, m, p]
     d = d / (1.0 + wp.min(distortion[r, w] / DENTED, 1.0))
     x[i, w] = x[i, w] + rotation[r, w] * clamp_length(d, largest_move)

@@ -234,7 +234,7 @@ class WallSolver:
         inputs = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
         wp.launch(
             coarse_kernels.assemble,
-            (self.ring_count, MODES, self.num_envs),
+            (self.ring_count, self.num_envs, MODES),
             inputs=[*inputs, contacts.records, self.measured, contacts.self_contact],
             outputs=[system.diagonal, system.upper, system.rhs],
             device=self.device,

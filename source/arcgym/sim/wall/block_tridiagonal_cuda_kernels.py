@@ -1,0 +1,156 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""Block-tridiagonal systems on a GPU: what :mod:`.block_tridiagonal_kernels` does, by two warps a world.
+
+One warp works its way from the first row to the middle, the other from the last; the first solves the middle row, and
+both go back. A warp holds a row of the system in registers, a column a lane: the M columns of S, the M of U, and b. So
+a column of the Cholesky factor, of W = L^-1 U and of y = L^-1 b take one multiplication and, for each row below, one
+exchange and one fused product in all lanes at once.
+"""
+
+import warp as wp
+
+from arcgym.sim.wall.block_tridiagonal_kernels import SMALLEST_PIVOT
+from arcgym.sim.wall.ring_modes import MODES
+from arcgym.utils import warp_setup  # noqa: F401
+
+THREADS = 64
+"""Threads a world, which are one block: two warps."""
+
+_SOLVE = """
+#if defined(__CUDA_ARCH__)
+    constexpr int M = MODES;  // columns 0 to M - 1 of S, M to 2 M - 1 of U, 2 M is b
+    constexpr int PADDED = (M + 3) / 4 * 4;
+    constexpr unsigned ALL = 0xffffffffu;
+    static_assert(2 * M + 1 <= 32, "a row of the system has to fit a warp");
+    __shared__ __align__(16) float shared[2][M * PADDED];  // W of the row at hand, a column after the other
+    __shared__ float above[M][M + 1];  // what the last rows take off the middle one
+    __shared__ float solved[M];  // x of the middle row
+
+    const int lane = thread % 32, side = thread / 32;
+    const bool in_s = lane < M, in_u = lane >= M && lane < 2 * M, in_b = lane == 2 * M;
+    const int rows = diagonal.shape[0], middle = rows / 2;
+    const int step = side == 0 ? 1 : -1, count = side == 0 ? middle : rows - 1 - middle;
+    const long long block = (long long)diagonal.shape[1] * M * M, row = (long long)diagonal.shape[1] * M;
+    float* const d = diagonal.data + (long long)world * M * M;
+    float* const u = upper.data + (long long)world * M * M - side * block;  // the last rows couple with those before
+    float* const b = rhs.data + (long long)world * M;
+    const float* source = in_s ? d + lane : b;
+    int stride = in_s ? M : 1;
+    if (in_u) {
+        source = side == 0 ? u + (lane - M) : u + (lane - M) * M;
+        stride = side == 0 ? M : 1;
+    }
+    const long long further = in_s || in_u ? block : row;
+    float* const w = shared[side];
+    float a[M], next[M];
+    float pivot = 0.0f;  // inverse of the factor's diagonal, in lane j that of row j
+
+    auto load = [&](int r, float* to) {
+        for (int k = 0; k < M; ++k) to[k] = source[r * further + k * stride];
+    };
+    auto factor = [&]() {
+        for (int j = 0; j < M; ++j) {
+            const float inverse = rsqrtf(fmaxf(__shfl_sync(ALL, a[j], j), SMALLEST_PIVOT));
+            if (lane == j) pivot = inverse;
+            a[j] *= inverse;
+            for (int i = j + 1; i < M; ++i) a[i] -= __shfl_sync(ALL, a[j], i) * a[j];
+        }
+    };
+    auto store = [&](int r) {
+        for (int k = 0; k < M; ++k) {
+            if (in_s && k <= lane) d[r * block + lane * M + k] = k == lane ? pivot : a[k];
+            if (in_u && r != middle) u[r * block + k * M + lane - M] = a[k];
+            if (in_b) b[r * row + k] = a[k];
+        }
+    };
+    auto product = [&](float* out) {  // W^T W and W^T y
+        if (in_u)
+            for (int k = 0; k < M; ++k) w[(lane - M) * PADDED + k] = a[k];
+        __syncwarp();
+        for (int i = 0; i < M; ++i) {
+            float sum = 0.0f;
+            for (int k = 0; k < M; ++k) sum += w[i * PADDED + k] * a[k];
+            out[i] = __shfl_sync(ALL, sum, in_s ? lane + M : lane);
+        }
+        __syncwarp();
+    };
+    const int own = in_s ? lane : M - 1;  // row of the solution that this lane is to find
+    auto load_back = [&](int r, float* lower, float* coupling, float& y) {
+        for (int k = 0; k < M; ++k) lower[k] = d[r * block + k * M + own];
+        for (int k = 0; k < M; ++k) coupling[k] = u[r * block + own * M + k];
+        y = b[r * row + own];
+    };
+    auto substitute = [&](const float* lower, float y) {  // x = L^-T y
+        float x = 0.0f;
+        for (int j = M - 1; j >= 0; --j) {
+            const float found = __shfl_sync(ALL, y * lower[j], j);
+            if (own == j) x = found;
+            y -= lower[j] * found;
+        }
+        return x;
+    };
+
+    int r = side == 0 ? 0 : rows - 1;
+    if (side == 0 || count > 0) load(r, a);
+    float taken[M];
+    for (int k = 0; k < M; ++k) taken[k] = 0.0f;
+    for (int n = 0; n < count; ++n, r += step) {
+        load(r + step, next);
+        factor();
+        store(r);
+        product(taken);
+        for (int k = 0; k < M; ++k) a[k] = in_u ? next[k] : next[k] - taken[k];
+    }
+    if (side == 1 && (in_s || in_b))
+        for (int k = 0; k < M; ++k) above[k][in_s ? lane : M] = taken[k];
+    __syncthreads();
+    float lower[M], coupling[M], lower_next[M], coupling_next[M];
+    float y, y_next;
+    if (side == 0) {
+        if (in_s || in_b)
+            for (int k = 0; k < M; ++k) a[k] -= above[k][in_s ? lane : M];
+        factor();
+        store(middle);
+        __syncwarp();
+        for (int k = 0; k < M; ++k) lower[k] = d[middle * block + k * M + own];
+        const float x = substitute(lower, b[middle * row + own]);
+        if (in_s) solved[lane] = b[middle * row + lane] = x;
+    }
+    __syncthreads();
+    float x = solved[own];
+    if (count > 0) load_back(middle - step, lower, coupling, y);
+    for (int n = 1; n <= count; ++n) {
+        r = middle - n * step;
+        if (n < count) load_back(r - step, lower_next, coupling_next, y_next);
+        for (int k = 0; k < M; ++k) y -= coupling[k] * __shfl_sync(ALL, x, k);
+        x = substitute(lower, y);
+        if (in_s) b[r * row + lane] = x;
+        for (int k = 0; k < M; ++k) {
+            lower[k] = lower_next[k];
+            coupling[k] = coupling_next[k];
+        }
+        y = y_next;
+    }
+#endif
+""".replace("MODES", str(MODES)).replace("SMALLEST_PIVOT", f"{float(SMALLEST_PIVOT)}f")
+
+
+@wp.func_native(_SOLVE)
+def solve_world(
+    diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], world: int, thread: int
+): ...
+
+
+@wp.kernel(launch_bounds=(THREADS, 8))
+def solve_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]):
+    """Solve every world's system. Launch (W, ``THREADS``) in blocks of ``THREADS``.
+
+    Args:
+        diagonal: Blocks D, shape (R, W, M, M); overwritten.
+        upper: Couplings U to the next row, shape (R, W, M, M); overwritten.
+        rhs: Right-hand side b, shape (R, W, M); the solution x afterwards.
+    """
+    world, thread = wp.tid()
+    solve_world(diagonal, upper, rhs, world, thread)
