@@ -35,6 +35,7 @@ class ContactRecords:
     """
 
     capacity: int  # slots of a world, S
+    threads: int  # threads a world, T, of a kernel that goes through all records: each takes every T-th
     start: wp.array2d[int]  # first slot of each link among its world's, and of none after the last, shape (W, L + 1)
     link: wp.array[int]  # link of each slot, shape (W*S,)
     face: wp.array[int]  # in ascending order for each link, shape (W*S,)

@@ -22,6 +22,11 @@ EDGE_WEIGHT = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
 
 
+BATCH = wp.constant(8)
+"""Records that are read at a time."""
+Batch = wp.types.vector(length=8, dtype=int)
+
+
 @wp.kernel
 def allot_slots(candidates: Candidates, records: ContactRecords):
     """Give every link as many slots as it has candidates, link after link. Launch (W, L)."""
@@ -111,6 +116,23 @@ class PastContacts:
     slide: wp.array[wp.vec3]  # [m], shape (W*S,)
 
 
+@wp.kernel
+def keep_past(records: ContactRecords, past: PastContacts):
+    """Keep a copy of each world's contacts before they are found anew. Launch (W, T)."""
+    w, thread = wp.tid()
+    links = records.start.shape[1] - 1
+    link = int(thread)
+    while link <= links:
+        past.start[w, link] = records.start[w, link]
+        link += records.threads
+    slot = w * records.capacity + thread
+    end = w * records.capacity + records.start[w, links]
+    while slot < end:
+        past.face[slot] = records.face[slot]
+        past.slide[slot] = records.slide[slot]
+        slot += records.threads
+
+
 @wp.func
 def past_slide(past: PastContacts, face: int, link: int, w: int, capacity: int) -> wp.vec3:
     """Return the displacement that friction held between a link and a face, zero where they did not touch [m].
@@ -156,8 +178,10 @@ def fill_slots(surface: LumenSurface, candidates: Candidates, stride: int, recor
         k += stride
 
 
-@wp.kernel
-def locate_contacts(
+@wp.func
+def locate_contact(
+    slot: int,
+    w: int,
     x: wp.array2d[wp.vec3],
     points: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
@@ -169,31 +193,9 @@ def locate_contacts(
     moduli: wp.array[wp.vec3],
     records: ContactRecords,
 ):
-    """Find point, weight and normal of each record, and what friction holds there. Launch (W, S).
-
-    A link whose axis is clear of the wall has not gone through and will not in this step. Its contacts push along the
-    directions to them, so that the far side of a fold, whose normal points away from the link, pushes it back, too.
-
-    Args:
-        x: Wall positions [m], shape (V, W).
-        points: Vertices of the surface that links touch: the wall's, or those of a fine surface [m], shape (M, W).
-        body_q: Link poses, shape (W*L,).
-        links: Capsules of one world.
-        surface: Inner faces of one world.
-        nearest: Distance of each link's axis from the wall [m], shape (W, L).
-        past: Contacts of the last step, from which friction goes on.
-        law: Contact law.
-        moduli: Elastic moduli of each world's wall, shape (W,).
-        records: Contacts; all but ``start``, ``link``, ``face`` and ``distance`` is written.
-            The lists by vertex, emptied before, get entries in any order.
-    """
-    w, k = wp.tid()
-    slot = w * records.capacity + k
-    count = links.radius.shape[0]
-    if k >= records.start[w, count]:
-        return
+    """Find point, weight and normal of the record in ``slot``, see :func:`locate_contacts`."""
     link = records.link[slot]
-    pose = body_q[w * count + link]
+    pose = body_q[w * links.radius.shape[0] + link]
     center = wp.transform_get_translation(pose)
     axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, links.half_length[link]))
     face = records.face[slot]
@@ -221,6 +223,45 @@ def locate_contacts(
     if nearest[w, link] > CLEARANCE * links.radius[link]:
         records.normal[slot] = point.direction
     records.slide[slot] = past_slide(past, face, link, w, records.capacity)
+
+
+@wp.kernel
+def locate_contacts(
+    x: wp.array2d[wp.vec3],
+    points: wp.array2d[wp.vec3],
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    surface: LumenSurface,
+    nearest: wp.array2d[float],
+    past: PastContacts,
+    law: ContactLaw,
+    moduli: wp.array[wp.vec3],
+    records: ContactRecords,
+):
+    """Find point, weight and normal of each record, and what friction holds there. Launch (W, T).
+
+    A link whose axis is clear of the wall has not gone through and will not in this step. Its contacts push along the
+    directions to them, so that the far side of a fold, whose normal points away from the link, pushes it back, too.
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        points: Vertices of the surface that links touch: the wall's, or those of a fine surface [m], shape (M, W).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        surface: Inner faces of one world.
+        nearest: Distance of each link's axis from the wall [m], shape (W, L).
+        past: Contacts of the last step, from which friction goes on.
+        law: Contact law.
+        moduli: Elastic moduli of each world's wall, shape (W,).
+        records: Contacts; all but ``start``, ``link``, ``face`` and ``distance`` is written.
+            The lists by vertex, emptied before, get entries in any order.
+    """
+    w, thread = wp.tid()
+    slot = w * records.capacity + thread
+    end = w * records.capacity + records.start[w, links.radius.shape[0]]
+    while slot < end:
+        locate_contact(slot, w, x, points, body_q, links, surface, nearest, past, law, moduli, records)
+        slot += records.threads
 
 
 @wp.kernel
@@ -253,7 +294,8 @@ def sort_vertex_lists(records: ContactRecords):
 def list_rings(parts: int, records: ContactRecords):
     """Link each world's records into lists by ring, in ascending order. Launch (W, ``parts``).
 
-    Each thread goes through all records of its world, and sees to the list of every ``parts``-th ring.
+    Each thread goes through all records of its world, and sees to the list of every ``parts``-th ring. It reads a batch
+    of records at a time: a GPU would wait for each of them.
 
     Args:
         parts: Threads a world.
@@ -261,10 +303,14 @@ def list_rings(parts: int, records: ContactRecords):
     """
     w, part = wp.tid()
     first = w * records.capacity
-    count = records.start[w, records.start.shape[1] - 1]
-    for back in range(count):
-        slot = first + count - 1 - back
-        ring = records.ring[slot]
-        if ring % parts == part:
-            records.ring_next[slot] = records.ring_head[ring, w]
-            records.ring_head[ring, w] = slot
+    last = records.start[w, records.start.shape[1] - 1] - 1
+    while last >= 0:
+        rings = Batch()
+        for k in range(BATCH):
+            rings[k] = records.ring[first + wp.max(last - k, 0)]
+        for k in range(BATCH):
+            if k <= last and rings[k] % parts == part:
+                slot = first + last - k
+                records.ring_next[slot] = records.ring_head[rings[k], w]
+                records.ring_head[rings[k], w] = slot
+        last -= BATCH

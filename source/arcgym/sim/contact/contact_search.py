@@ -20,10 +20,14 @@ FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
 GPU_LIST_PARTS = 32
 """Threads a world that list the contacts by ring on a GPU, where a list waits for memory at every entry."""
+GPU_RECORD_THREADS = 256
+"""Threads a world that go through its contacts on a GPU: as many as most worlds have contacts."""
 CARRIED_ROOM = 3
 """How much more room contacts and patches have on a fine surface."""
 PAIR_THREADS = 256
-"""Threads a world that go through the pairs of a link and a patch near it."""
+"""Threads a world that measure the pairs of a link and a patch near it: one block of a GPU."""
+SLOT_THREADS = 1024
+"""Threads a world that copy those pairs into the slots, at most one a pair: they wait for memory all the time."""
 MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
@@ -130,6 +134,7 @@ class ContactSearch:
         slots = self.num_envs * capacity
         records = ContactRecords()
         records.capacity = capacity
+        records.threads = 1 if self.device == "cpu" else GPU_RECORD_THREADS
         records.start = wp.zeros((self.num_envs, self.link_count + 1), dtype=int, device=self.device)
         records.dropped = wp.zeros(self.num_envs, dtype=int, device=self.device)
         for name in ("link", "face", "ring"):
@@ -206,37 +211,38 @@ class ContactSearch:
 
     def _find(self, points: wp.array, body_q: wp.array) -> None:
         """Find the patches near each link, and the distances of their faces."""
-        links, stride = (self.num_envs, self.link_count), self._stride
+        links = (self.num_envs, self.link_count)
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
         self._launch(lumen_kernels.bound_faces, (self.ring_count, self.num_envs), [points, self.surface], [self.bounds])
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
-        inputs = [points, body_q, self.links, self.surface, self.law, stride]
-        self._launch(kernels.face_distances, (self.num_envs, stride), inputs, [self.candidates])
+        wp.launch(
+            kernels.face_distances,
+            (self.num_envs, PAIR_THREADS),
+            inputs=[points, body_q, self.links, self.surface, self.law, PAIR_THREADS],
+            outputs=[self.candidates],
+            device=self.device,
+            block_dim=PAIR_THREADS,
+        )
         self._launch(kernels.count_candidates, links, [], [self.candidates])
 
     def _record(self, x: wp.array, points: wp.array, body_q: wp.array) -> None:
         """Record the faces near each link, and what friction held where it touched the same face before."""
-        records, stride = self.records, self._stride
-        for name in ("start", "face", "slide"):
-            wp.copy(getattr(self.past, name), getattr(records, name))
+        records, stride = self.records, min(SLOT_THREADS, self.candidates.capacity)
+        of_records, parts = (self.num_envs, records.threads), self.list_parts
+        self._launch(record_kernels.keep_past, of_records, [records], [self.past])
         records.vertex_head.fill_(-1)
         records.ring_head.fill_(-1)
-        links, slots = (self.num_envs, self.link_count), (self.num_envs, records.capacity)
+        links = (self.num_envs, self.link_count)
         self._launch(record_kernels.allot_slots, links, [self.candidates], [records])
         inputs = [self.surface, self.candidates, stride]
         self._launch(record_kernels.fill_slots, (self.num_envs, stride), inputs, [records])
         near = [self.links, self.surface, self.candidates.nearest, self.past]
         inputs = [x, points, body_q, *near, self.law, self.moduli]
-        self._launch(record_kernels.locate_contacts, slots, inputs, [records])
+        self._launch(record_kernels.locate_contacts, of_records, inputs, [records])
         self._launch(record_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
-        self._launch(record_kernels.list_rings, (self.num_envs, self.list_parts), [self.list_parts], [records])
-
-    @property
-    def _stride(self) -> int:
-        """Threads a world that go through its pairs."""
-        return min(PAIR_THREADS, self.candidates.capacity)
+        self._launch(record_kernels.list_rings, (self.num_envs, parts), [parts], [records])
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, int], inputs: list[object], outputs: list[object]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device)

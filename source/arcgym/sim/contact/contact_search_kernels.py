@@ -13,6 +13,7 @@ from arcgym.sim.contact.contact_kernels import ContactLaw, LinkShapes
 from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, sphere_reached
 from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.block_queue_kernels import clear_queue, queue_entry, queue_length, queued, wait_for_block
 
 
 @wp.struct
@@ -69,31 +70,64 @@ def on_lumen_side(a: wp.vec3, b: wp.vec3, c: wp.vec3, normal: wp.vec3, near: wp.
 
 
 @wp.func
-def face_distance(
-    surface: LumenSurface,
-    face: int,
-    x: wp.array2d[wp.vec3],
-    w: int,
-    center: wp.vec3,
-    axis: wp.vec3,
-    limit: float,
-    both_sides: bool,
-) -> float:
-    """Return the distance of a face from the segment from ``center`` - ``axis`` to ``center`` + ``axis`` [m].
+def slab_reached(a: wp.vec3, b: wp.vec3, c: wp.vec3, axis: wp.vec3, limit: float) -> bool:
+    """Return whether triangle ``abc`` is within ``limit`` of the segment from ``-axis`` to ``axis`` along that axis.
 
-    FAR beyond ``limit``, and where the segment is not on the lumen's side unless ``both_sides``.
+    A thousandth more, so that rounding rejects nothing that is near.
     """
-    a = x[surface.faces[face, 0], w] - center
-    b = x[surface.faces[face, 1], w] - center
-    c = x[surface.faces[face, 2], w] - center
+    reach = wp.length_sq(axis) + 1.001 * limit * wp.length(axis)
+    one = wp.dot(a, axis)
+    two = wp.dot(b, axis)
+    three = wp.dot(c, axis)
+    return wp.min(one, wp.min(two, three)) <= reach and wp.max(one, wp.max(two, three)) >= -reach
+
+
+@wp.struct
+class LinkReach:
+    """Axis of a link and how far its contacts reach."""
+
+    center: wp.vec3  # [m]
+    axis: wp.vec3  # half of it [m]
+    limit: float  # distance from the axis up to which contacts are kept [m]
+
+
+@wp.func
+def face_corner(surface: LumenSurface, face: int, k: int, x: wp.array2d[wp.vec3], w: int, center: wp.vec3) -> wp.vec3:
+    """Return corner ``k`` of a face from ``center`` [m]."""
+    return x[surface.faces[face, k], w] - center
+
+
+@wp.func
+def face_may_be_near(
+    surface: LumenSurface, face: int, x: wp.array2d[wp.vec3], w: int, link: LinkReach, both_sides: bool
+) -> bool:
+    """Return whether a face may have a :func:`face_distance` from the link, by quick tests of its plane and extent."""
+    a = face_corner(surface, face, 0, x, w, link.center)
+    b = face_corner(surface, face, 1, x, w, link.center)
+    c = face_corner(surface, face, 2, x, w, link.center)
     normal = wp.cross(b - a, c - a)
-    behind = wp.dot(normal, a) + wp.abs(wp.dot(normal, axis)) <= 0.0
-    if (both_sides or not behind) and plane_reached(a, normal, axis, limit):
-        u = segment_triangle(-axis, axis, a, b, c)
-        if u[3] < limit:
-            near = triangle_point(a, b, c, wp.vec3(u[0], u[1], u[2]))
-            if both_sides or on_lumen_side(a, b, c, normal, near, axis):
-                return u[3]
+    behind = wp.dot(normal, a) + wp.abs(wp.dot(normal, link.axis)) <= 0.0
+    if behind and not both_sides:
+        return False
+    return plane_reached(a, normal, link.axis, link.limit) and slab_reached(a, b, c, link.axis, link.limit)
+
+
+@wp.func
+def face_distance(
+    surface: LumenSurface, face: int, x: wp.array2d[wp.vec3], w: int, link: LinkReach, both_sides: bool
+) -> float:
+    """Return the distance of a face from the link's axis [m].
+
+    FAR beyond the link's reach, and where the axis is not on the lumen's side unless ``both_sides``.
+    """
+    a = face_corner(surface, face, 0, x, w, link.center)
+    b = face_corner(surface, face, 1, x, w, link.center)
+    c = face_corner(surface, face, 2, x, w, link.center)
+    u = segment_triangle(-link.axis, link.axis, a, b, c)
+    if u[3] < link.limit:
+        near = triangle_point(a, b, c, wp.vec3(u[0], u[1], u[2]))
+        if both_sides or on_lumen_side(a, b, c, wp.cross(b - a, c - a), near, link.axis):
+            return u[3]
     return FAR
 
 
@@ -203,6 +237,20 @@ def list_patches(
                         k += 1
 
 
+@wp.func
+def pair_reach(
+    candidates: Candidates, k: int, w: int, body_q: wp.array[wp.transform], links: LinkShapes, law: ContactLaw
+) -> LinkReach:
+    """Return the reach of the link of pair ``k``."""
+    link = candidates.link[w, k]
+    row = w * links.radius.shape[0] + link
+    out = LinkReach()
+    out.center = wp.transform_get_translation(body_q[row])
+    out.axis = link_axis(body_q, row, links.half_length[link])
+    out.limit = links.radius[link] + law.wall_radius + law.search_gap
+    return out
+
+
 @wp.kernel
 def face_distances(
     x: wp.array2d[wp.vec3],
@@ -218,6 +266,9 @@ def face_distances(
     Far along the colon from the link's own ring, faces count that have the link on their lumen's side: the wall
     gathered around the link, but not the outside of a neighboring loop.
 
+    On a GPU a world's threads are one block. They list the faces that quick tests leave, a quarter of all, and then
+    share those out, so that all threads of a warp have one to measure.
+
     Args:
         x: Vertices of the surface [m], shape (V, W).
         body_q: Link poses, shape (W*L,).
@@ -228,24 +279,37 @@ def face_distances(
         candidates: Patches near each link; ``distance`` and ``faces`` are written.
     """
     w, thread = wp.tid()
-    count = links.radius.shape[0]
+    pairs = candidates.start[w, links.radius.shape[0]]
+    clear_queue(thread)
     k = int(thread)
-    while k < candidates.start[w, count]:
-        link = candidates.link[w, k]
+    while k < pairs:
+        reach = pair_reach(candidates, k, w, body_q, links, law)
         code = candidates.patch[w, k]
-        row = w * count + link
-        center = wp.transform_get_translation(body_q[row])
-        axis = link_axis(body_q, row, links.half_length[link])
-        limit = links.radius[link] + law.wall_radius + law.search_gap
         first = surface.patch_start[code // 2]
         size = surface.patch_start[code // 2 + 1] - first
-        n = int(0)
         for m in range(candidates.patch_faces):
             d = float(FAR)
-            if m < size:
-                d = face_distance(surface, first + m, x, w, center, axis, limit, code % 2 == 1)
+            if m < size and face_may_be_near(surface, first + m, x, w, reach, code % 2 == 1):
+                if not queued(k * candidates.patch_faces + m):
+                    d = face_distance(surface, first + m, x, w, reach, code % 2 == 1)
             candidates.distance[w, k, m] = d
-            n += int(d < FAR)
+        k += stride
+    wait_for_block()
+    entry = int(thread)
+    while entry < queue_length():
+        k = queue_entry(entry) // candidates.patch_faces
+        m = queue_entry(entry) - k * candidates.patch_faces
+        reach = pair_reach(candidates, k, w, body_q, links, law)
+        code = candidates.patch[w, k]
+        face = surface.patch_start[code // 2] + m
+        candidates.distance[w, k, m] = face_distance(surface, face, x, w, reach, code % 2 == 1)
+        entry += stride
+    wait_for_block()
+    k = int(thread)
+    while k < pairs:
+        n = int(0)
+        for m in range(candidates.patch_faces):
+            n += int(candidates.distance[w, k, m] < FAR)
         candidates.faces[w, k] = n
         k += stride
 

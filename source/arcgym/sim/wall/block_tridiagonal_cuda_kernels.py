@@ -138,9 +138,9 @@ _SOLVE = """
 
 
 @wp.func_native(_SOLVE)
-def solve_world(
-    diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], world: int, thread: int
-): ...
+def solve_world(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], world: int, thread: int):
+    """Solve the system of ``world``; all threads of a block have to call it."""
+    ...
 
 
 @wp.kernel(launch_bounds=(THREADS, 8))

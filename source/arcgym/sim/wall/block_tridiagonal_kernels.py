@@ -23,9 +23,7 @@ Block = wp.types.matrix(shape=(RING_MODES, RING_MODES), dtype=float)
 
 
 @wp.func
-def subtract_row_before(
-    r: int, w: int, diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]
-):
+def subtract_row_before(r: int, w: int, diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]):
     """Replace D_r by S_r = D_r - W^T W and b_r by b_r - W^T y, with W and y of row ``r`` - 1."""
     for a in range(diagonal.shape[2]):
         own = Unknowns()

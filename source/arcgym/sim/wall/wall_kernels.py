@@ -168,15 +168,16 @@ class MeasuredContacts:
 
 @wp.kernel
 def measure_contacts(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: MeasuredContacts):
-    """Measure every contact at wall positions ``x``. Launch (W, S)."""
-    w, k = wp.tid()
-    if k >= contacts.records.start[w, contacts.links.radius.shape[0]]:
-        return
-    slot = w * contacts.records.capacity + k
-    c = contact_force_at(contacts, slot, x, w)
-    measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[slot]
-    measured.normal[slot] = c.normal
-    measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
+    """Measure every contact at wall positions ``x``. Launch (W, T)."""
+    w, thread = wp.tid()
+    slot = w * contacts.records.capacity + thread
+    end = w * contacts.records.capacity + contacts.records.start[w, contacts.links.radius.shape[0]]
+    while slot < end:
+        c = contact_force_at(contacts, slot, x, w)
+        measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[slot]
+        measured.normal[slot] = c.normal
+        measured.stiffness[slot] = wp.vec2(c.stiffness, c.friction)
+        slot += contacts.records.threads
 
 
 @wp.func
@@ -244,16 +245,17 @@ def settle_debts(
 
 @wp.kernel
 def advance_slides(contacts: WallContacts, x: wp.array2d[wp.vec3]):
-    """Keep of every contact's displacement along the wall what friction holds. Launch (W, S)."""
-    w, k = wp.tid()
-    if k >= contacts.records.start[w, contacts.links.radius.shape[0]]:
-        return
-    slot = w * contacts.records.capacity + k
-    c = contact_force_at(contacts, slot, x, w)
-    slide = wp.vec3(0.0)
-    if c.normal_force > 0.0:
-        slide = -(c.friction / (contacts.records.weight[slot] * contacts.law.friction_stiffness)) * c.slip
-    contacts.records.slide[slot] = slide
+    """Keep of every contact's displacement along the wall what friction holds. Launch (W, T)."""
+    w, thread = wp.tid()
+    slot = w * contacts.records.capacity + thread
+    end = w * contacts.records.capacity + contacts.records.start[w, contacts.links.radius.shape[0]]
+    while slot < end:
+        c = contact_force_at(contacts, slot, x, w)
+        slide = wp.vec3(0.0)
+        if c.normal_force > 0.0:
+            slide = -(c.friction / (contacts.records.weight[slot] * contacts.law.friction_stiffness)) * c.slip
+        contacts.records.slide[slot] = slide
+        slot += contacts.records.threads
 
 
 @wp.func

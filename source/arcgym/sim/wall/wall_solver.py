@@ -180,8 +180,8 @@ class WallSolver:
                 outputs=[contact.debt],
                 device=self.device,
             )
-        slots = (self.num_envs, contacts.records.capacity)
-        wp.launch(wall_kernels.advance_slides, slots, inputs=[contacts, x], device=self.device)
+        shape = (self.num_envs, contacts.records.threads)
+        wp.launch(wall_kernels.advance_slides, shape, inputs=[contacts, x], device=self.device)
 
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         for color in self.colors:
@@ -210,9 +210,9 @@ class WallSolver:
         """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
         self.elements.measure(x, self.tissue)
         contacts.self_contact = self.self_contact.measure(contacts.x_prev)
-        slots = (self.num_envs, contacts.records.capacity)
+        shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
-        wp.launch(wall_kernels.measure_contacts, slots, inputs=[contacts, x], outputs=[measured], device=self.device)
+        wp.launch(wall_kernels.measure_contacts, shape, inputs=[contacts, x], outputs=[measured], device=self.device)
         wp.launch(
             self.elements.residual,
             x.shape,
