@@ -15,6 +15,7 @@ from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
+from arcgym.utils.warp_setup import GPU_BLOCK
 
 FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
@@ -245,4 +246,4 @@ class ContactSearch:
         self._launch(record_kernels.list_rings, (self.num_envs, parts), [parts], [records])
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, int], inputs: list[object], outputs: list[object]) -> None:
-        wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device)
+        wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -21,6 +22,7 @@ from arcgym.sim.wall.ring_modes import MODES, RingModes
 from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall.wall_topology import ring_mean
+from arcgym.utils.warp_setup import GPU_BLOCK
 
 REGULARISATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
@@ -141,20 +143,12 @@ class WallSolver:
             return
         shape = (self.vertex_count, self.num_envs)
         contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
-        wp.launch(
-            wall_kernels.share_debts,
-            contact.debt.shape,
-            inputs=[contact.links, contact.law, contact.debt],
-            outputs=[contact.records],
-            device=self.device,
+        self._launch(
+            wall_kernels.share_debts, contact.debt.shape, [contact.links, contact.law, contact.debt], [contact.records]
         )
         decay = math.exp(-self.cfg.drag * self.dt)
-        wp.launch(
-            wall_kernels.predict,
-            shape,
-            inputs=[v, self.nodes, self.tissue, decay, self.dt],
-            outputs=[x, self.x_prev, self.inertial],
-            device=self.device,
+        self._launch(
+            wall_kernels.predict, shape, [v, self.nodes, self.tissue, decay, self.dt], [x, self.x_prev, self.inertial]
         )
         for _ in range(self.cfg.repeats):
             self._residual(x, self.inertial, contacts, self.force)
@@ -162,7 +156,7 @@ class WallSolver:
                 self._correct_rings(x, contacts)
             for _ in range(self.cfg.iterations):
                 self._sweep(x, contacts)
-        wp.launch(wall_kernels.finish, x.shape, inputs=[x, self.x_prev, self.dt], outputs=[v], device=self.device)
+        self._launch(wall_kernels.finish, x.shape, [x, self.x_prev, self.dt], [v])
 
     def finish_contacts(
         self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array, link_force: wp.array
@@ -173,25 +167,18 @@ class WallSolver:
         """
         contacts = wall_contacts(contact, self.dt, self.x_prev if self.moves else x, body_q, body_q_prev)
         if self.moves:
-            wp.launch(
-                wall_kernels.settle_debts,
-                contact.debt.shape,
-                inputs=[contacts, x, link_force],
-                outputs=[contact.debt],
-                device=self.device,
-            )
+            self._launch(wall_kernels.settle_debts, contact.debt.shape, [contacts, x, link_force], [contact.debt])
         shape = (self.num_envs, contacts.records.threads)
-        wp.launch(wall_kernels.advance_slides, shape, inputs=[contacts, x], device=self.device)
+        self._launch(wall_kernels.advance_slides, shape, [contacts, x], [])
 
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         for color in self.colors:
             inputs = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
-            wp.launch(
+            self._launch(
                 self.elements.sweep_color,
                 (len(color), self.num_envs),
-                inputs=[*inputs, self.cfg.largest_move, ROUNDING * self.elements.size, self.force],
-                outputs=[x],
-                device=self.device,
+                [*inputs, self.cfg.largest_move, ROUNDING * self.elements.size, self.force],
+                [x],
             )
 
     def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
@@ -212,38 +199,34 @@ class WallSolver:
         contacts.self_contact = self.self_contact.measure(contacts.x_prev)
         shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
-        wp.launch(wall_kernels.measure_contacts, shape, inputs=[contacts, x], outputs=[measured], device=self.device)
-        wp.launch(
+        self._launch(wall_kernels.measure_contacts, shape, [contacts, x], [measured])
+        self._launch(
             self.elements.residual,
             x.shape,
-            inputs=[self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x],
-            outputs=[force],
-            device=self.device,
+            [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x],
+            [force],
         )
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
         rings, system = (self.ring_count, self.num_envs), self.ring_system
-        wp.launch(
-            coarse_kernels.ring_rotations,
-            rings,
-            inputs=[x, self.space],
-            outputs=[self.rotation, self.shift, self.distortion],
-            device=self.device,
+        self._launch(
+            coarse_kernels.ring_rotations, rings, [x, self.space], [self.rotation, self.shift, self.distortion]
         )
         inputs = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
-        wp.launch(
+        self._launch(
             coarse_kernels.assemble,
             (self.ring_count, self.num_envs, MODES),
-            inputs=[*inputs, contacts.records, self.measured, contacts.self_contact],
-            outputs=[system.diagonal, system.upper, system.rhs],
-            device=self.device,
+            [*inputs, contacts.records, self.measured, contacts.self_contact],
+            [system.diagonal, system.upper, system.rhs],
         )
         system.solve()
-        wp.launch(
+        self._launch(
             coarse_kernels.prolong,
             x.shape,
-            inputs=[self.space, self.rotation, self.distortion, system.rhs, self.cfg.largest_move],
-            outputs=[x],
-            device=self.device,
+            [self.space, self.rotation, self.distortion, system.rhs, self.cfg.largest_move],
+            [x],
         )
+
+    def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
+        wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)
