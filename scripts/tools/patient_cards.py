@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measure the five patients and write their cards, with pictures, into ``docs/patients.md`` between its two marks."""
+"""Measure the shipped patients and write cards with pictures into ``docs/patients.md`` between its two marks."""
 
 from __future__ import annotations
 
@@ -14,22 +14,25 @@ if TYPE_CHECKING:
 
 ROOT = Path(__file__).resolve().parents[2]
 BEGIN, END = "<!-- cards -->", "<!-- end of cards -->"
+SCANNED = ("ct_1", "ct_2")
+"""Colons that were imported from CT."""
 
 
 def main() -> None:
     """Parse the command line and writes the cards."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--no-pictures", action="store_true", help="write the tables only")
+    parser.add_argument("--pictures", nargs="+", metavar="NAME", help="patients to draw (default: all)")
     args = parser.parse_args()
     from arcgym.anatomy import read_colon
     from arcgym.anatomy.generator.patients import PATIENTS
     from arcgym.viewers.colon_page import draw_page
 
     cards = []
-    for name in PATIENTS:
+    for name in (*PATIENTS, *SCANNED):
         stage = read_colon(ROOT / "assets" / "usd" / name / "colon.usda")
         cards.append(card(name, stage))
-        if not args.no_pictures:
+        if not args.no_pictures and name in (args.pictures or (name,)):
             draw_page(stage).save(
                 ROOT / "docs" / "images" / "patients" / f"{name}.jpg", quality=66, optimize=True, progressive=True
             )
@@ -42,17 +45,18 @@ def main() -> None:
 
 def card(name: str, stage: ColonStage) -> str:
     """Return one patient's card as Markdown."""
-    number = name.split("_")[1]
+    kind, number = name.split("_")
     patient = str(stage.metadata["patient"])
     rows = ["| Segment | Length [cm] | Diameter p5 / p50 / p95 [mm] |", "|---|---|---|"]
     for segment, (start, end) in stage.segment_bounds().items():
         rows.append(f"| {segment} | {100 * (end - start):.1f} | {diameters(stage, start, end)} |")
     rows.append(f"| whole | {100 * stage.length:.0f} | {diameters(stage, 0.0, stage.length)} |")
     title, picture = (
-        f"## Colon {number}\n\n{patient[0].upper() + patient[1:]}.",
+        f"## {'CT' if kind == 'ct' else 'Colon'} {number}\n\n{patient[0].upper() + patient[1:]}.",
         f"![{name}](images/patients/{name}.jpg)",
     )
-    return f"{title}\n\n{picture}\n\n" + "\n".join(rows) + f"\n\n{features(name, stage)}\n"
+    last = scanned_features(stage) if name in SCANNED else features(name, stage)
+    return f"{title}\n\n{picture}\n\n" + "\n".join(rows) + f"\n\n{last}\n"
 
 
 def diameters(stage: ColonStage, start: float, end: float) -> str:
@@ -82,6 +86,15 @@ def features(name: str, stage: ColonStage) -> str:
         f" {len(surface.valves)} rectal valves, ileocaecal valve and appendix orifice,\n{polyps} polyps,"
         f" {len(sacs)} diverticula, {wide} of them wide enough for a 13 mm tip."
     )
+
+
+def scanned_features(stage: ColonStage) -> str:
+    """Return sentences with the bends of a colon from CT and where it comes from."""
+    from arcgym.anatomy.course_measures import measure_course
+
+    measured = measure_course(stage.centerline.points.astype(float))
+    sharpest = 1e3 * measured.bend_radius_least
+    return f"{measured.acute_bends} acute bends (least radius {sharpest:.0f} mm). {stage.metadata['licence']}."
 
 
 if __name__ == "__main__":

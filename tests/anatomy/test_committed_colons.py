@@ -105,5 +105,5 @@ def test_inner_wall_is_closed_at_the_blind_end(colon_1: ColonStage) -> None:
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), 1)
     unique, uses = np.unique(edges, axis=0, return_counts=True)
     open_edges = unique[uses == 1]
-    assert len(open_edges) == 12
+    assert len(open_edges) == 14
     assert set(colon_1.wall.ring[open_edges].ravel()) == {0}
