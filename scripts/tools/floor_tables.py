@@ -44,7 +44,7 @@ def main() -> None:
     parser.add_argument("--commit", help="commit that was run, where the folders do not say it")
     parser.add_argument("--write", action="store_true", help="write the tables into docs/evaluation.md")
     args = parser.parse_args()
-    text = tables(sorted(path.parent for path in args.folder.rglob(RUN_FILE)), args.commit)
+    text = tables(sorted(path.parent for path in args.folder.glob(f"*/{RUN_FILE}")), args.commit)
     if not args.write:
         print(text)
         return

@@ -142,3 +142,40 @@ def test_the_tables_of_the_floor_are_made_from_the_folders(tmp_path: Path) -> No
     lines = [line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`")]
     assert lines[0].startswith(f"| `{TASKS[0]}` | random | 30 | 0 (0–11) | 4.0 (4.0–4.0) |")
     assert lines[1].startswith(f"| `{TASKS[0]}` | expert | 30 | 100 (89–100) |")
+
+
+ENTRY = "name: Mine\nby: A. Author\nsees: policy\ntrained_on: colon 1\ntransitions: 2.0e+6\ngpu_hours: 1.5\n"
+
+
+def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason(tmp_path: Path, capsys) -> None:
+    for name, more in (("good", ""), ("again", "reproduced: B. Other 2026-12\n")):
+        (result(tmp_path / "all" / name) / "entry.yaml").write_text(ENTRY + more)
+    page = tmp_path / "page.md"
+    page.write_text("# Page\n<!-- entries -->\nold\n<!-- end of entries -->\nend\n")
+    assert main(["results", "leaderboard", str(tmp_path / "all"), "--page", str(page)]) == 0
+    text = page.read_text()
+    assert "old" not in text and text.endswith("<!-- end of entries -->\nend\n")
+    line = next(line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`"))
+    assert line.startswith(f"| `{TASKS[0]}` | Mine | A. Author | 100 (89–100) | 1.00 (1.00–1.00) |")
+    assert "| 2e+06 | 1.5 | abc | reproduced: B. Other 2026-12 |" in text and "| abc | self-reported |" in text
+    (result(tmp_path / "all" / "wrong", seed=5) / "entry.yaml").write_text(ENTRY)
+    result(tmp_path / "all" / "nameless")
+    (tmp_path / "all" / "nameless" / "entry.yaml").write_text("name: Mine\ncost: 3\n")
+    assert main(["results", "leaderboard", str(tmp_path / "all"), "--page", str(page)]) == 1
+    out = capsys.readouterr().out
+    assert "wrong: trial 0 of ARC-Rectum-Magnetic has another patient, seed or group" in out
+    assert "lacks by, sees, trained_on, transitions, gpu_hours and has the unknown cost" in out
+    assert page.read_text() == text
+
+
+def test_training_on_unseen_patients_is_refused(tmp_path: Path) -> None:
+    conditions = read_conditions(read_suites()["population"].conditions_path)
+    run = {**RUN, "suite": "population", "conditions_sha256": conditions.sha256}
+    for name, trained, refused in (
+        ("a", "population:train", False),
+        ("b", ["colon_1/colon.usda", "population:20003"], True),
+        ("c", "population:test", True),
+        ("d", None, False),
+    ):
+        folder = ResultFolder(tmp_path / name, {**run, "trained_on": [trained]})
+        assert any("keeps unseen" in line for line in problems(folder.path)) == refused

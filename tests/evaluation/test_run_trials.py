@@ -131,3 +131,19 @@ def test_the_best_and_the_worst_trial_are_filmed_and_shown(tmp_path: Path, condi
     assert write_page(tmp_path / "run").read_text().count("<video controls src=data:video/mp4;base64,") == 3
     table = pyarrow.parquet.read_table(tmp_path / "run" / "trials.parquet")
     assert sorted(table["reward"].to_pylist()) == sorted(row["reward"] for row in rows)
+
+
+def test_each_task_may_have_checkpoints_of_its_own(tmp_path: Path) -> None:
+    from arcgym.evaluation.evaluate import EvaluationOptions, run_record
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    for task in ("ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"):
+        (tmp_path / task).mkdir()
+        for seed in (1, 2):
+            (tmp_path / task / f"{seed}.pt").write_text(f"{task} {seed}")
+    options = EvaluationOptions((f"{tmp_path}/{{task}}/1.pt", f"{tmp_path}/{{task}}/2.pt"), "paper")
+    assert options.agents_for("ARC-Sigmoid-Magnetic:dense")[1] == f"{tmp_path}/ARC-Sigmoid-Magnetic/2.pt"
+    conditions = read_conditions(read_suites()["paper"].conditions_path)
+    run = run_record(["ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"], conditions, options)
+    assert len(set(run["checkpoint_sha256"])) == 4 and run["trained_on"] == [None] * 4

@@ -7,7 +7,8 @@
 
 Every trial of the suite's condition file is run once. All that is random in it follows from its seed: its result is the
 same whatever the number of worlds. Rows go to trials.csv in the folder as trials end; called again, the rest is run.
-Several checkpoints, separated by commas, are training seeds: trials of group g get checkpoint g.
+Several checkpoints, separated by commas, are training seeds: trials of group g get checkpoint g. {task} in a path
+stands for the task's name: --agent "runs/{task}/1.pt,runs/{task}/2.pt" --robot Magnetic.
 """
 
 from __future__ import annotations

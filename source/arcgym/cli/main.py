@@ -27,6 +27,7 @@ COMMANDS = {
     "results page": ("arcgym.cli.results_page", "draw an evaluation as a page"),
     "results paper": ("arcgym.cli.results_paper", "show an evaluation beside the paper's figures"),
     "results check": ("arcgym.cli.results_check", "check a result folder before it is published"),
+    "results leaderboard": ("arcgym.cli.results_leaderboard", "make the leaderboard of submitted result folders"),
     "replay": ("arcgym.cli.replay", "make a recorded episode again and compare it bit for bit"),
     "study": ("arcgym.cli.study", "train a grid of algorithms, tasks, robots and seeds"),
     "study report": ("arcgym.cli.study_report", "make table and pictures of a study's folder"),

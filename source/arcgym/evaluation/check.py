@@ -58,6 +58,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
         found.append(f"conditions are not those of {conditions.name}: the hash of the condition file differs")
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
+    found += _seen_in_training(run, conditions)
     more = [text for text in run.get("overrides", []) if text not in suite.overrides]
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
@@ -70,6 +71,18 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
                     f"{task} was run with {path} = {changes[path][1]}, which changes the task ({changes[path][0]})"
                 )
     return found
+
+
+def _seen_in_training(run: dict[str, Any], conditions: Conditions) -> list[str]:
+    """Return a problem where a policy was trained on patients that its suite keeps unseen."""
+    unseen = {trial.patient for trial in conditions.trials if trial.patient.startswith("population:")}
+    if not unseen:
+        return []
+    trained = [
+        name for names in run.get("trained_on", []) for name in ([names] if isinstance(names, str) else names or [])
+    ]
+    seen = [name for name in trained if name in unseen or name == "population:test"]
+    return [f"was trained on {', '.join(sorted(set(seen)))}, which {conditions.name} keeps unseen"] if seen else []
 
 
 def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:

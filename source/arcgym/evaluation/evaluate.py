@@ -52,7 +52,11 @@ class EvaluationOptions:
 
     agents: tuple[str, ...]
     """A name in :data:`arcgym.rl.rollout.UNTRAINED`, or checkpoints. Trials of group g get checkpoint g, or the
-    only one."""
+    only one. ``{task}`` in a path stands for the registered name of the task: each has policies of its own."""
+
+    def agents_for(self, task: str) -> tuple[str, ...]:
+        """Return the agents of a task."""
+        return tuple(agent.replace("{task}", split_task(task)[0]) for agent in self.agents)
 
     suite: str
     """Name of the suite, for the record."""
@@ -85,19 +89,23 @@ def evaluate(
     Raises:
         UsageError: The folder holds another evaluation.
     """
-    folder = ResultFolder(out, run_record(conditions, options))
+    folder = ResultFolder(out, run_record(tasks, conditions, options))
     for task in tasks:
         done = folder.done(task)
         left = [trial for trial in conditions.trials if trial.trial not in done]
         print(f"{task}: {len(left)} of {len(conditions.trials)} trials to run", flush=True)
-        for agent, trials in _batches(left, options.agents, options.num_patients):
+        for agent, trials in _batches(left, options.agents_for(task), options.num_patients):
             _run_batch(task, agent, trials, load_cfgs, options, folder)
     return folder
 
 
-def run_record(conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
-    """Return what identifies an evaluation, and the versions and the machine it is made with."""
-    checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in options.agents]
+def run_record(tasks: Sequence[str], conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
+    """Return what identifies an evaluation, and the versions and the machine it is made with.
+
+    Checkpoints are listed in the order of the tasks that have some of their own, then of the groups.
+    """
+    agents = dict.fromkeys(agent for task in tasks for agent in options.agents_for(task))
+    checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in agents]
     return {
         "agent": ",".join(options.agents) if not checkpoints else "checkpoint",
         "checkpoint": [str(path) for path in checkpoints],

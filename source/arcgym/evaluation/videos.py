@@ -39,7 +39,7 @@ def film(conditions: Conditions, load_cfgs: LoadCfgs, options: EvaluationOptions
 
 def _film(row: Row, trial: Any, path: Path, load_cfgs: LoadCfgs, options: EvaluationOptions) -> None:
     print(f"filming trial {trial.trial} of {row['task']}", flush=True)
-    agent = agent_of(trial, options.agents)
+    agent = agent_of(trial, options.agents_for(row["task"]))
     partial = path.with_name(f"partial_{path.name}")
     again: list[Row] = []
     cfgs = load_cfgs(row["task"], checkpoint_of(agent))

@@ -1,0 +1,133 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The leaderboard: submitted result folders, their figures computed anew. Loads neither torch nor Warp."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import MISSING, dataclass, fields
+from pathlib import Path
+
+import yaml
+
+from arcgym.evaluation.check import problems
+from arcgym.evaluation.result_folder import RUN_FILE, read_run, read_trial_rows
+from arcgym.evaluation.statistics import Interval
+from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.summary import summarize
+from arcgym.utils.errors import UsageError
+
+ENTRY_FILE = "entry.yaml"
+"""What a submission says of itself."""
+BEGIN, END = "<!-- entries -->", "<!-- end of entries -->"
+"""Marks of the page between which the tables stand."""
+METRICS = {"progress": ("progress", 2), "seconds": ("time [s]", 1), "p95_shaft_force": ("p95 shaft force [N]", 2)}
+"""Heading and digits of the figures beside success."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A submission: ``entry.yaml`` beside ``run.json`` and ``trials.csv``."""
+
+    name: str
+    """Name of the method."""
+
+    by: str
+    """Who submits it."""
+
+    sees: str
+    """Observation groups of the policy at test time, such as ``policy``."""
+
+    trained_on: str
+    """Patients that anything of it was trained or chosen on."""
+
+    transitions: float
+    """Transitions of one training run, all stages and teachers included."""
+
+    gpu_hours: float
+    """Hours of one training run, times its GPUs."""
+
+    url: str = ""
+    """Code and checkpoint."""
+
+    reproduced: str = ""
+    """Who ran the checkpoint again, and when; empty for self-reported."""
+
+
+def read_entry(folder: Path) -> Entry:
+    """Return what a submission says of itself.
+
+    Raises:
+        UsageError: The file is missing or damaged, a field is missing, or unknown.
+    """
+    path = folder / ENTRY_FILE
+    try:
+        values = yaml.safe_load(path.read_text())
+    except (OSError, yaml.YAMLError) as error:
+        raise UsageError(f"{path} cannot be read: {error}") from error
+    known = {field.name: field for field in fields(Entry)}
+    values = values if isinstance(values, dict) else {}
+    missing = [name for name, field in known.items() if field.default is MISSING and name not in values]
+    unknown = [name for name in values if name not in known]
+    if missing or unknown:
+        raise UsageError(
+            f"{path} lacks {', '.join(missing) or 'nothing'} and has the unknown {', '.join(unknown) or 'nothing'}; "
+            f"expected {', '.join(known)}."
+        )
+    return Entry(**values)
+
+
+def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:
+    """Return the submissions in a folder that can be shown, and what is wrong with the others, a line each."""
+    good, refused = [], {}
+    for path in sorted(file.parent for file in folder.rglob(RUN_FILE)):
+        try:
+            found = problems(path)
+            read_entry(path)
+        except UsageError as error:
+            found = [str(error)]
+        if found:
+            refused[path] = found
+        else:
+            good.append(path)
+    return good, refused
+
+
+def entries_table(folders: Sequence[Path]) -> str:
+    """Return a table a suite, best first, computed from the trials of each submission."""
+    parts = []
+    for suite in read_suites():
+        own = [folder for folder in folders if read_run(folder)["suite"] == suite]
+        lines = sorted((line for folder in own for line in _lines(folder)), key=lambda line: (line[0], -line[1]))
+        if lines:
+            columns = ["task", "method", "by", "success [%]", *(heading for heading, _ in METRICS.values())]
+            columns += ["sees", "trained on", "transitions", "GPU hours", "checkpoint", "marked"]
+            head = [f"| {' | '.join(columns)} |", f"|{'---|' * len(columns)}"]
+            parts.append("\n".join([f"## {suite}\n", *head, *(text for _, _, text in lines)]))
+    return "\n\n".join(parts) + "\n" if parts else "There is no entry yet.\n"
+
+
+def write_leaderboard(page: Path, folders: Sequence[Path]) -> None:
+    """Write the tables into a page, between its two marks."""
+    text = page.read_text()
+    page.write_text(f"{text[: text.index(BEGIN) + len(BEGIN)]}\n{entries_table(folders)}{text[text.index(END) :]}")
+
+
+def _lines(folder: Path) -> list[tuple[str, float, str]]:
+    """Return task, success and line of the table of each task of a submission."""
+    entry, run = read_entry(folder), read_run(folder)
+    name = f"[{entry.name}]({entry.url})" if entry.url else entry.name
+    hashes = ", ".join(digest[:8] for digest in run["checkpoint_sha256"]) or run["agent"]
+    marked = f"reproduced: {entry.reproduced}" if entry.reproduced else "self-reported"
+    about = [entry.sees, entry.trained_on, f"{entry.transitions:.3g}", f"{entry.gpu_hours:g}", hashes, marked]
+    lines = []
+    for task, of in summarize(read_trial_rows(folder)).items():
+        figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
+        cells = [f"`{task}`", name, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
+        lines.append((task, of["success"].value, f"| {' | '.join(cells)} |"))
+    return lines
+
+
+def _text(interval: Interval, digits: int, factor: float = 1.0) -> str:
+    value, low, high = (f"{factor * number:.{digits}f}" for number in (interval.value, interval.low, interval.high))
+    return f"{value} ({low}–{high})"
