@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import warp as wp
+from small_strain import bending_stiffness, stretching_stiffness
 from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
@@ -17,7 +18,6 @@ from arcgym.anatomy.shell import mid_surface, wall_thickness
 from arcgym.assets.materials import shell_moduli
 from arcgym.assets.shell_geometry import fold_angles, fold_gradients, polygon_factor, shell_geometry
 from arcgym.sim import Simulation
-from arcgym.sim.wall.shell_elements import bending_stiffness, stretching_stiffness
 
 SQUARE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
 TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])

@@ -5,8 +5,7 @@
 from __future__ import annotations
 
 import numpy as np
-
-from arcgym.sim.wall.solid_elements import tet_stiffness
+from small_strain import tet_stiffness
 
 MU, LAM = 3.0, 5.0
 TET = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.3, 0.1, 1.5]])

@@ -4,16 +4,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 import torch
-import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation, WallSolverCfg
-from arcgym.sim.wall import coarse_kernels
 
 SOFT = {"youngs_modulus": 5.0e5}
 FREE = {**SOFT, "anchor_stiffness": dict.fromkeys(("rectum", "sigmoid", "descending", "splenic", "transverse"), 0.0)}
@@ -125,24 +121,3 @@ def test_coarse_correction_gets_there_in_fewer_steps(tiny_sim: TinySim) -> None:
         for coarse in (True, False)
     ]
     assert errors[0] < 0.5 * errors[1]
-
-
-@pytest.mark.parametrize("flat", [0.0, 0.2])
-def test_distortion_of_a_ring_that_is_flattened(tiny_sim: TinySim, flat: float) -> None:
-    """Turned, moved and widened it is as at rest; flattened by e, 2 - 2 / sqrt(1 + e^2), but for its frame's turn."""
-    sim = tiny_sim()
-    middle = sim.colon.wall.ring == 8
-    x = sim.nodal_pos.numpy()
-    ring = x[middle, 0] - x[middle, 0].mean(axis=0)
-    turn = np.array([[1.0, 0.0, 0.0], [0.0, 0.8, -0.6], [0.0, 0.6, 0.8]])
-    x[middle, 0] = 1.5 * (ring * [1.0 + flat, 1.0 - flat, 1.0]) @ turn.T + [0.1, 0.0, 0.2]
-    sim.nodal_pos.assign(x)
-    solver = sim.wall
-    wp.launch(
-        coarse_kernels.ring_rotations,
-        (solver.ring_count, 1),
-        inputs=[sim.nodal_pos, solver.space],
-        outputs=[solver.rotation, solver.shift, solver.distortion],
-    )
-    expected = 2.0 - 2.0 / math.sqrt(1.0 + flat**2)
-    assert solver.distortion.numpy()[8, 0] == pytest.approx(expected, rel=0.05, abs=1e-5)

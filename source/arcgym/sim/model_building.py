@@ -19,9 +19,7 @@ from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
 from arcgym.sim.contact.carried_surface import CarriedSurface
-from arcgym.sim.wall.ring_modes import ElasticPart, RingModes, ring_modes
-from arcgym.sim.wall.shell_elements import bending_bound, stretching_stiffness
-from arcgym.sim.wall.solid_elements import tet_stiffness
+from arcgym.sim.wall.ring_modes import RingModes, ring_modes
 from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
 from arcgym.sim.wall.wall_topology import LumenTopology, lumen_topology
 
@@ -48,7 +46,7 @@ def wall_parameters(colon: Colon, patient: int = 0) -> WallParameters:
     points = np.array(builder.particle_q, dtype=np.float64).reshape(-1, 3)
     return WallParameters(
         points=points,
-        elements=_shell(wall) if isinstance(wall, ShellMesh) else _solid(builder, points),
+        elements=_elements(wall, builder),
         moduli=colon.moduli(*colon.elasticity()),
         mass=np.array(builder.particle_mass, dtype=np.float64),
         mobile=colon.mobile(patient),
@@ -59,24 +57,15 @@ def wall_parameters(colon: Colon, patient: int = 0) -> WallParameters:
     )
 
 
-def _solid(builder: newton.ModelBuilder, points: np.ndarray) -> SolidParameters:
-    tets = np.array(builder.tet_indices, dtype=np.int32).reshape(-1, 4)
-    shear, dilation = tet_stiffness(points, tets)
-    return SolidParameters(tets, (ElasticPart(tets, shear), ElasticPart(tets, dilation), ElasticPart.none()))
-
-
-def _shell(shell: ShellMesh) -> ShellParameters:
-    geometry = shell_geometry(shell.points, shell.triangles)
-    shear, dilation = stretching_stiffness(shell.points, geometry)
-    bending = bending_bound(shell.points, geometry)
-    triangles = shell.triangles
-    parts = ElasticPart(triangles, shear), ElasticPart(triangles, dilation), ElasticPart(geometry.hinges, bending)
-    return ShellParameters(geometry, parts)
+def _elements(wall: ShellMesh | WallMesh, builder: newton.ModelBuilder) -> ShellParameters | SolidParameters:
+    if isinstance(wall, ShellMesh):
+        return ShellParameters(shell_geometry(wall.points, wall.triangles))
+    return SolidParameters(np.array(builder.tet_indices, dtype=np.int32).reshape(-1, 4))
 
 
 def wall_modes(wall: WallParameters) -> RingModes:
     """Return the ring modes of the wall."""
-    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness, wall.elements.parts)
+    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness)
 
 
 def carried_surface(

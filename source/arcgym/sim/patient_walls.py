@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
@@ -32,7 +32,7 @@ class PatientWall:
     """Wall of one patient."""
 
     parameters: WallParameters
-    """Vertices and elements, without the stiffness of the single elements."""
+    """Vertices and elements."""
     modes: RingModes
     """Ring modes."""
 
@@ -61,5 +61,4 @@ def _load(colon: Colon, index: int) -> PatientWall:
 
 def _build(colon: Colon, index: int) -> PatientWall:
     wall = wall_parameters(colon, index)
-    modes = wall_modes(wall)
-    return PatientWall(replace(wall, elements=replace(wall.elements, parts=())), modes)
+    return PatientWall(wall, wall_modes(wall))

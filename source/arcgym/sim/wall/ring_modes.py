@@ -1,68 +1,47 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Modes in which every ring of the wall moves as a whole, and the wall's rest stiffness in them, in numpy."""
+"""Modes in which every ring of the wall moves as a whole, in numpy.
+
+A ring moves by x_i += t + p_i g_p + q_i g_q: any affine motion of its plane. (p, q) are the coordinates that its
+vertices have in the ring's plane at rest, over their rms distance from its centre; t, g_p, g_q are vectors in space.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from arcgym.sim.wall.wall_topology import members
 
 MODES = 9
-"""Unknowns of a ring."""
-PARTS = 3
-"""Parts of the elastic energy that scale on their own: shear, second Lamé parameter, bending."""
+"""Unknowns of a ring: t, g_p and g_q."""
 
 
 @dataclass(frozen=True)
 class RingModes:
-    """One world's wall in the modes of its rings, for the coarse correction; R rings, V vertices, M modes."""
+    """One world's wall in the modes of its rings, for the coarse correction; R rings, V vertices."""
 
-    basis: np.ndarray
-    """Displacement of every vertex in each mode at rest, shape (V, M, 3)."""
-    frame_weights: np.ndarray
-    """In-plane coordinates (p, q) of every vertex over the ring's rms radius, shape (V, 2)."""
+    plane: np.ndarray
+    """In-plane coordinates (p, q) of every vertex, shape (V, 2)."""
     members: np.ndarray
     """Vertices of each ring, -1 padded, shape (R, S)."""
-    rest_frame: np.ndarray
-    """Ring frames at rest, columns p, q, p x q, shape (R, 3, 3)."""
-    stiffness: np.ndarray
-    """Diagonal blocks of each part [N/m], shape (P, R, M, M)."""
-    coupling: np.ndarray
-    """Blocks of each part from each ring to the next [N/m], shape (P, R, M, M)."""
+    bending: np.ndarray
+    """Cholesky factor of each band's bound on bending over flexural rigidity [1/m], see :func:`bending_bound`, shape
+    (R, 3, 3); 0 after the last ring."""
+    moves: np.ndarray
+    """Whether all of a ring's vertices move, shape (R,), bool; the others stay where they are."""
     mass: np.ndarray
-    """[kg], shape (R, M, M)."""
+    """Sum of mass times the products of (1, p, q) [kg], shape (R, 3, 3)."""
     anchor: np.ndarray
-    """[N/m], shape (R, M, M)."""
-
-
-@dataclass(frozen=True)
-class ElasticPart:
-    """Small-strain stiffness of elements, all of one part of the energy."""
-
-    vertices: np.ndarray
-    """Vertices of each element, shape (E, n)."""
-    stiffness: np.ndarray
-    """Stiffness [N/m], shape (E, n, 3, n, 3)."""
-
-    @staticmethod
-    def none() -> ElasticPart:
-        """Return a part without elements."""
-        return ElasticPart(np.zeros((0, 1), np.int32), np.zeros((0, 1, 3, 1, 3)))
+    """The same of the anchor springs [N/m], shape (R, 3, 3)."""
 
 
 def ring_modes(
-    points: np.ndarray,
-    ring: np.ndarray,
-    mobile: np.ndarray,
-    mass: np.ndarray,
-    anchor: np.ndarray,
-    parts: Sequence[ElasticPart],
+    points: np.ndarray, ring: np.ndarray, mobile: np.ndarray, mass: np.ndarray, anchor: np.ndarray
 ) -> RingModes:
-    """Project rest stiffness, mass and anchors on the modes of the rings.
+    """Find the rings' planes and project mass and anchors on their modes.
 
     Args:
         points: Rest positions [m], shape (V, 3).
@@ -70,87 +49,90 @@ def ring_modes(
         mobile: Whether each vertex moves, shape (V,), bool.
         mass: Vertex masses [kg], shape (V,).
         anchor: Vertex anchor springs [N/m], shape (V,).
-        parts: Elements of each of the ``PARTS`` parts; an element over three rings, as a hinge about an edge within a
-            ring, is left out: it resists bending along the colon, which hardly counts beside stretching.
     """
     count = int(ring.max()) + 1
     group = members(np.arange(len(points)), ring, count, pad_first=False)
-    basis, plane, frames = _ring_basis(points.astype(np.float64), group)
-    basis = basis * mobile[:, None, None]
-    blocks = [_stiffness_blocks(part, ring, basis, count) for part in parts]
-    stiffness, coupling = np.stack([b[0] for b in blocks]), np.stack([b[1] for b in blocks])
-    held = ~np.array([mobile[g[g >= 0]].any() for g in group])
-    stiffness[0, held] += 1.0e3 * np.eye(MODES)
-    return RingModes(
-        basis,
-        plane,
-        group,
-        frames,
-        stiffness,
-        coupling,
-        _lumped_blocks(mass, ring, basis, count),
-        _lumped_blocks(anchor, ring, basis, count),
-    )
+    points = points.astype(np.float64)
+    plane, radius = _in_plane(points, group)
+    bending = np.zeros((count, 3, 3))
+    bending[:-1] = np.linalg.cholesky(bending_bound(points, plane, radius, group))
+    moves = np.array([mobile[row[row >= 0]].all() for row in group])
+    fields = np.column_stack([np.ones(len(points)), plane])
+    mass, anchor = (_products(values, ring, fields, count) for values in (mass, anchor))
+    return RingModes(plane, group, bending, moves, mass, anchor)
 
 
-def _ring_basis(points: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    basis, plane = np.zeros((len(points), MODES, 3)), np.zeros((len(points), 2))
-    frames = np.zeros((len(group), 3, 3))
+def bending_bound(points: np.ndarray, plane: np.ndarray, radius: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Bound each band's share of the bending along the colon, over flexural rigidity [1/m^2], shape (R - 1, 3, 3).
+
+    With the outward move u of a ring, du from a ring to the next and the distance h between their vertices, bending
+    costs D / 2 (du / h - du' / h')^2 / m for a width of the wall, where a band and the one before meet and m is their
+    mean length. As (a - b)^2 <= 2 a^2 + 2 b^2, a band has D (du / h)^2 (1 / m + 1 / m') of it and of the next one at
+    most. A ring moves outwards by widening, (p.g_p + q.g_q) / 2, and by flattening, (p.g_p - q.g_q) / 2 and
+    (q.g_p + p.g_q) / 2, times known numbers at each vertex, and by its translation. By the same inequality, twice the
+    former's part and twice the latter's are enough; the latter's is small against the band's shear and left out. The
+    bound is the matrix between twice the amplitudes of widening and flattening.
+
+    Args:
+        points: Rest positions [m], shape (V, 3).
+        plane: In-plane coordinates, shape (V, 2).
+        radius: Radius of each ring [m], shape (R,).
+        group: Vertices of each ring, -1 padded, shape (R, S).
+    """
+    rows = [row[row >= 0] for row in group]
+    apart = [np.linalg.norm(points[a][:, None] - points[b], axis=2) for a, b in pairwise(rows)]
+    length = [distance.min(axis=1) for distance in apart]
+    out = np.zeros((len(apart), 3, 3))
+    for r, distance in enumerate(apart):
+        before = apart[r - 1].min(axis=0) if r > 0 else length[r]
+        after = length[r + 1][distance.argmin(axis=1)] if r + 1 < len(apart) else length[r]
+        means = 1.0 / (0.5 * (before + length[r])) + 1.0 / (0.5 * (length[r] + after))
+        weight = (2.0 * np.pi * radius[r] / len(rows[r])) * means / length[r] ** 2
+        p, q = plane[rows[r]].T
+        size = np.hypot(p, q)
+        moves = np.stack([size, (p * p - q * q) / np.maximum(size, 1e-6), 2.0 * p * q / np.maximum(size, 1e-6)])
+        out[r] = (weight * moves) @ moves.T + 1e-6 * weight.sum() * np.eye(3)
+    return out
+
+
+def _in_plane(points: np.ndarray, group: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return in-plane coordinates, shape (V, 2), and the rings' radii; the axes turn as little as they can."""
+    plane, radius = np.zeros((len(points), 2)), np.zeros(len(group))
+    normal = p = None
     for r, row in enumerate(group):
         row = row[row >= 0]
         local = points[row] - points[row].mean(axis=0)
         axes = np.linalg.svd(local, full_matrices=False)[2]
-        size = np.sqrt((local**2).sum(axis=1).mean())
-        plane[row] = local @ axes[:2].T / size
-        basis[row] = _ring_displacements(plane[row], axes[0], axes[1])
-        p, q = plane[row, 0] @ points[row], plane[row, 1] @ points[row]
-        p /= np.linalg.norm(p)
-        q -= p * (p @ q)
-        q /= np.linalg.norm(q)
-        frames[r] = np.column_stack([p, q, np.cross(p, q)])
-    return basis, plane, frames
+        across = np.cross(axes[0], axes[1])
+        normal = across if normal is None or across @ normal > 0.0 else -across
+        p = axes[0] if p is None else p - normal * (normal @ p)
+        p = p / np.linalg.norm(p)
+        radius[r] = np.sqrt((local**2).sum(axis=1).mean())
+        plane[row] = local @ np.column_stack([p, np.cross(normal, p)]) / radius[r]
+    return plane, radius
 
 
-def _ring_displacements(plane: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Return affine displacements: three translations, two tilts, twist, dilation, two flattenings, shape (n, M, 3).
+def _products(values: np.ndarray, ring: np.ndarray, fields: np.ndarray, count: int) -> np.ndarray:
+    out = np.zeros((count, 3, 3))
+    np.add.at(out, ring, np.einsum("v,vk,vn->vkn", values, fields, fields))
+    return out
 
-    Flattening affinely stretches the ring, which a shell would avoid; modes that do avoid it at rest are far softer
-    than the wall once it is dented, and the correction then overshoots without bound.
+
+def band_elements(elements: np.ndarray, ring: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Sort elements by the band between two rings in which they lie; one within a ring counts to the band before.
+
+    Elements over more than two rings, which only a mesh without rings of its own has, are left out.
+
+    Args:
+        elements: Vertices of each element, shape (E, n).
+        ring: Ring of each vertex, shape (V,).
+
+    Returns:
+        First element of each ring's band, shape (R + 1,), and elements by band, shape (at most E,), both int32.
     """
-    angle = np.arctan2(plane[:, 1], plane[:, 0])
-    radial = np.cos(angle)[:, None] * p + np.sin(angle)[:, None] * q
-    along = -np.sin(angle)[:, None] * p + np.cos(angle)[:, None] * q
-    size = np.linalg.norm(plane, axis=1)[:, None]
-    double = 2.0 * angle
-    out = np.zeros((len(plane), MODES, 3))
-    out[:, :3] = np.eye(3)
-    out[:, 3], out[:, 4] = plane[:, :1] * np.cross(p, q), plane[:, 1:] * np.cross(p, q)
-    out[:, 5], out[:, 6] = size * along, size * radial
-    out[:, 7] = size * (np.cos(double)[:, None] * radial - np.sin(double)[:, None] * along)
-    out[:, 8] = size * (np.sin(double)[:, None] * radial + np.cos(double)[:, None] * along)
-    return out
-
-
-def _stiffness_blocks(
-    part: ElasticPart, ring: np.ndarray, basis: np.ndarray, count: int
-) -> tuple[np.ndarray, np.ndarray]:
-    corner_ring = ring[part.vertices]
-    near = np.ptp(corner_ring, axis=1) <= 1
-    vertices, corner_ring = part.vertices[near], corner_ring[near]
-    modes = basis[vertices]
-    blocks = np.einsum("tami,taibj,tbnj->tabmn", modes, part.stiffness[near], modes, optimize=True)
-    diagonal = np.zeros((count, MODES, MODES))
-    upper = np.zeros((count, MODES, MODES))
-    corners = vertices.shape[1]
-    for a in range(corners):
-        for b in range(corners):
-            step = corner_ring[:, b] - corner_ring[:, a]
-            np.add.at(diagonal, corner_ring[step == 0, a], blocks[step == 0, a, b])
-            np.add.at(upper, corner_ring[step == 1, a], blocks[step == 1, a, b])
-    return diagonal, upper
-
-
-def _lumped_blocks(values: np.ndarray, ring: np.ndarray, basis: np.ndarray, count: int) -> np.ndarray:
-    out = np.zeros((count, MODES, MODES))
-    np.add.at(out, ring, np.einsum("v,vmi,vni->vmn", values, basis, basis))
-    return out
+    lowest, highest = ring[elements].min(axis=1), ring[elements].max(axis=1)
+    near = np.flatnonzero(highest <= lowest + 1)
+    band = np.maximum(highest[near] - 1, 0)
+    order = np.argsort(band, kind="stable")
+    start = np.searchsorted(band[order], np.arange(int(ring.max()) + 2))
+    return start.astype(np.int32), near[order].astype(np.int32)

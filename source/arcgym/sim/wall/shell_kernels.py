@@ -17,6 +17,7 @@ step, which spares the sweep its normals and inverse tangents.
 
 import warp as wp
 
+from arcgym.sim.wall.band_kernels import BandMatrix, Rings, add_edges, band_fields
 from arcgym.sim.wall.wall_kernels import Tissue, VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -292,3 +293,86 @@ def add_forces(
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
         out.force += shell.corner_force[shell.fan_corner[k], w]
     return out
+
+
+@wp.func
+def positive_part(a: float, b: float, c: float) -> wp.vec3:
+    """Return the positive semidefinite part of the symmetric matrix ((a, b), (b, c))."""
+    middle = 0.5 * (a + c)
+    radius = wp.sqrt(0.25 * (a - c) * (a - c) + b * b)
+    low = middle - radius
+    if low >= 0.0:
+        return wp.vec3(a, b, c)
+    share = wp.max(middle + radius, 0.0) / (2.0 * wp.max(radius, 1.0e-20))
+    return share * wp.vec3(a - low, b, c - low)
+
+
+@wp.struct
+class EdgeStiffness:
+    """Stiffness of a triangle between its two edges from the first corner [N/m]."""
+
+    one: wp.mat33
+    both: wp.mat33
+    two: wp.mat33
+
+
+@wp.func
+def edge_stiffness(d1: wp.vec3, d2: wp.vec3, rest: wp.vec4, moduli: wp.vec3) -> EdgeStiffness:
+    """Return the Hessian of the membrane in the edges ``d1`` and ``d2``, without its negative parts.
+
+    Between edges a and b it is A times lambda h_a h_b^T + k (h_b h_a^T + h_a.h_b (Id - n n^T)) + T_ab Id +
+    4 b mu (I - 2) g_a g_b^T, with the edges' duals h in the triangle and g at rest, k = mu - lambda ln J and the
+    tension T: Bonet and Wood, section 6.5. ``add_stretching`` is the same for one corner.
+    """
+    now = membrane_stretch(d1, d2, rest, moduli)
+    inv11 = now.inverse * (now.dots[0] + now.dots[2])
+    inv22 = now.inverse * (now.dots[0] + now.dots[1])
+    inv12 = -now.inverse * now.dots[0]
+    h1 = inv11 * d1 + inv12 * d2
+    h2 = inv12 * d1 + inv22 * d2
+    rest11 = rest[2] + rest[0]
+    rest22 = rest[1] + rest[0]
+    tension = rest[3] * positive_part(
+        now.shear * rest11 + now.spread * inv11,
+        now.spread * inv12 - now.shear * rest[0],
+        now.shear * rest22 + now.spread * inv22,
+    )
+    k = rest[3] * wp.max(-now.spread, 0.0)
+    spread = rest[3] * moduli[1]
+    n = wp.cross(d1, d2)
+    eye = wp.identity(n=3, dtype=float)
+    plane = k * (eye - now.inverse * wp.outer(n, n))
+    out = EdgeStiffness()
+    out.one = (spread + k) * wp.outer(h1, h1) + inv11 * plane + tension[0] * eye
+    out.two = (spread + k) * wp.outer(h2, h2) + inv22 * plane + tension[2] * eye
+    out.both = spread * wp.outer(h1, h2) + k * wp.outer(h2, h1) + inv12 * plane + tension[1] * eye
+    stretched = 4.0 * STIFFENING * moduli[0] * now.excess * rest[3]
+    if stretched > 0.0:
+        g1 = rest11 * d1 - rest[0] * d2
+        g2 = rest22 * d2 - rest[0] * d1
+        out.one += stretched * wp.outer(g1, g1)
+        out.two += stretched * wp.outer(g2, g2)
+        out.both += stretched * wp.outer(g1, g2)
+    return out
+
+
+@wp.func
+def add_band_triangle(
+    band: BandMatrix,
+    shell: ShellElements,
+    rings: Rings,
+    x: wp.array2d[wp.vec3],
+    t: int,
+    r: int,
+    w: int,
+    moduli: wp.vec3,
+) -> BandMatrix:
+    """Add the stretching of triangle ``t`` to the stiffness of the band of ring ``r`` of world ``w``."""
+    p = shell.patient[w]
+    corners = shell.triangles[t]
+    x0 = x[corners[0], w]
+    k = edge_stiffness(x[corners[1], w] - x0, x[corners[2], w] - x0, shell.rest[t, p], moduli)
+    f0 = band_fields(rings, corners[0], r, p)
+    f1 = band_fields(rings, corners[1], r, p) - f0
+    f2 = band_fields(rings, corners[2], r, p) - f0
+    return add_edges(band, f1, f2, k.one, k.both, k.two)

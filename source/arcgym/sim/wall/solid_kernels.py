@@ -9,6 +9,7 @@ parameters; force and Hessian of a vertex are written in closed form.
 
 import warp as wp
 
+from arcgym.sim.wall.band_kernels import BandMatrix, Five, Rings, add_edges, band_fields
 from arcgym.sim.wall.wall_kernels import VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -64,4 +65,58 @@ def add_elastic(
         pressure = la * (wp.dot(f0, c0) - 1.0) - mu
         out.force -= vol * (mu * (f0 * m[0] + f1 * m[1] + f2 * m[2]) + pressure * g)
         out.hessian += vol * (la * wp.outer(g, g) + mu * wp.dot(m, m) * wp.identity(n=3, dtype=float))
+    return out
+
+
+@wp.func
+def add_band_tet(
+    band: BandMatrix,
+    solid: SolidElements,
+    rings: Rings,
+    x: wp.array2d[wp.vec3],
+    t: int,
+    r: int,
+    w: int,
+    moduli: wp.vec3,
+) -> BandMatrix:
+    """Add a tet to the stiffness of the band of ring ``r``.
+
+    The Hessian between two corners with shape gradients m and m' is V times (lambda' J^2 + q) h h'^T - q (h' h^T +
+    h.h' Id) + (m.S m') Id, with h = F^-T m, lambda' = lambda + mu, q = (lambda' (J - 1) - mu) J and the stress S =
+    mu Id + q C^-1; negative parts count as zero, and stretches below a tenth as a tenth.
+    """
+    p = solid.patient[w]
+    corners = solid.tets[t]
+    inv_rest = solid.inv_rest[t, p]
+    x0 = x[corners[0], w]
+    ds = wp.matrix_from_cols(x[corners[1], w] - x0, x[corners[2], w] - x0, x[corners[3], w] - x0)
+    u, sigma, v = wp.svd3(ds * inv_rest)
+    size = wp.vec3(wp.max(wp.abs(sigma[0]), 0.1), wp.max(wp.abs(sigma[1]), 0.1), wp.max(wp.abs(sigma[2]), 0.1))
+    volume = size[0] * size[1] * size[2]
+    mu = moduli[0]
+    la = moduli[1] + mu
+    pressure = (la * (volume - 1.0) - mu) * volume
+    k = wp.max(-pressure, 0.0)
+    spread = wp.max(la * volume * volume + pressure, 0.0)
+    dual = u * wp.diag(wp.cw_div(wp.vec3(1.0), size)) * wp.transpose(v)
+    stress = wp.vec3(0.0)
+    for i in range(3):
+        stress[i] = wp.max(mu + pressure / (size[i] * size[i]), 0.0)
+    tension = v * wp.diag(stress) * wp.transpose(v)
+    eye = wp.identity(n=3, dtype=float)
+    out = band
+    for a in range(4):
+        m = shape_gradient(inv_rest, a)
+        h = dual * m
+        fields = band_fields(rings, corners[a], r, p)
+        for b in range(a + 1):
+            n = shape_gradient(inv_rest, b)
+            g = dual * n
+            block = spread * wp.outer(h, g) + k * wp.outer(g, h)
+            block += (k * wp.dot(h, g) + wp.dot(m, tension * n)) * eye
+            block = solid.volume[t, p] * block
+            if a == b:
+                out = add_edges(out, fields, Five(), block, wp.mat33(), wp.mat33())
+            else:
+                out = add_edges(out, fields, band_fields(rings, corners[b], r, p), wp.mat33(), block, wp.mat33())
     return out

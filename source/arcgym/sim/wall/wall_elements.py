@@ -13,6 +13,7 @@ import warp as wp
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import shell_kernels, solid_kernels
+from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
@@ -27,6 +28,10 @@ class WallElements(Protocol):
     """Sweep over this kind of elements, see :mod:`arcgym.sim.wall.sweep_kernels`."""
     residual: wp.Kernel
     """Total force with this kind of elements."""
+    measure_bands: wp.Kernel
+    """Stiffness in the rings' modes, see :mod:`arcgym.sim.wall.band_kernels`."""
+    corners: np.ndarray
+    """Vertices of each element, shape (E, n)."""
     data: Any
     """Struct that those kernels take."""
     size: float
@@ -51,6 +56,7 @@ class Solid:
     sweep_color, residual = sweep_kernels(
         solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic
     )
+    measure_bands = band_kernel(solid_kernels.SolidElements, solid_kernels.add_band_tet)
 
     def __init__(self, points: Sequence[np.ndarray], tets: np.ndarray, patient: wp.array, device: str):
         """Copy the T tets of the walls to the device.
@@ -65,6 +71,7 @@ class Solid:
         start, entry = vertex_entries(tets, len(points[0]))
         volume = [np.linalg.det(one) / 6.0 for one in edges]
         self.size = float(np.mean(volume)) ** (1.0 / 3.0)
+        self.corners = tets
         self.data = solid_kernels.SolidElements()
         self.data.patient = patient
         self.data.tets = wp.array(tets, dtype=wp.vec4i, device=device)
@@ -84,6 +91,7 @@ class Shell:
     sweep_color, residual = sweep_kernels(
         shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
     )
+    measure_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle)
 
     def __init__(self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str):
         """Copy the elements of the walls to the device and allocate what is measured in all W worlds.
@@ -98,6 +106,7 @@ class Shell:
         self.data = data = shell_kernels.ShellElements()
         first = geometries[0]
         triangles, hinges = first.triangles, first.hinges
+        self.corners = triangles
         start, corner = vertex_entries(triangles, vertices)
         types: Any = (shell_kernels.VertexTriangle, shell_kernels.VertexTriangleRest)
         dtypes = (types[0].numpy_dtype(), types[1].numpy_dtype())

@@ -14,7 +14,6 @@ from arcgym.assets.anchors import AnchorSprings
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall.anchor_kernels import Anchors
-from arcgym.sim.wall.ring_modes import ElasticPart
 from arcgym.sim.wall.wall_kernels import WallNodes
 
 
@@ -24,8 +23,6 @@ class SolidParameters:
 
     tets: np.ndarray
     """Vertex indices, shape (T, 4)."""
-    parts: tuple[ElasticPart, ...]
-    """Rest stiffness for unit moduli."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +31,6 @@ class ShellParameters:
 
     geometry: ShellGeometry
     """Rest geometry."""
-    parts: tuple[ElasticPart, ...]
-    """Rest stiffness for unit moduli."""
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall import coarse_kernels, wall_kernels
+from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
-from arcgym.sim.wall.block_tridiagonal_kernels import Unknowns
-from arcgym.sim.wall.ring_modes import MODES, RingModes
+from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall.wall_topology import ring_mean
@@ -87,7 +87,7 @@ class WallSolver:
         self.moves = bool(mobile.any())
         self.nodes = wall_nodes(walls, patient, device)
         self.elements = wall_elements(walls, patient, device)
-        self.space = self._space(walls, modes, patient)
+        self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
         self.tissue.moduli = wp.array(np.tile(first.moduli, (num_envs, 1)), dtype=wp.vec3, device=device)
@@ -97,9 +97,11 @@ class WallSolver:
         self.x_prev = wp.zeros(count, dtype=wp.vec3, device=device)
         self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
         self.force = wp.zeros(count, dtype=wp.vec3, device=device)
-        self.rotation = wp.zeros(rings, dtype=wp.mat33, device=device)
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
-        self.distortion = wp.zeros(rings, dtype=float, device=device)
+        self.axes = RingAxes()
+        self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
+        blocks = (self.ring_count, num_envs, MODES, MODES)
+        self.own, self.behind, self.coupling = (wp.zeros(blocks, dtype=float, device=device) for _ in range(3))
         self.measured = self._measured_contacts(contact_slots)
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.self_contact = SelfContact(
@@ -113,21 +115,24 @@ class WallSolver:
         measured.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
         return measured
 
-    def _space(
+    def _rings(
         self, walls: Sequence[WallParameters], modes: Sequence[RingModes], patient: wp.array
-    ) -> coarse_kernels.RingSpace:
-        space, device, ring = coarse_kernels.RingSpace(), self.device, walls[0].ring
-        space.patient = patient
-        space.ring = wp.array(ring, dtype=int, device=device)
-        space.members = wp.array(modes[0].members, dtype=int, device=device)
-        space.loose = patient_array([ring_mean(wall.anchor.loose, ring) for wall in walls], float, device)
-        space.slack = patient_array([ring_mean(wall.anchor.slack, ring) for wall in walls], float, device)
-        space.rest_center = patient_array([ring_mean(wall.points, ring) for wall in walls], wp.vec3, device)
-        types = {"basis": wp.vec3, "frame_weights": wp.vec2, "rest_frame": wp.mat33}
-        types |= dict.fromkeys(("stiffness", "coupling", "mass", "anchor"), Unknowns)
-        for name, dtype in types.items():
-            setattr(space, name, patient_array([getattr(one, name) for one in modes], dtype, device))
-        return space
+    ) -> tuple[Rings, coarse_kernels.RingLoads]:
+        rings, loads, device, ring = Rings(), coarse_kernels.RingLoads(), self.device, walls[0].ring
+        start, band = band_elements(self.elements.corners, ring)
+        rings.patient = patient
+        rings.ring = wp.array(ring, dtype=int, device=device)
+        rings.plane = patient_array([one.plane for one in modes], wp.vec2, device)
+        rings.bending = patient_array([one.bending for one in modes], wp.mat33, device)
+        rings.moves = patient_array([one.moves.astype(np.int32) for one in modes], int, device)
+        rings.band_start, rings.band = (wp.array(one, dtype=int, device=device) for one in (start, band))
+        loads.members = wp.array(modes[0].members, dtype=int, device=device)
+        loads.mass = patient_array([one.mass for one in modes], wp.mat33, device)
+        loads.anchor = patient_array([one.anchor for one in modes], wp.mat33, device)
+        loads.loose = patient_array([ring_mean(wall.anchor.loose, ring) for wall in walls], float, device)
+        loads.slack = patient_array([ring_mean(wall.anchor.slack, ring) for wall in walls], float, device)
+        loads.rest_center = patient_array([ring_mean(wall.points, ring) for wall in walls], wp.vec3, device)
+        return rings, loads
 
     def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
         """Advance the wall by one physics step, in place.
@@ -209,24 +214,21 @@ class WallSolver:
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
-        rings, system = (self.ring_count, self.num_envs), self.ring_system
-        self._launch(
-            coarse_kernels.ring_rotations, rings, [x, self.space], [self.rotation, self.shift, self.distortion]
-        )
-        inputs = [self.force, self.space, self.rotation, self.shift, self.tissue, 1.0 / self.dt**2, REGULARISATION]
+        system, rings, tissue = self.ring_system, self.rings, self.tissue
+        inputs, outputs = [x, rings, self.loads], [self.axes, self.shift]
+        self._launch(coarse_kernels.place_rings, self.shift.shape, inputs, outputs)
+        inputs = [x, self.elements.data, rings, self.axes, tissue]
+        shape = (self.ring_count - 1, self.num_envs)
+        self._launch(self.elements.measure_bands, shape, inputs, [self.own, self.behind, self.coupling])
+        inputs = [self.force, rings, self.loads, self.own, self.behind, self.shift, tissue, 1.0 / self.dt**2]
         self._launch(
             coarse_kernels.assemble,
             (self.ring_count, self.num_envs, MODES),
-            [*inputs, contacts.records, self.measured, contacts.self_contact],
+            [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact, self.coupling],
             [system.diagonal, system.upper, system.rhs],
         )
         system.solve()
-        self._launch(
-            coarse_kernels.prolong,
-            x.shape,
-            [self.space, self.rotation, self.distortion, system.rhs, self.cfg.largest_move],
-            [x],
-        )
+        self._launch(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small-strain stiffness of a shell's triangles and hinges, in numpy."""
+"""Small-strain stiffness of a shell's triangles and hinges and of tets, in numpy, to compare kernels with."""
 
 from __future__ import annotations
 
@@ -45,7 +45,16 @@ def bending_stiffness(points: np.ndarray, geometry: ShellGeometry, nu: float) ->
     return np.einsum("hk,hai,hkbj->hkaibj", stiffness, g, g[geometry.coupled])
 
 
-def bending_bound(points: np.ndarray, geometry: ShellGeometry) -> np.ndarray:
-    """Stiffness that is nowhere below that of the bending, hinge by hinge, shape (H, 4, 3, 4, 3)."""
-    g = fold_gradients(points, geometry.hinges)
-    return np.einsum("h,hai,hbj->haibj", geometry.bound, g, g)
+def tet_stiffness(points: np.ndarray, tets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the stiffness for unit shear modulus and unit second Lamé parameter [N/m per Pa], each (T, 4, 3, 4, 3).
+
+    K_aibj = V (mu (g_a.g_b d_ij + g_aj g_bi) + lambda g_ai g_bj), g the shape gradients
+    (Hughes, The Finite Element Method, section 2.7). It is the stable neo-Hookean Hessian at rest.
+    """
+    edges = points[tets[:, 1:]] - points[tets[:, :1]]
+    inverse = np.linalg.inv(edges)
+    gradient = np.concatenate([-inverse.sum(axis=2)[:, None], inverse.transpose(0, 2, 1)], axis=1)
+    volume = (np.abs(np.linalg.det(edges)) / 6.0)[:, None, None, None, None]
+    shear = np.einsum("tak,tbk,ij->taibj", gradient, gradient, np.eye(3))
+    shear += np.einsum("taj,tbi->taibj", gradient, gradient)
+    return volume * shear, volume * np.einsum("tai,tbj->taibj", gradient, gradient)
