@@ -61,7 +61,7 @@ def expert_reach(path: Path, robots: Sequence[str], max_time: float) -> Iterator
             InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=configs[robot]), SimulationCfg()
         )
         drive = Drive(scene, max_time=max_time)
-        drive.run(list(drive.bounds)[-1])
+        drive.run(list(drive.bounds)[-1], settled=False)
         segment = max(drive.states, key=lambda name: drive.bounds[name][0])
         length = max(end for _, end in drive.bounds.values())
         seconds = time.perf_counter() - began

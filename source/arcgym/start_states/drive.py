@@ -81,12 +81,13 @@ class Drive:
         """Why the drive ended early in the first patient, and what held it; empty while it has not."""
         return self.routes[0].failure
 
-    def run(self, until: str, report: Callable[[Drive], None] = lambda drive: None) -> bool:
+    def run(self, until: str, report: Callable[[Drive], None] = lambda drive: None, *, settled: bool = True) -> bool:
         """Drive until the start state of a segment is there in all patients, or nothing gets on.
 
         Args:
             until: The segment; in a patient without it the last one.
             report: Called after every control step.
+            settled: Whether to let the states settle, which takes time; else they are as the drive passed.
 
         Returns:
             Whether it arrived in all; otherwise :attr:`Route.problem` says why not.
@@ -99,7 +100,8 @@ class Drive:
             while any(route.running for route in self.routes):
                 self._step()
                 report(self)
-            self._settle()
+            if settled:
+                self._settle()
         return all(route.until in route.entries for route in self.routes)
 
     def snapshots(self, about: dict[str, object], patient: int = 0) -> SnapshotSet:

@@ -83,7 +83,7 @@ def attempt(
         if round(drive.time / CONTROL_STEP) % 100 == 0:
             tell(_progress(drive, time.monotonic() - began))
 
-    drive.run("cecum", report)
+    drive.run("cecum", report, settled=plan.keep_states)
     if plan.keep_states:
         _keep(scene, drive)
 
