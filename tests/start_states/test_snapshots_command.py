@@ -60,7 +60,10 @@ def test_every_patient_of_a_list_has_its_states_made(tube: str, tmp_path: Path, 
     with pytest.raises(SystemExit):
         main([*TASK, folder, "--until", "sigmoid", "--speed", "0.06"])
     error = capsys.readouterr().err
-    assert "patient 2 of 2" in error and "does not arrive in 1 of 2 patients" in error
-    assert "short/colon.usda" in error.splitlines()[-1] and "whole/colon.usda" not in error.splitlines()[-1]
+    assert "patients 1 to 2 of 2: 1 without start states" in error and "does not arrive in 1 of 2 patients" in error
+    assert f"{tmp_path}/short/colon.usda: there is no segment 'sigmoid'" in error.splitlines()
     made = list((tmp_path / "cache" / "start_states").rglob("*.npz"))
     assert [path.parent.name for path in made] == ["whole"]
+    with pytest.raises(SystemExit):
+        main([*TASK, folder, "--until", "sigmoid"])
+    assert "patients 1 to 2 of 2: 0 without start states" in capsys.readouterr().err

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from arcgym.cli.arguments import add_fields, argument, read_fields
@@ -26,7 +27,7 @@ class SnapshotArguments:
     task: str = argument("task name; 'arcgym list' names them")
     until: str | None = argument("last segment to enter (default: the task's)", None)
     speed: float = argument("speed of the expert [m/s] (default: 0.04)", 0.04, type=float)
-    max_time: float = argument("simulated time after which to give up [s] (default: 180)", 180.0, type=float)
+    max_time: float = argument("simulated time after which to give up [s] (default: 240)", 240.0, type=float)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
     force: bool = argument("make them anew though they are there", False)
     beside_colon: bool = argument("write them beside the colon's stage instead of into the cache", False)
@@ -54,43 +55,37 @@ def run(namespace: argparse.Namespace) -> None:
     _make_all(args, cfg, _stages(cfg.scene.colon))
 
 
-def _stages(colon: Any) -> list[str]:
+def _stages(colon: Any) -> list[Path]:
     """Return the stages of the patients that a configuration names."""
     from arcgym.assets.patient_files import find_stages
 
     try:
-        return list(map(str, find_stages(colon.usd_path, colon.num_patients)))
+        return find_stages(colon.usd_path, colon.num_patients)
     except (ValueError, OSError) as error:
         raise UsageError(str(error)) from error
 
 
-def _make_all(args: SnapshotArguments, cfg: Any, stages: list[str]) -> None:
+def _make_all(args: SnapshotArguments, cfg: Any, stages: list[Path]) -> None:
     """Make the states of every patient; where the expert does not arrive, the others are made all the same.
 
     Raises:
         UsageError: If the expert does not arrive in some patients; names them.
     """
-    from arcgym.start_states import StartStateError
-    from arcgym.start_states.ahead import make_ahead
+    from arcgym.start_states.ahead import make_ahead, make_all_ahead
     from arcgym.start_states.progress import say
 
-    until, failures = args.until or cfg.segment, []
-    for number, stage in enumerate(stages):
-        cfg.scene.colon.usd_path, cfg.scene.colon.num_patients = stage, None
-        if len(stages) > 1:
-            say(f"patient {number + 1} of {len(stages)}: {stage}")
-        try:
-            options = {"force": args.force, "beside_colon": args.beside_colon}
-            make_ahead(cfg.scene, cfg.sim, until, args.speed, args.max_time, **options)
-        except StartStateError as error:
-            if len(stages) == 1:
-                raise
-            say(str(error))
-            failures.append(stage)
+    until = args.until or cfg.segment
+    if len(stages) > 1 and args.beside_colon:
+        raise UsageError(f"--beside_colon writes the states of one colon, but there are {len(stages)}")
+    if len(stages) == 1:
+        options = {"force": args.force, "beside_colon": args.beside_colon}
+        make_ahead(cfg.scene, cfg.sim, until, args.speed, args.max_time, **options)
+        return
+    failures = make_all_ahead(cfg.scene, cfg.sim, stages, until, args.speed, args.max_time, force=args.force)
+    for failure in failures:
+        say(failure)
     if failures:
-        raise UsageError(
-            f"the expert does not arrive in {len(failures)} of {len(stages)} patients: {', '.join(failures)}"
-        )
+        raise UsageError(f"the expert does not arrive in {len(failures)} of {len(stages)} patients")
 
 
 def _env_cfg(args: SnapshotArguments) -> Any:
