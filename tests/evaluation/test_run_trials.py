@@ -41,6 +41,12 @@ def test_rows_do_not_depend_on_the_number_of_worlds(tmp_path: Path, conditions: 
     assert evaluate(tmp_path / "four", conditions, "--num_envs", "4") == one
 
 
+def test_the_experts_rows_do_not_depend_on_the_number_of_worlds(tmp_path: Path, conditions: Path) -> None:
+    one = evaluate(tmp_path / "one", conditions, "--num_envs", "1", "--agent", "expert")
+    assert len({row["reward"] for row in one}) == 5
+    assert evaluate(tmp_path / "three", conditions, "--num_envs", "3", "--agent", "expert") == one
+
+
 def test_rows_do_not_depend_on_the_company_of_patients(tmp_path: Path, tiny_colon_path: Path) -> None:
     """Three patients with two trials each: all in six worlds, in two worlds that change patients, and each alone."""
     stages = [str(tiny_colon_path)]

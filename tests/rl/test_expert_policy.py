@@ -60,3 +60,14 @@ def test_pushed_scope_gets_on(pushed) -> None:
     for _ in range(12):
         pushed.step(policy())
     assert pushed.scene["endoscope"].data.tip_arc_length - start > 0.03
+
+
+def test_experts_draw_from_the_episodes_random_numbers(pushed) -> None:
+    """What an expert draws follows from the episode's seed and the step, not from what was drawn before."""
+    expert = ExpertPolicy(pushed).expert
+    first = expert.normal("side", 3)
+    torch.manual_seed(0)
+    assert torch.equal(expert.normal("side", 3), first) and first.shape == (1, 3)
+    pushed.random.advance()
+    assert not torch.equal(expert.normal("side", 3), first)
+    assert 0.0 <= float(expert.uniform("turn")) < 1.0

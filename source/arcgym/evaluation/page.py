@@ -26,6 +26,9 @@ td:first-child,th:first-child{text-align:left}img{max-width:100%}.scroll{overflo
 DISTRIBUTIONS = ("progress", "seconds", "p95_tip_force", "p95_shaft_force")
 """Figures whose distribution over the trials is drawn, if the rows have them."""
 
+EMBEDDED = 6_000_000
+"""Size up to which a film is put into the page [bytes]."""
+
 LABELS = {"seconds": "time [s]", "p95_tip_force": "p95 tip force [N]", "p95_shaft_force": "p95 shaft force [N]"}
 """Labels of their axes with units; others are without one."""
 
@@ -60,7 +63,10 @@ def write_page(folder: Path) -> Path:
 
 
 def _films(folder: Path, rows: Sequence[Row]) -> str:
-    """Return the films of each task's best, median and worst trial, as far as they were made."""
+    """Return the films of each task's best, median and worst trial, as far as they were made.
+
+    Those that are larger than :data:`EMBEDDED` stay files beside the page.
+    """
     parts = []
     for task in sorted({row["task"] for row in rows}):
         for label, row in chosen_rows([row for row in rows if row["task"] == task]).items():
@@ -68,7 +74,9 @@ def _films(folder: Path, rows: Sequence[Row]) -> str:
             if path.is_file():
                 end = f"{row['end']} after {row['seconds']:.1f} s"
                 caption = html.escape(f"{task}: {label}, trial {row['trial']}, {end}")
-                source = f"data:video/mp4;base64,{base64.b64encode(path.read_bytes()).decode()}"
+                source = html.escape(str(path.relative_to(folder)))
+                if path.stat().st_size <= EMBEDDED:
+                    source = f"data:video/mp4;base64,{base64.b64encode(path.read_bytes()).decode()}"
                 parts.append(
                     f"<figure><video controls src={source}></video><figcaption>{caption}</figcaption></figure>"
                 )

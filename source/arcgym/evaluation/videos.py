@@ -14,6 +14,9 @@ from arcgym.evaluation.trials import Conditions
 from arcgym.evaluation.video_choice import chosen_rows, video_path
 from arcgym.viewers import VideoRecorder
 
+QUALITY = 4.0
+"""Quality of the films, 0 to 10: low enough for pages that hold a dozen."""
+
 
 def film(conditions: Conditions, load_cfgs: LoadCfgs, options: EvaluationOptions, folder: ResultFolder) -> list[Path]:
     """Run the best, the median and the worst trial of each task again, film them, and return the new files.
@@ -45,7 +48,7 @@ def _film(row: Row, trial: Any, path: Path, load_cfgs: LoadCfgs, options: Evalua
     cfgs = load_cfgs(row["task"], checkpoint_of(agent))
     with opened(row["task"], agent, [trial], cfgs, options) as (env, make_policy):
         world = env.unwrapped
-        with VideoRecorder(partial, round(1.0 / world.step_dt)) as video:
+        with VideoRecorder(partial, round(1.0 / world.step_dt), quality=QUALITY) as video:
             run_trials(env, make_policy, [trial], again.append, on_step=lambda: video.write(world.render_world(0)))
     partial.replace(path)
     other = [name for name, value in again[0].items() if row.get(name) != value]
