@@ -99,6 +99,19 @@ def test_randomization_stays_in_its_bounds(env, name, entity, command, shape, bo
     assert bool((value >= bounds[0]).all()) and bool((value <= bounds[1]).all())
 
 
+@pytest.mark.parametrize(
+    ("name", "entity", "command", "bounds"),
+    [
+        ("randomize_light", "camera", "light", {"gain": (2.0, 2.0)}),
+        ("randomize_tissue_stiffness", "colon", "stiffness", {"scale": (2.0, 2.0)}),
+        ("randomize_friction", "endoscope", "friction", {"friction": (2.0, 2.0)}),
+    ],
+)
+def test_what_is_drawn_may_be_multiplied(env, name, entity, command, bounds) -> None:
+    getattr(mdp, name)(env, torch.tensor([0]), **bounds, factor=1.5)
+    assert float(env.scene[entity].commands[command][0]) == pytest.approx(3.0)
+
+
 def test_log_uniform_has_its_median_at_the_geometric_mean(many) -> None:
     mdp.randomize_tissue_stiffness(many, torch.arange(2001), scale=(0.25, 4.0))
     value, _ = many.scene["colon"].commands["stiffness"]
@@ -114,7 +127,7 @@ def test_tissue_is_one_of_the_presets_in_each_world(many) -> None:
 def test_anchors_are_one_of_the_scales_in_each_world(many) -> None:
     mdp.randomize_anchors(many, torch.arange(200))
     value, _ = many.scene["colon"].commands["anchors"]
-    assert set(value.tolist()) == {0.25, 1.0, 4.0}
+    assert set(value.tolist()) == {0.5, 1.0, 1.75}
 
 
 @pytest.mark.parametrize("probability", [0.0, 1.0])

@@ -47,7 +47,7 @@ VARIANTS = tuple(f"{kind}_{strength}" for kind in KINDS for strength in (1, 2, 3
 
 
 def make_harder(cfg: Any, variant: str) -> None:
-    """Change a navigation task's configuration into a variant.
+    """Change a navigation task's configuration into a variant; done again, it changes nothing more.
 
     Args:
         cfg: :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg`.
@@ -86,13 +86,12 @@ def _policy_picture(cfg: Any, variant: str) -> Any:
 
 
 def _multiply(cfg: Any, name: str, func: Any, param: str, factor: float, neutral: float) -> None:
-    """Multiply both bounds that an event draws from; where the event is off, it gets one value."""
+    """Multiply what an event draws; where the event is off, it gives one value."""
     event = getattr(cfg.events, name, None)
     if event is None:
         event = EventTermCfg(func=func, mode="reset", params={param: (neutral, neutral)})
         setattr(cfg.events, name, event)
-    low, high = event.params[param]
-    event.params = {**event.params, param: (factor * low, factor * high)}
+    event.params = {**event.params, "factor": factor}
 
 
 def _narrower(usd_path: str | list[str], factor: float) -> str | list[str]:
@@ -108,5 +107,5 @@ def _narrower(usd_path: str | list[str], factor: float) -> str | list[str]:
                 f"env.robustness=collapsed_... makes patients of the population anew with less gas; {name} is a stage. "
                 "Choose env.scene.colon.usd_path=population:20000, or leave the variant out."
             )
-    changed = [f"{name}*{factor:g}" for name in names]
+    changed = [f"{name.partition('*')[0]}*{factor:g}" for name in names]
     return changed[0] if isinstance(usd_path, str) else changed

@@ -116,14 +116,17 @@ def perturb_tip(env: ManagerBasedEnv, env_ids: torch.Tensor, std: float = 0.1) -
     env.scene["endoscope"].turn_tip_target(angle, env_ids)
 
 
-@expects(gain=POSITIVE)
-def randomize_light(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[float, float] = (0.7, 1.4)) -> None:
+@expects(gain=POSITIVE, factor=POSITIVE)
+def randomize_light(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[float, float] = (0.7, 1.4), factor: float = 1.0
+) -> None:
     """Scale the brightness that the automatic exposure aims at by a log-uniform factor.
 
     Args:
         gain: Smallest and largest factor.
+        factor: Factor on what is drawn.
     """
-    env.scene["camera"].write_light_gain(_log_uniform(env, "light", env_ids, gain), env_ids)
+    env.scene["camera"].write_light_gain(factor * _log_uniform(env, "light", env_ids, gain), env_ids)
 
 
 @expects(gain=POSITIVE)
@@ -141,16 +144,17 @@ def randomize_texture(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
     env.scene["camera"].write_texture_offset(env.random.uniform("texture", 2, env_ids=env_ids), env_ids)
 
 
-@expects(scale=POSITIVE)
+@expects(scale=POSITIVE, factor=POSITIVE)
 def randomize_tissue_stiffness(
-    env: ManagerBasedEnv, env_ids: torch.Tensor, scale: tuple[float, float] = (0.5, 2.0)
+    env: ManagerBasedEnv, env_ids: torch.Tensor, scale: tuple[float, float] = (0.5, 2.0), factor: float = 1.0
 ) -> None:
     """Scale Young's modulus of the wall by a log-uniform factor.
 
     Args:
         scale: Smallest and largest factor.
+        factor: Factor on what is drawn.
     """
-    env.scene["colon"].write_stiffness_scale_to_sim(_log_uniform(env, "stiffness", env_ids, scale), env_ids)
+    env.scene["colon"].write_stiffness_scale_to_sim(factor * _log_uniform(env, "stiffness", env_ids, scale), env_ids)
 
 
 @expects(presets=TISSUE_PRESETS)
@@ -195,16 +199,17 @@ def randomize_rigidity(env: ManagerBasedEnv, env_ids: torch.Tensor, probability:
     env.scene["colon"].write_rigid_to_sim(rigid, env_ids)
 
 
-@expects(friction=POSITIVE)
+@expects(friction=POSITIVE, factor=POSITIVE)
 def randomize_friction(
-    env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.05, 0.2)
+    env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.05, 0.2), factor: float = 1.0
 ) -> None:
     """Set the friction coefficient between scope and wall, log-uniform.
 
     Args:
         friction: Smallest and largest coefficient.
+        factor: Factor on what is drawn.
     """
-    env.scene["endoscope"].write_friction_to_sim(_log_uniform(env, "friction", env_ids, friction), env_ids)
+    env.scene["endoscope"].write_friction_to_sim(factor * _log_uniform(env, "friction", env_ids, friction), env_ids)
 
 
 def _choice(env: ManagerBasedEnv, tag: str, env_ids: torch.Tensor, values: Sequence[object]) -> torch.Tensor:
