@@ -122,6 +122,11 @@ def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) ->
     run = {**RUN, "suite": "robustness", "conditions_sha256": read_conditions(suite.conditions_path).sha256}
     folder = ResultFolder(tmp_path / "a", {**run, "changes": changes})
     assert not [line for line in problems(folder.path) if "changes the task" in line]
+    rigid = read_suites()["rigid"]
+    run_rigid = {**RUN, "suite": "rigid", "conditions_sha256": read_conditions(rigid.conditions_path).sha256}
+    of_rigid = {"ARC-Sigmoid-Magnetic:rigid": {"scene.colon.rigid": [False, True]}}
+    folder = ResultFolder(tmp_path / "c", {**run_rigid, "changes": of_rigid})
+    assert not [line for line in problems(folder.path) if "changes the task" in line]
     changes[task]["robustness"][1] = "none"
     other = ResultFolder(tmp_path / "b", {**run, "changes": changes})
     assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]

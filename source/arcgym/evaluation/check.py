@@ -66,7 +66,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
         asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
         allowed = {path: value for path, _, value in asked}
         for path in changes:
-            if path.startswith(TASK_FIELDS) and str(changes[path][1]) != allowed.get(path):
+            if path.startswith(TASK_FIELDS) and str(changes[path][1]).lower() != allowed.get(path, "").lower():
                 found.append(
                     f"{task} was run with {path} = {changes[path][1]}, which changes the task ({changes[path][0]})"
                 )
