@@ -36,3 +36,9 @@ def test_a_reset_forgets_one_world() -> None:
     assert backing.tolist() == [True, True]
     retreat.reset(torch.tensor([0]))
     assert retreat.update(torch.tensor([0.1, 0.1]))[0].tolist() == [False, True]
+
+
+def test_every_world_has_its_own_patience() -> None:
+    retreat = Retreat(2, "cpu", patience=torch.tensor([1.0, 3.0]), first=1, longest=1)
+    seen = [retreat.update(torch.tensor([0.1, 0.1]))[0].tolist() for _ in range(5)]
+    assert seen == [[False, False], [False, False], [True, False], [False, False], [False, True]]

@@ -39,6 +39,8 @@ class PushExpert(ExpertBase):
         "largest": (1.5, LARGEST_BENDING),
         "jiggle": (0.0, 0.03),
         "twist": (0.0, 0.8),
+        "least_pace": (0.15, 0.8),
+        "patience": (25.0, 120.0),
     }
 
     PERIOD = 40
@@ -52,6 +54,8 @@ class PushExpert(ExpertBase):
         largest: float = LARGEST_BENDING,
         jiggle: float = 0.0,
         twist: float = 0.0,
+        least_pace: float = 0.4,
+        patience: float = 60.0,
     ):
         """Keep the settings; each may be one number or one a world.
 
@@ -63,16 +67,19 @@ class PushExpert(ExpertBase):
             largest: Largest bending commanded [rad].
             jiggle: Amplitude of a to and fro of the shaft while it is pushed [m/s].
             twist: Amplitude of turning the shaft to and fro [rad/s].
+            least_pace: Share of the speed at which it is pushed where the way is off to a side.
+            patience: Control steps without progress after which it withdraws: until then the push grows.
         """
         super().__init__(scene, speed)
         self.look, self.gain, self.largest = self.each(look), self.each(gain), self.each(largest)
         self.jiggle, self.twist = self.each(jiggle), self.each(twist)
+        self.least_pace, self.patience = self.each(least_pace), self.each(patience)
         self.bending = torch.zeros(scene.num_envs, 2, device=scene.device)
         """Commanded pitch and yaw [rad], shape (N, 2)."""
         self.velocity = torch.zeros(scene.num_envs, device=scene.device)
         """Commanded insertion [m/s], shape (N,)."""
         self._way = LumenWay(scene)
-        self._retreat = Retreat(scene.num_envs, scene.device, patience=25, first=10, longest=60)
+        self._retreat = Retreat(scene.num_envs, scene.device, patience=self.patience, first=10, longest=60)
         self._turn = torch.zeros_like(self.velocity)
         self._steps = torch.zeros_like(self.velocity)
 
@@ -83,7 +90,7 @@ class PushExpert(ExpertBase):
         self._turn = torch.where(begins, 1.2 * self.uniform("turn") - 0.6, self._turn)
         self._steps += 1.0
         angle = self._bend(torch.where(backs, 0.5, 1.0))
-        pace = torch.where(angle < 0.5, 1.0, torch.where(angle < 1.0, 0.5, 0.15))
+        pace = torch.maximum(torch.where(angle < 0.5, 1.0, torch.where(angle < 1.0, 0.5, 0.15)), self.least_pace)
         wanted = torch.where(backs, -self.speed, self.speed * pace)
         self.velocity += (wanted - self.velocity).clamp(-0.03, 0.03)
         jiggle = torch.where(backs, 0.0, self.jiggle) * (2.0 * math.pi / JIGGLE_PERIOD * self._steps).sin()

@@ -15,13 +15,13 @@ NEAR_ANUS = 0.03
 class Retreat:
     """Counts the control steps without progress; each further attempt backs off longer."""
 
-    def __init__(self, num_envs: int, device: str, patience: int, first: int, longest: int):
+    def __init__(self, num_envs: int, device: str, patience: float | torch.Tensor, first: int, longest: int):
         """Start anew.
 
         Args:
             num_envs: Number of worlds N.
             device: Device of the tensors.
-            patience: Control steps without progress after which a tip backs off.
+            patience: Control steps without progress after which a tip backs off, one number or one a world.
             first: Control steps for which it first does.
             longest: Control steps for which it does at most.
         """

@@ -33,7 +33,7 @@ class Drive:
         self,
         scene: InteractiveScene,
         speed: float = 0.04,
-        patience: float = 20.0,
+        patience: float = 30.0,
         max_time: float = 180.0,
         seed: int = 0,
     ):
