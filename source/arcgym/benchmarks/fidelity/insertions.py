@@ -33,9 +33,8 @@ PAST = 0.05
 MARGIN = 0.15
 """Length of colon beyond the sigmoid that moves [m]; the rest would only cost time."""
 FINE_SWEEPS = 2
-"""Sweeps a step of the finer wall. With one, as shipped, it trembles in ``paper`` by 0.2 m/s with no scope near: the
-ring correction leaves out bending along the colon, which grows with the cube of the rings' number. The shipped wall is
-calm."""
+"""Sweeps a step of the finer wall. With one, as shipped, it trembles in ``paper`` by 0.04 m/s with no scope near; the
+shipped wall is calm."""
 LONGEST = 60.0
 """Simulated time after which an insertion ends that has not come through [s]."""
 HIGH = 5.0
