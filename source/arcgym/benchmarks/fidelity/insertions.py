@@ -41,8 +41,8 @@ HIGH = 5.0
 """Force of which the time above it is counted [N]."""
 SPECS = {"magnetic": magnetic_spec, "proximal": proximal_spec}
 """Robots."""
-STEERING: dict[str, dict[str, float]] = {"magnetic": {}, "proximal": {}}
-"""Settings of their experts."""
+STEERING: dict[str, dict[str, float]] = {"magnetic": {}, "proximal": {"patience": 25.0, "least_pace": 0.15}}
+"""Settings of their experts, those that the rows were measured with."""
 SETTINGS = {
     "contact_double": "contact stiffness times 2",
     "contact_half": "contact stiffness over 2",

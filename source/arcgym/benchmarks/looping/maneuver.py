@@ -28,6 +28,8 @@ WITHDRAWAL = {"speed": 0.03, "time": 9.0, "hook": 1.5}
 """Speed [m/s] and duration [s] of the withdrawal, and the bending that hooks the tip [rad]."""
 ROLLS = {"clockwise": 0.6, "none": 0.0, "anticlockwise": -0.6}
 """Roll rates while withdrawing [rad/s]."""
+STEERING = {"patience": 25.0, "least_pace": 0.15}
+"""Settings of the expert that the measured curves are of."""
 Row = dict[str, float]
 """Figures of one control step."""
 
@@ -65,7 +67,7 @@ def back_to_kept(scene: InteractiveScene) -> None:
 
 def push(scene: InteractiveScene, max_time: float) -> Iterator[Row]:
     """Drive the tip past the sigmoid colon; one row a control step."""
-    expert = PushExpert(scene)
+    expert = PushExpert(scene, **STEERING)
     end = scene["colon"].stage.segment_bounds()["descending"][0] + PAST_SIGMOID
     for step in range(int(10.0 * max_time)):
         expert.act()
@@ -76,7 +78,7 @@ def push(scene: InteractiveScene, max_time: float) -> Iterator[Row]:
 
 def push_on(scene: InteractiveScene, roll_rate: float) -> Iterator[Row]:
     """Push on while rolling; one row a control step."""
-    expert, endoscope = PushExpert(scene), scene["endoscope"]
+    expert, endoscope = PushExpert(scene, **STEERING), scene["endoscope"]
     expert.bending += endoscope.data.bending
     for step in range(int(10.0 * LOOPING["time"])):
         expert.act()

@@ -12,7 +12,7 @@ import numpy as np
 import torch
 
 from arcgym.benchmarks.fidelity.brute_force import sample_contacts
-from arcgym.benchmarks.fidelity.insertions import CONTROL_STEP, LONGEST, SPEED, Insertion, build_scene
+from arcgym.benchmarks.fidelity.insertions import CONTROL_STEP, LONGEST, SPEED, STEERING, Insertion, build_scene
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, absolute
 
 EVERY = 3
@@ -85,7 +85,7 @@ def commands(scene: Any) -> Iterator[None]:
     from arcgym.experts import make_expert
 
     scope = scene.endoscope
-    expert = make_expert(scene, speed=SPEED)
+    expert = make_expert(scene, speed=SPEED, **STEERING["proximal"])
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
     for _ in range(round(LONGEST / CONTROL_STEP)):
         expert.act()
