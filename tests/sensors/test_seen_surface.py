@@ -4,12 +4,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import torch
 import warp as wp
+from tiny import tiny_colon_stage
 from tube_scene import FORWARD, TubeScene
 
 from arcgym.envs import mdp
@@ -50,6 +52,16 @@ def test_patches_of_tint_are_polyps(scene) -> None:
     visual = scene["colon"].patients[0].visual
     polyps = vertex_polyps(visual)
     assert set(polyps[visual.points[:, 2] < 0.1]) == {-1, 0} and set(polyps[visual.points[:, 2] > 0.25]) == {-1, 1}
+
+
+def test_a_polyp_on_the_seam_is_one(tmp_path) -> None:
+    """In the tiny colon the first and the last column of vertices lie in the same places."""
+    visual = tiny_colon_stage(texture_folder=tmp_path).visual_proxy
+    around = np.arctan2(visual.points[:, 1], visual.points[:, 0])
+    on_seam = (np.abs(visual.points[:, 2] - 0.1) < 0.013) & (np.abs(around) < 0.5)
+    polyps = vertex_polyps(dataclasses.replace(visual, tint=on_seam.astype(np.float32)))
+    assert set(polyps[on_seam]) == {0} and set(polyps[~on_seam]) == {-1}
+    assert len(np.unique(np.round(visual.points[on_seam], 6), axis=0)) < on_seam.sum()
 
 
 def test_coverage_is_the_area_between_the_edge_of_the_picture_and_the_reach(scene) -> None:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 PARTS = 1_000_000_000
 """Parts in which shares of the mucosa are counted."""
 
+SEAM = 1.0e-5
+"""Distance below which vertices are the same place of the surface [m]."""
+
 
 class SeenSurface:
     """Marks, vertex by vertex of the policy camera's surface, what its pictures have shown since the worlds' resets.
@@ -105,15 +108,17 @@ def vertex_shares(visual: VisualMesh) -> np.ndarray:
 def vertex_polyps(visual: VisualMesh) -> np.ndarray:
     """Return the number of the polyp that each vertex is of, -1 for none, shape (M,), int32.
 
-    A polyp is a connected patch of vertices whose tint marks lesions. They are numbered by their first vertex.
+    A polyp is a connected patch of vertices whose tint marks lesions, also across the seam of the texture, where two
+    vertices lie in one place. They are numbered by their place on the surface.
     """
+    _, place = np.unique(np.round(visual.points / SEAM), axis=0, return_inverse=True)
     marked = visual.tint > LESION_TINT
     corners = visual.faces[marked[visual.faces].all(axis=1)]
-    edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]]])
-    count = len(visual.points)
+    edges = place.ravel()[np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]]])]
+    count = int(place.max()) + 1
     graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(count, count))
     _, patch = connected_components(graph, directed=False)
-    in_patch = np.isin(np.arange(count), corners)
-    polyps = np.full(count, -1, np.int32)
-    _, polyps[in_patch] = np.unique(patch[in_patch], return_inverse=True)
+    in_patch = np.isin(place.ravel(), edges)
+    polyps = np.full(len(visual.points), -1, np.int32)
+    _, polyps[in_patch] = np.unique(patch[place.ravel()][in_patch], return_inverse=True)
     return polyps
