@@ -133,7 +133,7 @@ def test_detail_is_refined_and_shaped(surface: TriangleSurface, curve: Curve) ->
 
 def test_wall_narrower_than_a_head_is_widened() -> None:
     """Rings of 5 mm radius become 7.5 mm; the outer layer stays 2 mm away, the last ring's goes on along the tube."""
-    angle = np.arange(12) * np.pi / 6
+    angle = -np.arange(12) * np.pi / 6  # right-handed about +Y
     ring = np.stack([0.005 * np.cos(angle), 0 * angle, 0.005 * np.sin(angle)], 1)
     inner = ring + np.arange(10)[:, None, None] * [0, 0.010, 0]
     layers = np.stack([inner, inner + 0.002 * ring / 0.005])

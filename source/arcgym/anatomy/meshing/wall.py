@@ -60,7 +60,8 @@ def build_wall(layers: np.ndarray, ring_segment: np.ndarray, ring_arc: np.ndarra
     """Build the wall from the rest positions of its vertex layers.
 
     Args:
-        layers: Positions of layer, ring and sector [m], shape (2, R, S, 3), the lumen side first.
+        layers: Positions of layer, ring and sector [m], shape (2, R, S, 3), the lumen side first. Sectors run
+            right-handed about the direction of the rings; otherwise all elements are inverted.
         ring_segment: Segment index of each ring, shape (R,).
         ring_arc: Arc length of each ring [m], shape (R,).
         capped: Closes the last ring with a wall.
