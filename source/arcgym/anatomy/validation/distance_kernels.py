@@ -9,12 +9,16 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(10.0)
 """Distance beyond which nothing is looked for [m]."""
+INSIDE = wp.constant(0.3)
+"""Winding number from which a point is inside: in the plane of the open anus it is a half."""
+ACCURACY = wp.constant(2.0)
+"""Accuracy of the winding number, as Warp's own."""
 
 
 @wp.kernel
 def signed_distances(mesh: wp.uint64, points: wp.array[wp.vec3], out: wp.array[float]):
     """Distance of each point to the mesh, positive inside by the winding number [m]. Launch (n,)."""
     i = wp.tid()
-    found = wp.mesh_query_point_sign_winding_number(mesh, points[i], FAR)
+    found = wp.mesh_query_point_sign_winding_number(mesh, points[i], FAR, ACCURACY, INSIDE)
     nearest = wp.mesh_eval_position(mesh, found.face, found.u, found.v)
     out[i] = -found.sign * wp.length(nearest - points[i])
