@@ -23,14 +23,14 @@ def test_a_route_ends_without_progress_or_time() -> None:
 
 def test_the_table_has_shares_medians_and_high_figures(tmp_path: Path) -> None:
     rows = []
-    for patient, time, problem in (("a", 10.0, ""), ("b", 30.0, "no progress in 20 s")):
+    for patient, time, problem in (("a", 10.0, ""), ("b", 30.0, "no progress in 30 s")):
         route = Route({"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.4)}, arc=0.2, problem=problem, held_by="1 N")
         route.entries = {"rectum": Entry(0.0, 0.0, 0.0, 0.0), "sigmoid": Entry(time, 1.0, 2.0, 3.0)}
         rows.append({"patient": patient, "robot": "capsule", "tissue": "paper", **row_of(route)})
     lines = table(rows).splitlines()
     assert lines[2].startswith("| capsule | paper | sigmoid | 2 of 2 | 20 (29) | 1.0 (1.0) | 2.0 (2.0) |")
     assert "| descending | 0 of 2 | – |" in lines[3]
-    assert failures(rows) == "- b, capsule, paper: 0.20 of 0.40 m, in the sigmoid, no progress in 20 s; 1 N"
+    assert failures(rows) == "- b, capsule, paper: 0.20 of 0.40 m, in the sigmoid, no progress in 30 s; 1 N"
 
 
 def test_a_line_that_was_cut_off_is_left_out(tmp_path: Path) -> None:

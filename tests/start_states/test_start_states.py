@@ -107,7 +107,7 @@ def test_a_drive_that_does_not_arrive_keeps_what_it_passed(tiny: TinySim, cache:
             start_states.ensure(build(tiny, expert=HaltingExpert), "descending")
         message = str(error.value)
         assert "capsule_6.usda does not reach the descending" in message and "0.06 m far, into the sigmoid" in message
-        assert "no progress in 20 s" in message and "rectum, sigmoid can be used (env.segment=sigmoid)" in message
+        assert "no progress in 30 s" in message and "rectum, sigmoid can be used (env.segment=sigmoid)" in message
     assert made == ["descending"]
     assert start_states.ensure(build(tiny, expert=HaltingExpert), "sigmoid").names == ("rectum", "sigmoid")
 
