@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.anatomy.generator import stored_patients
-from arcgym.anatomy.generator.splits import read_splits
-from arcgym.anatomy.generator.stored_patients import population_stages, stage_of
+from arcgym.anatomy.generator.stored_patients import population_stages, stage_of, store_folder
 from arcgym.assets.patient_files import find_stages
 
 PYTHON = sys.executable
@@ -28,12 +27,16 @@ for seed in map(int, seeds):
 """
 
 
+def test_a_folder_is_of_one_version_and_one_grid() -> None:
+    assert store_folder().name == "generator_2_160x14"
+
+
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty cache, and a generator that writes its seed."""
     monkeypatch.setenv("ARCGYM_CACHE", str(tmp_path))
     use_worker(tmp_path, monkeypatch)
-    return tmp_path / "population" / f"generator_{read_splits().generator}"
+    return store_folder()
 
 
 def use_worker(folder: Path, monkeypatch: pytest.MonkeyPatch, bad: int = -1) -> None:

@@ -18,6 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from arcgym.anatomy.generator.splits import given_patients, read_splits, split_seeds
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.utils.paths import cache_dir
 from arcgym.utils.progress import report
 
@@ -47,12 +48,18 @@ def population_stages(split: str, count: int | None) -> list[Path]:
         )
     if count is not None and count > len(seeds):
         raise ValueError(f"ColonCfg.num_patients is {count}, but population:{split} has {len(seeds)} patients.")
-    folder = cache_dir() / "population" / f"generator_{read_splits().generator}"
+    folder = store_folder()
     stages = {seed: stage_of(folder, seed) for seed in seeds[:count]}
     missing = [seed for seed, stage in stages.items() if not stage.is_file()]
     if missing:
         _generate(folder, missing)
     return list(stages.values())
+
+
+def store_folder() -> Path:
+    """Return the folder of the patients that this version makes: of the generator's version and the wall's grid."""
+    grid = GridShape()
+    return cache_dir() / "population" / f"generator_{read_splits().generator}_{grid.rings}x{grid.sectors}"
 
 
 def stage_of(folder: Path, patient: int | str) -> Path:
