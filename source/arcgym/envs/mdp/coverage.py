@@ -67,7 +67,11 @@ class coverage_gain(_SeenTerm):
         fill_worlds(self._before, env_ids, 0.0)
 
     def __call__(self, env: ManagerBasedRLEnv, reach: float = REACH) -> torch.Tensor:
-        """Mark what the last picture shows; arguments as of :class:`coverage`."""
+        """Mark what the last picture shows.
+
+        Args:
+            reach: Distance up to which the surface counts as seen [m].
+        """
         now = _seen(env, reach).coverage
         gain = now - self._before
         self._before.copy_(now)
@@ -108,7 +112,12 @@ class polyp_time(_SeenTerm):
     """
 
     def __call__(self, env: ManagerBasedRLEnv, pixels: int = 9, reach: float = REACH) -> torch.Tensor:
-        """Count the polyps in the last picture; arguments as of :class:`polyps_seen`."""
+        """Count the polyps in the last picture.
+
+        Args:
+            pixels: Pixels of a polyp that make it seen.
+            reach: Distance up to which the surface counts as seen [m].
+        """
         visible = (_seen(env, reach).polyp_pixels >= pixels).sum(dim=1)
         return visible * env.step_dt / num_polyps(env, reach).clamp(min=1)
 
