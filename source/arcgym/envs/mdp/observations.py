@@ -160,7 +160,7 @@ def insertion_depth(env: ManagerBasedEnv, scale: float = 1.0) -> torch.Tensor:
 
 @expects(points=Range(1), spacing=POSITIVE, scale=POSITIVE)
 class shaft_shape(ManagerTermBase):
-    """Places along the shaft in the tip's frame over a scale, as a fiber or magnetic imaging gives them, shape (N, 3 K).
+    """Places along the shaft in the tip's frame over a scale, as a fiber or magnetic imaging gives, shape (N, 3 K).
 
     Each is the center of the link nearest to its distance from the front of the tip; beyond the base,
     that of the base. A capsule's are all its own center.
