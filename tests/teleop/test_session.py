@@ -11,7 +11,8 @@ import pytest
 from small_session import until
 
 from arcgym.cli.main import main
-from arcgym.managers import Episode, episode_paths
+from arcgym.managers import Episode, episode_paths, save_episode
+from arcgym.recordings.pieces import mark_steps
 from arcgym.teleop.session import HAND, Session
 from arcgym.utils.errors import UsageError
 
@@ -68,6 +69,33 @@ def test_undo_goes_back_completely_and_the_recording_replays(session) -> None:
     assert [(mark["name"], mark["step"]) for mark in episode.info["marks"]] == [("start", 0), ("bend", 12)]
     np.testing.assert_allclose(episode.data["actions"][12:, 0], 0.5)
     assert main(["replay", str(path), "--device", "cpu"]) == 0
+    assert mark_steps(episode) == [0, 12] and episode.data["marks/state/joint_q"].shape[0] == 2
+    assert main(["replay", str(path), "--device", "cpu", "--pieces"]) == 0
+
+
+def test_a_piece_that_was_not_recorded_so_shows(session, capsys) -> None:
+    drive(session, 3, 1.0, 0.0, 0.0, 0.0)
+    session.mark().result()
+    drive(session, 6, 1.0, 0.0, 0.0, 0.0)
+    episode = Episode.load(session.save().result())
+    episode.data["actions"][3:, 0] = 0.0
+    changed = save_episode(episode, session.out / "changed_000000.hdf5")
+    assert main(["replay", str(changed), "--device", "cpu", "--pieces"]) == 1
+    # 0.6 s at 50 mm/s are missing from the second piece alone
+    said = capsys.readouterr().out
+    assert "steps 0 to 3: the same, bit for bit" in said and "1 of 2 pieces the same" in said
+    del episode.data["marks/step"]
+    with pytest.raises(UsageError, match="no marks with complete states"):
+        mark_steps(episode)
+
+
+def test_a_reduced_session_records_and_replays(make_session) -> None:
+    reduced = make_session(reduced=True)
+    drive(reduced, 6, 1.0, 0.0, 0.3, 0.0)
+    assert reduced.frame.progress > 0.0 and not reduced.env.obs_buf
+    reduced.give("expert").result()
+    drive(reduced, 3, 0.0, 0.0, 0.0, 0.0)
+    assert main(["replay", str(reduced.save().result()), "--device", "cpu"]) == 0
 
 
 def test_what_follows_a_save_is_a_recording_of_its_own(session) -> None:

@@ -21,6 +21,8 @@ from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, r
 from arcgym.utils.errors import UsageError
 
 TAKES_OVERRIDES = True
+SIZE, REDUCED_SIZE = 320, 192
+"""Width and height of the endoscope's view, and of that of a reduced session [px]."""
 SCRIPTED = ("expert", "zero", "random")
 """Drivers without a checkpoint."""
 
@@ -34,11 +36,14 @@ class TeleopArguments(RunArguments):
     tissue: str | None = argument("preset of the tissue (default: the task's)", None)
     start: str | None = argument("where to begin (default: the task's)", None, choices=("segment", "rest"))
     out: str = argument("folder of the recordings (default: logs/teleop)", "logs/teleop")
+    reduced: bool = argument(
+        "faster: no observations, rewards and costs; a smaller view, a colon drawn once a second", False
+    )
     host: str = argument("address to listen at (default: 127.0.0.1, this machine alone)", "127.0.0.1", group="page")
     port: int = argument("port (default: 8080; 0 takes a free one)", 8080, type=whole(0), group="page")
     seconds: int | None = argument("measure: run by itself so long, say how fast, and close", None, type=positive)
-    size: int = argument(
-        "width and height of the endoscope's view [px] (default: 320)", 320, type=positive, group="page"
+    size: int | None = argument(
+        "width and height of the endoscope's view [px] (default: 320, reduced 192)", None, type=positive, group="page"
     )
 
 
@@ -59,6 +64,8 @@ def run(namespace: argparse.Namespace) -> None:
     check_installed("viser", "teleoperation", extra="teleop")
     if args.driver not in ("hand", "policy", *SCRIPTED):
         raise UsageError(f"--driver is '{args.driver}', expected hand, policy, {', '.join(SCRIPTED)}.")
+    if args.reduced and (args.driver == "policy" or args.checkpoint or args.load_run):
+        raise UsageError("--reduced leaves out what a policy sees: choose one of --reduced and a policy.")
     serve(args, steers=True)
 
 
@@ -97,6 +104,7 @@ def serve(args: Any, steers: bool) -> None:
     choice = Choice(
         args.task, patient, args.tissue, args.start, args.driver, choose_device(args.device), args.seed or 0,
         overrides=tuple(text for text in args.overrides if text.startswith("env.")), settings=settings,
+        reduced=getattr(args, "reduced", False),
     )  # fmt: skip
     out = Path(args.out)
     check_environment(make_cfg(choice, out)[1], args.device, [out])
@@ -115,8 +123,9 @@ def show(session: Any, args: Any, steers: bool) -> None:
     from arcgym.teleop.page import Page
 
     token = None if args.host in LOOPBACK else secrets.token_urlsafe(16)
+    size = args.size or (REDUCED_SIZE if getattr(args, "reduced", False) else SIZE)
     try:
-        page = Page(session, args.host, args.port, token, args.size, steers)
+        page = Page(session, args.host, args.port, token, size, steers)
     except OSError as error:
         raise UsageError(f"--port {args.port} at {args.host} cannot be opened: {error}.") from error
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # a polite kill ends as Ctrl-C does

@@ -47,6 +47,11 @@ class EnvMemory:
         self._contents: list[tuple[Any, Any]] = []
         self._keep(vars(env), {id(one) for one in self._left_out()})
 
+    @property
+    def worlds(self) -> dict[str, torch.Tensor]:
+        """Complete state of the simulation, as of :meth:`arcgym.sim.Simulation.world_arrays`; not to be written to."""
+        return self._worlds
+
     @torch.inference_mode(False)
     @torch.no_grad()
     def restore(self) -> None:

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import torch
+
 from arcgym.envs import mdp
 from arcgym.managers import RecorderTerm, RecorderTermCfg
 from arcgym.managers.recorder_term import Record
@@ -20,6 +22,10 @@ from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.paths import assets_dir
 from arcgym.utils.registry import list_tasks, load_cfg_from_registry
 
+KEPT_METRICS = ("success", "progress", "looping_ratio", "inserted_length", "max_tip_force", "max_base_force")
+"""Metrics of a reduced session: those that need no picture."""
+NEVER = 1.0e9
+"""Period after which the policy's camera draws in a reduced session [s]."""
 PLAY = "-Play"
 """End of the names of tasks in which nothing is randomized."""
 
@@ -46,6 +52,8 @@ class Choice:
     """Texts ``env.path=value``, applied last."""
     settings: dict[str, Any] | None = None
     """Configuration that the task was trained with, as plain values, for the policy that was trained in it."""
+    reduced: bool = False
+    """Whether what only policies and their judges need is left out: observations, rewards, costs, most metrics."""
 
 
 class HandRecorder(RecorderTerm):
@@ -55,6 +63,20 @@ class HandRecorder(RecorderTerm):
         """Return who chose the action that is about to be applied."""
         env: Any = self._env
         return "hand/leads", env.hand_leads
+
+
+class MarksRecorder(RecorderTerm):
+    """``marks/step`` (M,) and ``marks/state/...`` (M, ...): complete states from which a replay can go on."""
+
+    def record_pre_reset(self, env_ids: torch.Tensor) -> Record:
+        """Return the marks of the episode that ends; nothing where there are none."""
+        env: Any = self._env
+        if not env.hand_marks:
+            return None, None
+        steps = torch.tensor([[step for step, _ in env.hand_marks]])
+        names = env.hand_marks[0][1]
+        states = {name: torch.stack([state[name] for _, state in env.hand_marks], dim=1) for name in names}
+        return "marks", {"step": steps, "state": {name: value[env_ids] for name, value in states.items()}}
 
 
 def tasks() -> list[str]:
@@ -82,9 +104,12 @@ def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
             restore(cfg, choice.settings, "env", keep=list(differences(plain, to_plain(cfg))))
         cfg.scene.num_envs, cfg.sim.device, cfg.seed = 1, choice.device, choice.seed
         _choose(cfg, choice)
+        if choice.reduced:
+            _reduce(cfg)
         recorders = mdp.TrajectoryRecorderCfg(dataset_export_dir_path=str(out), dataset_filename="teleop")
         recorders.wall = mdp.PostStepWallRecorderCfg(positions=True)
         recorders.hand = RecorderTermCfg(class_type=HandRecorder)
+        recorders.marks = RecorderTermCfg(class_type=MarksRecorder)
         cfg.recorders = recorders
         apply_overrides({"env": cfg}, list(choice.overrides))
     except (TypeError, ValueError) as error:
@@ -99,6 +124,16 @@ def _choose(cfg: Any, choice: Choice) -> None:
         cfg.scene.colon.material = choice.tissue
     if choice.start is not None:
         cfg.start = choice.start
+
+
+def _reduce(cfg: Any) -> None:
+    """Leave out what policies and their judges need and a hand does not: a sixth of a control step's time."""
+    for terms, kept in ((cfg.observations, ()), (cfg.rewards, ()), (cfg.costs, ()), (cfg.metrics, KEPT_METRICS)):
+        for name in vars(terms):
+            if name not in kept:
+                setattr(terms, name, None)
+    if getattr(cfg.scene, "camera", None) is not None:
+        cfg.scene.camera.update_period = NEVER
 
 
 def axes_of(env: Any) -> tuple[Sequence[str], Sequence[str]]:

@@ -32,6 +32,8 @@ from arcgym.viewers.palette import FORCE_TIERS, shown_tiers
 
 SURFACE_PERIOD = 0.25
 """Least time between two shapes of the colon's surface [s]: each takes 160 kB."""
+REDUCED_SURFACE_PERIOD = 1.0
+"""The same in a reduced session [s]."""
 TEXT_PERIOD = 0.2
 """Least time between two sets of numbers [s]."""
 BACKGROUND = (222, 228, 238)
@@ -281,7 +283,8 @@ class Page:
             self._scope.batched_positions = frame.link_pos
             self._scope.batched_wxyzs = frame.link_quat[:, [3, 0, 1, 2]]
             self._scope.batched_colors = self._looker.link_colors(frame)
-        if time.monotonic() - self._surface_at > SURFACE_PERIOD:
+        reduced = self._session.status.choice.reduced
+        if time.monotonic() - self._surface_at > (REDUCED_SURFACE_PERIOD if reduced else SURFACE_PERIOD):
             self._surface_at = time.monotonic()
             self._colon.vertices = self._looker.surface(frame)
         self._times.append(time.monotonic())

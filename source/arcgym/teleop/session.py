@@ -318,6 +318,7 @@ class Session:
             self._close_env()
             env: Any = gym.make(name, cfg=cfg).unwrapped
             env.hand_leads = torch.zeros(1, dtype=torch.uint8, device=env.device)
+            env.hand_marks = []
             self._wrapped = RslRlVecEnvWrapper(env)
             env.cfg.autoreset = False
             env.step(torch.zeros(1, env.action_manager.total_action_dim))  # captures the graph, while nobody draws
@@ -349,6 +350,7 @@ class Session:
         marks = [{"name": mark.name, "step": mark.step} for mark in self._marks]
         self._say(message, marks=tuple(mark.name for mark in self._marks), **changes)
         self.env.recorder_manager.notes = {"marks": marks, "undone": self.status.undone}
+        self.env.hand_marks = [(mark.step, mark.memory.worlds) for mark in self._marks]
 
     def _say(self, message: str | None = None, **changes: Any) -> None:
         if message is not None:

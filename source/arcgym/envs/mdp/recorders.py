@@ -233,3 +233,5 @@ class TrajectoryRecorderCfg(RecorderManagerBaseCfg):
     """Off: ``PostStepImagesRecorderCfg()`` records pictures with depth, normals and labels."""
     hand: RecorderTermCfg | None = None
     """Who chose the action; set by teleoperation."""
+    marks: RecorderTermCfg | None = None
+    """Complete states at the marks; set by teleoperation."""
