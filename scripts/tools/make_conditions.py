@@ -35,7 +35,7 @@ def main() -> None:
     splits = read_splits()
     unseen = [f"population:{seed}" for seed in splits.seeds["test"]]
     files = {
-        "population_v1": (
+        "population_v2": (
             unseen,
             1,
             f"A trial on each of the 200 patients of the test split (splits {splits.version}, "
@@ -47,7 +47,7 @@ def main() -> None:
             10,
             "Ten trials on each of the colons 3, 4 and 5, for policies that were trained on 1 and 2.",
         ),
-        "robustness_v1": (
+        "robustness_v2": (
             unseen[:10],
             2,
             f"Two trials on each of ten patients of the test split (splits {splits.version}, "

@@ -12,6 +12,7 @@ from arcgym.anatomy.generator.acceptance import check_course
 from arcgym.anatomy.generator.generate import GENERATOR_VERSION, draw_surface
 from arcgym.anatomy.generator.population import draw_spec
 from arcgym.anatomy.generator.splits import read_splits, split_seeds
+from arcgym.anatomy.grid_shape import GridShape
 from arcgym.anatomy.validation.checks import failed
 
 REAL = {
@@ -86,6 +87,7 @@ def test_splits_do_not_share_a_seed() -> None:
     assert sizes == {"train": 10000, "validation": 100, "test": 200}
     assert len(set().union(*splits.seeds.values())) == sum(sizes.values())
     assert splits.generator == GENERATOR_VERSION
+    assert splits.grid == (GridShape().rings, GridShape().sectors)  # another grid is another version of the splits
 
 
 def test_unknown_split_lists_the_known() -> None:

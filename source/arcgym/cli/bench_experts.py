@@ -41,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--batch", type=positive, default=32, help="patients at once (32)")
     parser.add_argument("--max_time", type=float, default=240.0, help="simulated time for a patient [s] (240)")
+    parser.add_argument(
+        "--patience", type=float, default=30.0, help="simulated time without progress after which it gives up [s] (30)"
+    )
     parser.add_argument("--minutes", type=float, default=float("inf"), help="longest time in all (no limit)")
     parser.add_argument("--states", action="store_true", help="keep the start states in the cache folder")
     parser.add_argument("--seed", type=int, default=0, help="seed of the experts' settings (0)")
@@ -105,5 +108,5 @@ def _drive(
             flush=True,
         )
 
-    plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, args.states)
+    plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, args.states, args.patience)
     attempt(plan, stages, done, lambda text: print(f"{robot}, {tissue}: {text}", flush=True))

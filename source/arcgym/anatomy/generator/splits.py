@@ -27,6 +27,8 @@ class Splits:
     """Version of the splits; belongs to every result."""
     generator: int
     """Version of the generator that makes their patients."""
+    grid: tuple[int, int]
+    """Rings and sectors of their walls."""
     seeds: dict[str, range]
     """Seeds of each split by name."""
 
@@ -36,7 +38,8 @@ def read_splits() -> Splits:
     """Return the splits."""
     values = yaml.safe_load(SPLITS_FILE.read_text())
     seeds = {name: range(first, last + 1) for name, (first, last) in values["splits"].items()}
-    return Splits(int(values["version"]), int(values["generator"]), seeds)
+    rings, sectors = values["grid"]
+    return Splits(int(values["version"]), int(values["generator"]), (int(rings), int(sectors)), seeds)
 
 
 def split_seeds(name: str) -> range:

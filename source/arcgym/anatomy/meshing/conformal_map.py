@@ -16,7 +16,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import splu
 
-from arcgym.anatomy.meshing.triangle_surface import TriangleSurface, connected_parts
+from arcgym.anatomy.meshing.triangle_surface import TriangleSurface, connected_parts, edge_ends, edge_keys
 
 CAP_RADIUS = 0.006
 """Distance from an end within which the surface is one cap [m]: less than the radius of any lumen."""
@@ -114,7 +114,7 @@ def _solve(matrix: csr_array, right: np.ndarray) -> np.ndarray:
 
 def _path(points: np.ndarray, faces: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """Return the vertices of the shortest path along edges from one cap's rim to the other's."""
-    edges = np.unique(np.sort(np.concatenate([faces[:, :2], faces[:, 1:], faces[:, [2, 0]]]), 1), axis=0)
+    edges = edge_ends(np.unique(edge_keys(faces, len(points))), len(points))
     length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     graph = coo_array((length, edges.T), shape=(len(points), len(points))).tocsr()
     used = np.zeros(len(points), bool)

@@ -11,6 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from arcgym.anatomy.meshing.conformal_map import ConformalMap
+from arcgym.anatomy.meshing.triangle_surface import edge_ends, edge_keys
 
 _ROUND = 0.5
 """By how much the turns of a main loop in v may differ from one. Where they do, v's cut runs through a handle beside
@@ -88,20 +89,17 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 
 def _find_crossings(mapped: ConformalMap, levels: np.ndarray) -> _Crossings:
-    faces, u = mapped.faces, mapped.u
-    sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), 1)
-    edge, side = np.unique(sides, axis=0, return_inverse=True)
-    edge_of = side.reshape(3, -1).T
+    faces, u, edge_of = mapped.faces, mapped.u, edge_keys(mapped.faces, len(mapped.u))
     low, high = (np.searchsorted(levels, bound, "right") for bound in (u[faces].min(1), u[faces].max(1)))
     count = high - low
     face = np.repeat(np.arange(len(faces)), count)
     level = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)
     above = u[faces[face]] >= levels[level][:, None]
     leaving, entering = above & ~np.roll(above, -1, 1), ~above & np.roll(above, -1, 1)
-    key = level.astype(np.int64) * len(edge)
+    key = level.astype(np.int64) * len(u) ** 2
     start, end = (key + edge_of[face, mark.argmax(1)] for mark in (entering, leaving))
     node, place = np.unique(np.concatenate([start, end]), return_inverse=True)
-    number, ends = node // len(edge), edge[node % len(edge)]
+    number, ends = node // len(u) ** 2, edge_ends(node % len(u) ** 2, len(u))
     share = (levels[number] - u[ends[:, 0]]) / (u[ends[:, 1]] - u[ends[:, 0]])
     a, b = mapped.points[ends[:, 0]], mapped.points[ends[:, 1]]
     position = a + share[:, None] * (b - a)

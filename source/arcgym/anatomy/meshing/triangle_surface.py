@@ -58,8 +58,9 @@ def largest_part(points: np.ndarray, faces: np.ndarray) -> TriangleSurface:
     """Return the connected part of a surface that has most triangles, wound outwards."""
     part = connected_parts(faces, len(points))
     faces = faces[part[faces[:, 0]] == np.bincount(part[faces[:, 0]]).argmax()]
-    used, faces = np.unique(faces, return_inverse=True)
-    points, faces = points[used], faces.reshape(-1, 3)
+    used = np.zeros(len(points), bool)
+    used[faces] = True
+    points, faces = points[used], (np.cumsum(used) - 1)[faces]
     return TriangleSurface(points, faces if winds_outwards(points, faces) else faces[:, ::-1].copy())
 
 
@@ -68,3 +69,22 @@ def connected_parts(simplices: np.ndarray, count: int) -> np.ndarray:
     pairs = np.concatenate([simplices[:, [k, k + 1]] for k in range(simplices.shape[1] - 1)])
     graph = coo_array((np.ones(len(pairs), np.int8), pairs.T), shape=(count, count))
     return connected_components(graph, directed=False)[1]
+
+
+def edge_keys(faces: np.ndarray, count: int) -> np.ndarray:
+    """Return a number for the edge from each corner of triangles to the next one, the same from both sides.
+
+    Args:
+        faces: Triangles, shape (F, 3), int.
+        count: Number of vertices, below 3e9.
+
+    Returns:
+        Numbers, ascending with the edge's lower vertex and then with its other one, shape (F, 3), int64.
+    """
+    following = np.roll(faces, -1, 1)
+    return np.minimum(faces, following).astype(np.int64) * count + np.maximum(faces, following)
+
+
+def edge_ends(keys: np.ndarray, count: int) -> np.ndarray:
+    """Return the two vertices of edges numbered by :func:`edge_keys`, the lower one first, shape (n, 2)."""
+    return np.stack([keys // count, keys % count], 1)

@@ -37,7 +37,7 @@ def write_textures(folder: Path, seed: int, look: MucosaSpec | None = None) -> t
         detail &= _DETAIL_BITS
     paths = folder / "mucosa_albedo.jpg", folder / "mucosa_detail.png"
     Image.fromarray(albedo).save(paths[0], quality=92, subsampling=0)
-    Image.fromarray(detail).save(paths[1], compress_level=6)
+    Image.fromarray(detail).save(paths[1], compress_level=4)
     return paths
 
 

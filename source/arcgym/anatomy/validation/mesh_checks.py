@@ -4,11 +4,16 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 _BLOCK = 200_000
 """Pairs of edge and face that are tested at once, which bounds the memory."""
+
+_SIZES = 6
+"""Groups into which faces are sorted by size."""
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
@@ -42,9 +47,7 @@ def find_crossings(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     half = 0.5 * np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
     center = points[faces].mean(1)
     size = np.linalg.norm(points[faces] - center[:, None], axis=2).max(1)
-    near = cKDTree(center).query_ball_point(middle, half + size.max())
-    edge = np.repeat(np.arange(len(edges)), [len(found) for found in near])
-    face = np.concatenate([np.asarray(found, int) for found in near])
+    edge, face = _near_pairs(middle, half, center, size)
     apart = (edges[edge][:, :, None] != faces[face][:, None, :]).all((1, 2))
     apart &= np.linalg.norm(middle[edge] - center[face], axis=1) < half[edge] + size[face]
     edge, face = edge[apart], face[apart]
@@ -52,6 +55,19 @@ def find_crossings(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     hit = [_crosses(points, edges[edge[k : k + _BLOCK]], faces[face[k : k + _BLOCK]]) for k in blocks]
     crossing = np.concatenate(hit) if hit else np.zeros(0, bool)
     return np.concatenate([edges[edge[crossing]], faces[face[crossing]]], axis=1)
+
+
+def _near_pairs(
+    middle: np.ndarray, half: np.ndarray, center: np.ndarray, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return edges and faces whose spheres may touch; faces of like size are looked for together, as few are large."""
+    pairs = []
+    for part in np.array_split(np.argsort(size, kind="stable"), min(_SIZES, len(size))):
+        near = cKDTree(center[part]).query_ball_point(middle, half + size[part].max(), return_sorted=False)
+        count = np.array([len(found) for found in near])
+        pairs.append((np.repeat(np.arange(len(middle)), count), part[np.fromiter(chain(*near), int, count.sum())]))
+    edge, face = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    return edge, face
 
 
 def _crosses(points: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> np.ndarray:

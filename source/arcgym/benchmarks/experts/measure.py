@@ -47,6 +47,8 @@ class Attempt:
     """Time of :func:`time.monotonic` at which it gives up the patients that are under way [s]."""
     keep_states: bool = False
     """Whether to keep the start states in the cache folder."""
+    patience: float = 30.0
+    """Simulated time without progress after which the drive gives up a patient [s]."""
 
 
 def attempt(
@@ -67,7 +69,7 @@ def attempt(
     count = plan.worlds * len(stages)
     cfg = InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=ROBOTS[plan.robot])
     scene = InteractiveScene(cfg, SimulationCfg(device=plan.device))
-    drive = Drive(scene, max_time=plan.max_time, seed=plan.seed)
+    drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
     began, written = time.monotonic(), set[int]()
 
     def report(drive: Drive) -> None:
