@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import torch
 from tiny import tiny_colon_stage
 from tube_scene import RADIUS, TubeScene
 
@@ -76,3 +78,29 @@ def test_a_camera_in_the_open_sees_nothing(tmp_path):
     truth = TruthImages(camera, (patient_of_stage(tiny_colon_stage(texture_folder=tmp_path)),), SIZE)
     images = truth.draw(scene["endoscope"].camera_pose_wp)
     assert (images["label"] == 0).all() and (images["depth"] == 0.5).all() and (images["normal"] == 0.0).all()
+
+
+def test_the_own_shaft_hides_the_wall(tmp_path):
+    """A shaft of 4 mm radius lies across the axis 30 mm ahead: the ray along the axis meets it after 26 mm."""
+    scene = TubeScene(tmp_path)
+    # links along X (a quarter turn about Y), 30 mm ahead of the camera; the last one, which carries it, is not drawn
+    turn = [0.0, np.sqrt(0.5), 0.0, np.sqrt(0.5)]
+    poses = torch.tensor([[[0.0, 0.0, 0.18, *turn], [0.0, 0.0, 0.155, *turn]]], dtype=torch.float32)
+    scene["endoscope"].data = SimpleNamespace(body_pos_w=poses[..., :3], body_quat_w=poses[..., 3:])
+    scene["endoscope"].stage.link_radius, scene["endoscope"].stage.link_length = [0.004, 0.004], [0.02, 0.02]
+    camera = EndoscopeCamera(EndoscopeCameraCfg(width=16, height=16))
+    camera.initialize(scene)
+    camera.update()
+    stage = patient_of_stage(tiny_colon_stage(texture_folder=tmp_path))
+    patients = (dataclasses.replace(stage, visual=scene["colon"].patients[0].visual),)
+    truth = TruthImages(camera, patients, (41, 41), 1, scene["endoscope"])
+    images = {name: image[0].numpy() for name, image in truth.draw(scene["endoscope"].camera_pose_wp).items()}
+    shaft = images["label"] == LABELS.index("scope")
+    assert shaft[20, 20] and images["depth"][20, 20] == pytest.approx(0.026, abs=1e-5)
+    np.testing.assert_allclose(images["normal"][20, 20], [0.0, 0.0, 1.0], atol=1e-5)
+    # 20 mm long with rounded ends of 4 mm, 8 mm thick: wider than high, the wall beside it is as before
+    wide, high = shaft.any(axis=0).sum(), shaft.any(axis=1).sum()
+    assert 2.5 < wide / high < 4.5 and (images["label"][0] == LABELS.index("mucosa")).all()
+    plain = TruthImages(camera, patients, (41, 41), 1).draw(scene["endoscope"].camera_pose_wp)
+    np.testing.assert_array_equal(images["depth"][~shaft], plain["depth"][0].numpy()[~shaft])
+    assert images["rgb"][shaft].mean() < 0.7 * images["rgb"][~shaft].mean()  # black

@@ -17,8 +17,9 @@ from arcgym.managers.recorder_files import episode_paths, open_recording
 from arcgym.sensors.truth_images import FOLD_DEPTH, LABELS
 
 LIMITS = f"""\
-- Pictures are drawn from the policy's surface of the colon with the lights of the endoscope's stage. The scope is not
-  in them; nor are fluid and stool, unless the task has them. How real they look was not measured.
+- Pictures are drawn from the policy's surface of the colon with the lights of the endoscope's stage, and the scope's
+  shaft, where a tip that is bent back sees it. Fluid and stool are in them if the task has them. How real they look
+  was not measured.
 - Labels: {", ".join(f"{number} {name}" for number, name in enumerate(LABELS))}. Polyps and diverticula are those that
   the stage marks; a fold is what stands out into the lumen by {FOLD_DEPTH:.0%} of its radius at rest, a choice.
 - Depth is the distance along the ray, in units of 10 µm, and `images/rays` the direction of each pixel: the lens is a

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -99,7 +99,9 @@ class SurfaceRenderer:
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
         self.view = _surface_view(surface, visuals, textures)
-        self._lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
+        self.overlay: Callable[[wp.array], None] | None = None
+        """Called with the camera poses once the wall's radiance is there, to put more into it before the exposure."""
+        self.lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
 
     def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
         """Draw the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform."""
@@ -115,7 +117,7 @@ class SurfaceRenderer:
             self.shape,
             inputs=[
                 self.view,
-                self._lighting,
+                self.lighting,
                 drawn,
                 poses,
                 self.rays,
@@ -127,6 +129,8 @@ class SurfaceRenderer:
             outputs=[self.radiance, self.depth],
             device=self.device,
         )
+        if self.overlay is not None:
+            self.overlay(poses)
         self._expose(poses, drawn)
         wp.launch(
             develop,

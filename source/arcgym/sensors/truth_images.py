@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
@@ -12,6 +12,7 @@ import warp as wp
 from scipy.spatial import cKDTree
 
 from arcgym.sensors.camera_rays import fisheye_rays
+from arcgym.sensors.shaft_picture import ShaftPicture
 from arcgym.sensors.truth_kernels import look_closer
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from arcgym.assets.patient import Patient
     from arcgym.sensors.endoscope_camera import EndoscopeCamera
 
-LABELS = ("nothing", "mucosa", "fold", "polyp", "diverticulum")
+LABELS = ("nothing", "mucosa", "fold", "polyp", "diverticulum", "scope")
 """Kinds of surface by number."""
 FOLD_DEPTH = 0.15
 """Share of the lumen's radius by which a fold stands out into the lumen; a choice, as no fold has a border."""
@@ -30,10 +31,18 @@ LESION_TINT = 0.1
 class TruthImages:
     """Draws the scene that a camera sees in another size, with the truth about every pixel.
 
-    The surface is the policy camera's, as of its last update. The scope itself is not in the picture.
+    The surface is the policy camera's, as of its last update. The scope's shaft is in the pictures, where a tip that is
+    bent back sees it; it is not in the policy's.
     """
 
-    def __init__(self, camera: EndoscopeCamera, patients: tuple[Patient, ...], size: tuple[int, int], samples: int = 1):
+    def __init__(
+        self,
+        camera: EndoscopeCamera,
+        patients: tuple[Patient, ...],
+        size: tuple[int, int],
+        samples: int = 1,
+        endoscope: Any = None,
+    ):
         """Allocate pictures.
 
         Args:
@@ -41,6 +50,7 @@ class TruthImages:
             patients: Patients of the worlds, in the order of ``colon.patients``.
             size: Width and height [px].
             samples: Rays a pixel of the color; the rest is of the pixel's middle.
+            endoscope: Scope whose shaft is drawn; None for none.
         """
         self._camera, self._renderer = camera, camera.another_renderer(size, samples)
         renderer, device = self._renderer, self._renderer.device
@@ -57,6 +67,8 @@ class TruthImages:
         self._depth = wp.zeros(renderer.shape, dtype=float, device=device)
         self._normal = wp.zeros(renderer.shape, dtype=wp.vec3, device=device)
         self._label = wp.zeros(renderer.shape, dtype=wp.uint8, device=device)
+        self._shaft = None if endoscope is None else ShaftPicture(endoscope, renderer, self._rays)
+        renderer.overlay = None if self._shaft is None else self._shaft.draw
         self._everywhere = wp.full(renderer.shape[0], True, dtype=wp.bool, device=device)
 
     def draw(self, poses: wp.array) -> dict[str, torch.Tensor]:
@@ -80,6 +92,8 @@ class TruthImages:
             outputs=[self._depth, self._normal, self._label],
             device=renderer.device,
         )
+        if self._shaft is not None:
+            self._shaft.mark(self._depth, self._normal, self._label, LABELS.index("scope"))
         arrays = {"rgb": renderer.rgb, "depth": self._depth, "normal": self._normal, "label": self._label}
         return {name: wp.to_torch(array) for name, array in (arrays | {"pose": renderer.drawn_from}).items()}
 

@@ -38,7 +38,7 @@ class PostStepImagesRecorder(RecorderTerm):
         """Allocate pictures of all worlds."""
         super().__init__(cfg, env)
         scene, size = env.scene, (cfg.width, cfg.height)
-        self._truth = TruthImages(scene[cfg.camera], scene["colon"].patients, size, cfg.samples)
+        self._truth = TruthImages(scene[cfg.camera], scene["colon"].patients, size, cfg.samples, scene["endoscope"])
         self._rays = torch.as_tensor(self._truth.rays, device=env.device)
 
     def record_post_step(self) -> Record:
