@@ -64,6 +64,19 @@ def test_two_results_of_one_trial_are_refused(tmp_path: Path) -> None:
         main(["results", "merge", str(tmp_path / "all"), *parts])
 
 
+def test_what_the_parts_changed_is_known_of_the_whole(tmp_path: Path, capsys) -> None:
+    """The second machine ran a task of its own more easily; a third ran the same task as it is."""
+    changes = {TASKS[1]: {"start": ["segment", "rest"]}}
+    parts = [result(tmp_path / "a"), result(tmp_path / "b", run={**RUN, "changes": changes})]
+    assert main(["results", "merge", str(tmp_path / "all"), *map(str, parts)]) == 0
+    assert main(["results", "check", str(tmp_path / "all")]) == 1
+    assert f"{TASKS[1]} was run with start = rest" in capsys.readouterr().out
+    other = result(tmp_path / "c", run={**RUN, "changes": {TASKS[1]: {}}})
+    with pytest.raises(SystemExit):
+        main(["results", "merge", str(tmp_path / "all"), str(other)])
+    assert "with other settings" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

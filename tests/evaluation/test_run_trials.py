@@ -12,6 +12,7 @@ from tiny import write_tiny_colon
 from arcgym.cli.main import main
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
 from arcgym.evaluation.trials import Trial, write_conditions
+from arcgym.utils.errors import UsageError
 
 
 def evaluate(folder: Path, conditions: Path, *more: str) -> list[dict]:
@@ -39,6 +40,41 @@ def test_rows_do_not_depend_on_the_number_of_worlds(tmp_path: Path, conditions: 
     assert [row["trial"] for row in one] == [0, 1, 2, 3, 4]
     assert len({row["reward"] for row in one}) == 5
     assert evaluate(tmp_path / "four", conditions, "--num_envs", "4") == one
+
+
+@pytest.mark.slow
+def test_thirty_trials_come_out_alike_in_one_world_in_six_and_in_thirty(tmp_path: Path, tiny_colon_path: Path) -> None:
+    path = tmp_path / "thirty_v1.csv"
+    write_conditions(path, [Trial(k, str(tiny_colon_path), 100 + k) for k in range(30)], "Thirty trials.")
+    one = evaluate(tmp_path / "one", path, "--num_envs", "1")
+    assert len({row["reward"] for row in one}) == 30
+    for number in ("6", "30"):
+        assert evaluate(tmp_path / number, path, "--num_envs", number) == one
+
+
+@pytest.mark.slow
+def test_two_processes_share_the_trials(tmp_path: Path, conditions: Path, capsys) -> None:
+    """Rows of both are in one folder, with what was changed; cut off, the same call goes on."""
+    one = evaluate(tmp_path / "one", conditions)
+    assert evaluate(tmp_path / "two", conditions, "--processes", "2") == one
+    assert read_run(tmp_path / "two")["changes"] == read_run(tmp_path / "one")["changes"]
+    assert [len(read_trial_rows(tmp_path / "two" / "parts" / name)) for name in ("1_of_2", "2_of_2")] == [3, 2]
+    (tmp_path / "two" / "trials.csv").unlink()
+    assert evaluate(tmp_path / "two", conditions, "--processes", "2") == one
+    with pytest.raises(SystemExit):
+        evaluate(tmp_path / "wrong", conditions, "--processes", "2", "env.no_such_field=1")
+    assert "no_such_field" in capsys.readouterr().err
+
+
+def test_shares_of_two_machines_make_a_whole(tmp_path: Path, conditions: Path, capsys) -> None:
+    shares = [tmp_path / "a", tmp_path / "b"]
+    rows = [evaluate(folder, conditions, "--share", f"{k}/2") for k, folder in enumerate(shares, start=1)]
+    assert [[row["trial"] for row in of] for of in rows] == [[0, 2, 4], [1, 3]]
+    main(["results", "merge", str(tmp_path / "all"), *map(str, shares)])
+    assert len(read_trial_rows(tmp_path / "all")) == 5
+    with pytest.raises(SystemExit):
+        evaluate(tmp_path / "c", conditions, "--share", "3/2")
+    assert "'3/2' is no share" in capsys.readouterr().err
 
 
 def test_the_experts_rows_do_not_depend_on_the_number_of_worlds(tmp_path: Path, conditions: Path) -> None:
@@ -153,3 +189,5 @@ def test_each_task_may_have_checkpoints_of_its_own(tmp_path: Path) -> None:
     conditions = read_conditions(read_suites()["paper"].conditions_path)
     run = run_record(["ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"], conditions, options)
     assert len(set(run["checkpoint_sha256"])) == 4 and run["trained_on"] == [None] * 4
+    with pytest.raises(UsageError, match="No checkpoint .*ARC-Splenic-Magnetic/1.pt, "):
+        run_record(["ARC-Splenic-Magnetic"], conditions, options)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from arcgym.evaluation.statistics import bootstrap, interquartile_mean, paired_difference, wilson
+from arcgym.evaluation.statistics import bootstrap, interquartile_mean, mean, paired_difference, training_runs, wilson
 
 
 def test_wilson_interval_of_newcombe() -> None:
@@ -31,15 +31,28 @@ def test_bootstrap_interval_of_a_mean_is_that_of_theory() -> None:
     """400 values of deviation 1: 1.96 / sqrt(400) = 0.098 on either side."""
     values = np.random.default_rng(1).normal(size=400)
     values = (values - values.mean()) / values.std()
-    interval = bootstrap(values, np.zeros(400), lambda sample: float(sample.mean()))
+    interval = bootstrap(values, np.zeros(400), mean)
     assert (interval.value, interval.low, interval.high) == pytest.approx((0.0, -0.098, 0.098), abs=0.008)
 
 
-def test_groups_do_not_mix() -> None:
-    """Two training seeds, one always 0 and one always 1: drawn anew within each, the mean stays one half."""
+def test_training_runs_are_drawn_anew() -> None:
+    """Two runs, one always 0 and one always 1: of four draws one has the first twice, one the second twice."""
     values = np.repeat([0.0, 1.0], 10)
-    interval = bootstrap(values, values, lambda sample: float(sample.mean()))
-    assert (interval.low, interval.high) == (0.5, 0.5)
+    interval = bootstrap(values, values, mean)
+    assert (interval.value, interval.low, interval.high) == (0.5, 0.0, 1.0)
+
+
+def test_runs_of_unequal_numbers_of_trials_are_all_drawn() -> None:
+    """Nine trials of a run that gives 1, one of another that gives 3: both runs are as likely."""
+    interval = bootstrap(np.array([1.0] * 9 + [3.0]), np.array([0] * 9 + [1]), mean)
+    assert (interval.value, interval.low, interval.high) == pytest.approx((1.2, 1.0, 3.0))
+
+
+def test_training_runs_are_checkpoints_counted_within_their_task() -> None:
+    rows = [{"task": task, "agent": f"{task}/{seed}.pt", "group": 0} for task in ("a", "b") for seed in (1, 2)]
+    assert training_runs(rows).tolist() == [0, 1, 0, 1]
+    assert training_runs([{"task": "a", "agent": "zero", "group": k} for k in range(3)]).tolist() == [0, 0, 0]
+    assert training_runs([{"task": "a", "group": k} for k in (2, 1)]).tolist() == [1, 0]
 
 
 def test_paired_difference_removes_what_trials_have_in_common() -> None:

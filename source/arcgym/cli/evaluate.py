@@ -9,6 +9,9 @@ Every trial of the suite's condition file is run once. All that is random in it 
 same whatever the number of worlds. Rows go to trials.csv in the folder as trials end; called again, the rest is run.
 Several checkpoints, separated by commas, are training seeds: trials of group g get checkpoint g. {task} in a path
 stands for the task's name: --agent "runs/{task}/1.pt,runs/{task}/2.pt" --robot Magnetic.
+
+Physics of worlds on a CPU takes one core: --processes shares the trials out. Machines share them by --share 1/2 and
+--share 2/2, and arcgym results merge puts their folders together.
 """
 
 from __future__ import annotations
@@ -20,6 +23,8 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.cli.arguments import add_fields, argument, positive, read_fields
+from arcgym.evaluation.result_folder import ResultFolder
+from arcgym.evaluation.sharing import Share, share
 
 TAKES_OVERRIDES = True
 
@@ -37,8 +42,10 @@ class EvaluateArguments:
     robot: str | None = argument("robot (default: the one that the checkpoint was trained with)", None)
     conditions: str | None = argument("condition file (default: the suite's)", None)
     videos: bool = argument("film the best, median and worst trial of each task", False)
-    num_envs: int = argument("largest number of worlds (default: 30)", 30, type=positive)
-    num_patients: int = argument("largest number of patients in memory (default: 64)", 64, type=positive)
+    num_envs: int | None = argument("largest number of worlds (default: 256, on a CPU 30)", None, type=positive)
+    num_patients: int | None = argument("largest number of patients (default: as of worlds)", None, type=positive)
+    processes: int = argument("processes that share the trials, such as cores of a CPU (default: 1)", 1, type=positive)
+    share: Share = argument("run only this share of the trials, k/n (default: 1/1)", Share(), type=share)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)", None)
     overrides: list[str] = dataclasses.field(default_factory=list)
     """Texts ``env.path=value``."""
@@ -60,29 +67,59 @@ def run(namespace: argparse.Namespace) -> None:
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
     _check_tasks(tasks)
     conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
-    overrides = (*suite.overrides, *args.overrides)
 
     from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
-    from arcgym.evaluation.parquet import write_parquet
-    from arcgym.evaluation.summary import summarize, to_markdown
 
-    options = EvaluationOptions(agents, args.suite, overrides, args.num_envs, args.num_patients, args.device)
+    overrides = (*suite.overrides, *args.overrides)
+    options = EvaluationOptions(
+        agents, args.suite, overrides, args.num_envs, args.num_patients, args.device, args.share
+    )
 
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
         return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
-    folder = evaluate(tasks, conditions, load, options, Path(args.out))
+    num_trials = len(args.share.trials(conditions.trials))
+    if min(args.processes, num_trials) > 1:
+        folder = _evaluate_in_processes(args, num_trials, len(tasks))
+    else:
+        folder = evaluate(tasks, conditions, load, options, Path(args.out))
+    _write_reports(folder)
+    if args.videos:
+        from arcgym.evaluation.videos import film
+
+        for path in film(conditions, load, options, folder):
+            print(f"video: {path}")
+
+
+def _evaluate_in_processes(args: EvaluateArguments, num_trials: int, num_tasks: int) -> ResultFolder:
+    """Run the evaluation in several processes and return the folder of all rows.
+
+    Raises:
+        UsageError: It is a share itself.
+    """
+    from arcgym.evaluation.sharing import run_shares
+    from arcgym.utils.errors import UsageError
+
+    if args.share.of > 1:
+        raise UsageError(f"--processes and --share {args.share} cannot be given together: shares have one process.")
+    names = ("agent", "suite", "tasks", "robot", "conditions", "num_envs", "num_patients", "device")
+    given = [(name, getattr(args, name)) for name in names if getattr(args, name) is not None]
+    words = [word for name, value in given for word in (f"--{name}", str(value))]
+    processes = min(args.processes, num_trials)
+    return run_shares([*words, *args.overrides], processes, num_trials * num_tasks, Path(args.out))
+
+
+def _write_reports(folder: ResultFolder) -> None:
+    """Write summary and Parquet of a folder, and print the summary and where they are."""
+    from arcgym.evaluation.parquet import write_parquet
+    from arcgym.evaluation.summary import summarize, to_markdown
+
     table = to_markdown(summarize(folder.rows))
     (folder.path / "summary.md").write_text(table)
     print(table)
     print(f"rows: {folder.path / 'trials.csv'}")
     parquet = write_parquet(folder.path)
     print(f"rows as Parquet: {parquet or 'none, it needs pyarrow (pip install arcgym[study])'}")
-    if args.videos:
-        from arcgym.evaluation.videos import film
-
-        for path in film(conditions, load, options, folder):
-            print(f"video: {path}")
 
 
 def _choose(name: str, known: dict[str, Any], kind: str) -> Any:

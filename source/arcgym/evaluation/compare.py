@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
-from arcgym.evaluation.statistics import Interval, paired_difference
+from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS
 from arcgym.utils.errors import UsageError
 
@@ -53,11 +53,11 @@ def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:
 
 
 def _differences(first: list[dict[str, Any]], second: list[dict[str, Any]]) -> dict[str, Interval]:
-    groups = np.array([row["group"] for row in first])
+    runs = training_runs(first) * len(second) + training_runs(second)
     names = [name for name in ("success", *KEY_METRICS) if name in first[0] and name in second[0]]
     return {
         name: paired_difference(
-            np.array([row[name] for row in first], float), np.array([row[name] for row in second], float), groups
+            np.array([row[name] for row in first], float), np.array([row[name] for row in second], float), runs
         )
         for name in names
     }

@@ -17,11 +17,12 @@ from arcgym.envs.provenance import versions
 from arcgym.evaluation.agents import file_sha256, trained_agent
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.run_trials import run_trials
+from arcgym.evaluation.sharing import Share
 from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.managers import EventTermCfg
-from arcgym.rl.device import place
+from arcgym.rl.device import choose_device, place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.params import differences, read_params
 from arcgym.rl.rollout import UNTRAINED, Policy
@@ -41,6 +42,10 @@ SET_HERE = (
     "scene.colon.num_patients",
 )
 """Fields that an evaluation sets itself."""
+
+ON_GPU, ON_CPU = 256, 30
+"""Worlds, and patients, at a time where no number is given. On a GPU a step of 256 worlds takes little longer than one
+of 30; on a CPU its time grows with their number."""
 
 LoadCfgs = Callable[[str, Path | None], tuple[Any, Any]]
 """From task and checkpoint to the configurations of environment and agent."""
@@ -64,14 +69,21 @@ class EvaluationOptions:
     overrides: tuple[str, ...] = ()
     """Overrides of the configurations, for the record."""
 
-    num_envs: int = 30
-    """Largest number of worlds at a time. Results do not depend on it."""
+    num_envs: int | None = None
+    """Largest number of worlds at a time, :data:`ON_GPU` or :data:`ON_CPU` for None. Results do not depend on it."""
 
-    num_patients: int = 64
-    """Largest number of patients in the memory of the device at a time. Results do not depend on it."""
+    num_patients: int | None = None
+    """Largest number of patients in the memory of the device at a time, as ``num_envs``."""
 
     device: str | None = None
     """``cpu``, ``cuda`` or ``cuda:<n>``; None takes the first GPU, or the CPU where there is none."""
+
+    share: Share = Share()
+    """Trials that are run."""
+
+    def most(self, number: int | None) -> int:
+        """Return a largest number of worlds or patients, or the device's where none was given."""
+        return number or (ON_CPU if choose_device(self.device) == "cpu" else ON_GPU)
 
 
 def evaluate(
@@ -92,10 +104,11 @@ def evaluate(
     folder = ResultFolder(out, run_record(tasks, conditions, options))
     for task in tasks:
         done = folder.done(task)
-        left = [trial for trial in conditions.trials if trial.trial not in done]
-        print(f"{task}: {len(left)} of {len(conditions.trials)} trials to run", flush=True)
-        for agent, trials in _batches(left, options.agents_for(task), options.num_patients):
-            _run_batch(task, agent, trials, load_cfgs, options, folder)
+        trials = options.share.trials(conditions.trials)
+        left = [trial for trial in trials if trial.trial not in done]
+        print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
+        for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients)):
+            _run_batch(task, agent, batch, load_cfgs, options, folder)
     return folder
 
 
@@ -103,9 +116,15 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
     """Return what identifies an evaluation, and the versions and the machine it is made with.
 
     Checkpoints are listed in the order of the tasks that have some of their own, then of the groups.
+
+    Raises:
+        UsageError: A checkpoint is missing.
     """
     agents = dict.fromkeys(agent for task in tasks for agent in options.agents_for(task))
     checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in agents]
+    missing = [str(path) for path in checkpoints if not path.is_file()]
+    if missing:
+        raise UsageError(f"No checkpoint {', '.join(missing)}; expected files, or one of {', '.join(UNTRAINED)}.")
     return {
         "agent": ",".join(options.agents) if not checkpoints else "checkpoint",
         "checkpoint": [str(path) for path in checkpoints],
@@ -188,7 +207,7 @@ def opened(
     """
     env_cfg, agent_cfg = cfgs
     _hold_patients(env_cfg, patients_of(trials))
-    env_cfg.scene.num_envs = min(options.num_envs, len(trials))
+    env_cfg.scene.num_envs = min(options.most(options.num_envs), len(trials))
     env_cfg.recorders = None
     place(env_cfg, agent_cfg, options.device)
     env = make_env(split_task(task)[0], env_cfg, agent_cfg)

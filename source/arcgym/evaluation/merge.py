@@ -6,21 +6,25 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
 from arcgym.utils.errors import UsageError
 
 
 def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
-    """Write the rows of several folders of the same evaluation into one.
+    """Write the rows of several folders of the same evaluation into one, and what differs from the registered tasks.
 
     Raises:
-        UsageError: A folder is of another evaluation, or two have different results of the same trial.
+        UsageError: A folder is of another evaluation, or two have different results of the same trial, or ran the same
+            task with other settings.
     """
     folder = ResultFolder(out, read_run(parts[0]))
     known = {(row["task"], row["trial"]): row for row in folder.rows}
     for part in parts:
-        ResultFolder(out, read_run(part))
+        run = read_run(part)
+        ResultFolder(out, run)
+        _merge_changes(folder, part, run.get("changes", {}))
         for row in read_trial_rows(part):
             key = (row["task"], row["trial"])
             if key not in known:
@@ -32,3 +36,11 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
                     "different devices differ in the last digits, run each trial on one."
                 )
     return folder
+
+
+def _merge_changes(folder: ResultFolder, part: Path, changes: dict[str, Any]) -> None:
+    before = read_run(folder.path).get("changes", {})
+    for task, of in changes.items():
+        if before.get(task, of) != of:
+            raise UsageError(f"{part} ran {task} with other settings than the folders before: 'changes' in run.json.")
+        folder.note_changes(task, of)

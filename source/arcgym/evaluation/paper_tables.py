@@ -11,7 +11,7 @@ import numpy as np
 import yaml
 
 from arcgym.evaluation.result_folder import Row
-from arcgym.evaluation.statistics import Interval, bootstrap, wilson
+from arcgym.evaluation.statistics import Interval, bootstrap, mean, training_runs, wilson
 from arcgym.evaluation.suites import FOLDER, split_task
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
@@ -53,6 +53,8 @@ def paper_table(rows: Sequence[Row], name: str) -> str:
     head = [f"| {' | '.join(['', *columns])} |", f"|{'---|' * (len(columns) + 1)}"]
     body = [_line(line, keyed, key, columns) for line in lines]
     note = "In brackets: the paper's own figure, in its own simulation." if table["rows"] else ""
+    if any(line.get("metric") == "step_reward" for line in lines):
+        note += " Step rewards are of the reward that was evaluated with; the paper's alone is env.reward=paper."
     return f"**{table['title']}.** {note}\n\n" + "\n".join([*head, *body]) + "\n"
 
 
@@ -79,8 +81,7 @@ def _cell(rows: Sequence[Row], metric: str) -> str:
         count = sum(row["end"] == metric for row in rows)
         return _text(wilson(count, len(rows)), 100.0, 0)
     values = np.array([row["reward"] / row["seconds"] if metric == "step_reward" else row[metric] for row in rows])
-    groups = np.array([row["group"] for row in rows])
-    return _text(bootstrap(values.astype(float), groups, lambda drawn: float(np.mean(drawn))), 1.0, 3)
+    return _text(bootstrap(values.astype(float), training_runs(rows), mean), 1.0, 3)
 
 
 def _text(interval: Interval, factor: float, digits: int) -> str:

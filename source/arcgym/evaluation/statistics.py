@@ -5,8 +5,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,10 @@ CONFIDENCE = 0.95
 Z = 1.959964
 """Quantile of the normal distribution at (1 + CONFIDENCE) / 2."""
 RESAMPLES = 2000
-"""Bootstrap samples, as in Agarwal et al., Deep RL at the edge of the statistical precipice, NeurIPS 2021."""
+"""Bootstrap samples; our choice."""
+
+Statistic = Callable[[np.ndarray], np.ndarray]
+"""From samples, shape (..., n), to one number of each, shape (...)."""
 
 
 @dataclass(frozen=True)
@@ -48,47 +52,69 @@ def wilson(successes: int, trials: int) -> Interval:
     return Interval(rate, max(middle - half, 0.0), min(middle + half, 1.0))
 
 
-def interquartile_mean(values: np.ndarray) -> float:
-    """Return the mean of the middle half of values, shape (n,); values on its border count in part."""
-    ordered = np.sort(np.asarray(values, float))
-    n = len(ordered)
+def mean(values: np.ndarray) -> np.ndarray:
+    """Return the mean of samples, shape (..., n), as (...)."""
+    return np.mean(values, axis=-1)
+
+
+def interquartile_mean(values: np.ndarray) -> np.ndarray:
+    """Return the mean of the middle half of samples, shape (..., n), as (...); values on its border count in part."""
+    ordered = np.sort(np.asarray(values, float), axis=-1)
+    n = ordered.shape[-1]
     edges = np.arange(n + 1)
     share = np.clip(np.minimum(edges[1:], 0.75 * n) - np.maximum(edges[:-1], 0.25 * n), 0.0, 1.0)
-    return float(share @ ordered / share.sum())
+    return ordered @ share / share.sum()
+
+
+def training_runs(rows: Sequence[dict[str, Any]]) -> np.ndarray:
+    """Return the number of the training run that each row is of, shape (n,), counted within each task.
+
+    Checkpoints are training runs, where rows name their agent, else groups of trials are. An agent that was not trained
+    is one run.
+    """
+    runs = [str(row.get("agent", row["group"])) for row in rows]
+    of_task: dict[str, set[str]] = {}
+    for row, run in zip(rows, runs, strict=True):
+        of_task.setdefault(row["task"], set()).add(run)
+    known = {task: sorted(members) for task, members in of_task.items()}
+    return np.array([known[row["task"]].index(run) for row, run in zip(rows, runs, strict=True)])
 
 
 def bootstrap(
-    values: np.ndarray,
-    groups: np.ndarray,
-    statistic: Callable[[np.ndarray], float] = interquartile_mean,
-    seed: int = 0,
+    values: np.ndarray, runs: np.ndarray, statistic: Statistic = interquartile_mean, seed: int = 0
 ) -> Interval:
-    """Return a statistic with its percentile interval, trials drawn anew within each group.
+    """Return a statistic with its percentile interval.
+
+    Training runs are drawn anew, as Agarwal et al. do (Deep RL at the edge of the statistical precipice, NeurIPS 2021),
+    and trials within each run that was drawn: the interval is that of the method, not of the runs at hand. Of one run
+    only trials can be drawn, and the interval is that of this run.
 
     Args:
         values: One value a trial, shape (n,).
-        groups: Training seed of each trial, shape (n,): every one keeps its number of trials.
+        runs: Training run of each trial, shape (n,). A run that is drawn gives as many trials as runs have on average.
         statistic: Of all values together.
         seed: Seed of the draws.
     """
     rng = np.random.default_rng(seed)
-    strata = [np.flatnonzero(groups == group) for group in np.unique(groups)]
-    drawn = [
-        statistic(values[np.concatenate([rng.choice(members, len(members)) for members in strata])])
-        for _ in range(RESAMPLES)
-    ]
+    members = [np.flatnonzero(runs == run) for run in np.unique(runs)]
+    count = max(round(len(values) / len(members)), 1)
+    drawn = rng.integers(len(members), size=(RESAMPLES, len(members)))
+    trials = np.empty((RESAMPLES, len(members), count), int)
+    for run, of in enumerate(members):
+        chosen = drawn == run
+        trials[chosen] = rng.choice(of, (int(chosen.sum()), count))
     tail = 100 * (1 - CONFIDENCE) / 2
-    low, high = np.percentile(drawn, [tail, 100 - tail])
-    return Interval(statistic(values), float(low), float(high))
+    low, high = np.percentile(statistic(values[trials.reshape(RESAMPLES, -1)]), [tail, 100 - tail])
+    return Interval(float(statistic(values)), float(low), float(high))
 
 
-def paired_difference(first: np.ndarray, second: np.ndarray, groups: np.ndarray, seed: int = 0) -> Interval:
+def paired_difference(first: np.ndarray, second: np.ndarray, runs: np.ndarray, seed: int = 0) -> Interval:
     """Return the mean of ``second - first`` over the same trials, with its bootstrap interval.
 
     Args:
         first: Values of one agent by trial, shape (n,).
         second: Values of the other in the same trials, shape (n,).
-        groups: Training seed of each trial, shape (n,).
+        runs: Pair of training runs of each trial, shape (n,).
         seed: Seed of the draws.
     """
-    return bootstrap(second - first, groups, lambda values: float(np.mean(values)), seed)
+    return bootstrap(second - first, runs, mean, seed)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.evaluation.statistics import Interval, bootstrap, wilson
+from arcgym.evaluation.statistics import Interval, bootstrap, training_runs, wilson
 from arcgym.utils.errors import UsageError
 
 KEY_METRICS = (
@@ -63,11 +63,11 @@ def to_markdown(summaries: dict[str, Summary]) -> str:
 
 
 def _summary(rows: list[dict[str, Any]]) -> Summary:
-    groups = np.array([row["group"] for row in rows])
+    runs = training_runs(rows)
     out: Summary = {"trials": len(rows), "success": wilson(sum(row["success"] for row in rows), len(rows))}
     for name in KEY_METRICS:
         if name in rows[0]:
-            out[name] = bootstrap(np.array([row[name] for row in rows], float), groups)
+            out[name] = bootstrap(np.array([row[name] for row in rows], float), runs)
     return out
 
 

@@ -5,8 +5,9 @@
 
 The rays of the picture decide, on the surface that the camera sees (:mod:`arcgym.sensors.seen_surface`). What is behind
 a fold, farther away than ``reach`` or in front of a covered lens is not seen. Coverage is a share of the whole colon's
-mucosa, as in studies of missed mucosa (Freedman et al., IEEE Trans. Med. Imaging 39, 2020); the reach of 50 mm and the
-nine pixels that show a polyp are our choices. The picture after a reset does not count, the first step's does.
+mucosa; Freedman et al. (IEEE Trans. Med. Imaging 39, 2020) define it as a share, too, but of one stretch at a time. The
+reach of 50 mm and the nine pixels that show a polyp are our choices. The picture after a reset does not count, the
+first step's does.
 """
 
 from __future__ import annotations

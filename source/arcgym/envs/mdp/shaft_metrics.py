@@ -3,7 +3,7 @@
 
 """Metric terms of the shaft's shape and of how the tip moves ``(env, **params) -> (N,)``.
 
-Loops are told apart as with magnetic imaging of the shaft seen from the front (Shah et al., Gastrointest. Endosc. 52,
+Loops are told apart as with magnetic imaging of the shaft seen from the front (Shah et al., Gastrointest. Endosc. 52:1,
 2000; Williams in Colonoscopy: Principles and Practice, 2nd ed., 2009): up to the end of the descending colon,
 
 * **alpha**: the shaft crosses itself, and the loop is a right-handed screw, which a clockwise turn takes out;
@@ -129,8 +129,9 @@ class path_efficiency(ManagerTermBase):
 class mesentery_stretch(ManagerTermBase):
     """Largest way of a ring of the sigmoid or transverse colon beyond its mesentery's slack [m], shape (N,).
 
-    Reduce: max. In a tissue without slack it is the ring's displacement. Pain in colonoscopy comes mainly from
-    stretching the mesentery (Shah et al., Endoscopy 34, 2002).
+    Reduce: max. In a tissue without slack it is the ring's displacement. Pain in colonoscopy comes mainly from loops
+    that stretch the mesentery (Shah et al., Gastrointest. Endosc. 55, 2002); 79 % of 650 pain episodes in 102 patients
+    came with a loop (Shah et al., Endoscopy 34:435, 2002).
     """
 
     def __init__(self, cfg: MetricsTermCfg, env: ManagerBasedRLEnv) -> None:
