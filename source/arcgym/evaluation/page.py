@@ -20,7 +20,8 @@ from arcgym.evaluation.video_choice import chosen_rows, video_path
 
 STYLE = """body{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}
 table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.25em .6em;text-align:right}
-td:first-child,th:first-child{text-align:left}img{max-width:100%}.scroll{overflow-x:auto}
+td:first-child,th:first-child,.run td{text-align:left}td{white-space:nowrap}.run td{white-space:normal;
+overflow-wrap:anywhere}.run td:first-child{overflow-wrap:normal}img{max-width:100%}.scroll{overflow-x:auto}
 .films{display:flex;flex-wrap:wrap}figure{margin:.5em;width:20em}video{width:100%}"""
 
 DISTRIBUTIONS = ("progress", "seconds", "p95_tip_force", "p95_shaft_force")
@@ -29,8 +30,14 @@ DISTRIBUTIONS = ("progress", "seconds", "p95_tip_force", "p95_shaft_force")
 EMBEDDED = 6_000_000
 """Size up to which a film is put into the page [bytes]."""
 
-LABELS = {"seconds": "time [s]", "p95_tip_force": "p95 tip force [N]", "p95_shaft_force": "p95 shaft force [N]"}
-"""Labels of their axes with units; others are without one."""
+LABELS = {
+    "seconds": "time [s]",
+    "p95_tip_force": "p95 tip force [N]",
+    "p95_shaft_force": "p95 shaft force [N]",
+    "shaft_time_above_unsafe": "shaft above unsafe [s]",
+    "max_base_force": "max base force [N]",
+}
+"""Headings of figures with units; others are without one."""
 
 
 def write_page(folder: Path) -> Path:
@@ -44,10 +51,10 @@ def write_page(folder: Path) -> Path:
     names = [name for name in KEY_METRICS if any(name in of for of in summaries.values())]
     body = [
         f"<h1>{html.escape(str(run.get('suite')))}: {html.escape(_agent(run))}</h1>",
-        _table(["run", ""], [[name, _plain(run.get(name))] for name in run]),
         "<h2>Tasks</h2><p>Interquartile means and success over all trials, with 95 % intervals.</p>",
         _table(
-            ["task", "trials", "success [%]", *names], [_summary_row(task, of, names) for task, of in summaries.items()]
+            ["task", "trials", "success [%]", *(LABELS.get(name, name) for name in names)],
+            [_summary_row(task, of, names) for task, of in summaries.items()],
         ),
         _picture(_success_figure(summaries)),
         "<h2>Trials</h2>",
@@ -55,6 +62,8 @@ def write_page(folder: Path) -> Path:
         _films(folder, rows),
         "<h2>How episodes ended</h2>",
         _table(["task", "end", "trials"], _ends(rows)),
+        "<h2>What was run</h2>",
+        _table(["entry", "value"], [[name, _plain(run.get(name))] for name in run], "scroll run"),
     ]
     page = f"<!doctype html><html lang=en><meta charset=utf-8><title>Evaluation</title><style>{STYLE}</style>"
     path = folder / "page.html"
@@ -84,7 +93,8 @@ def _films(folder: Path, rows: Sequence[Row]) -> str:
 
 
 def _agent(run: dict[str, Any]) -> str:
-    return ", ".join(run.get("checkpoint") or []) or str(run.get("agent"))
+    paths = [Path(path) for path in run.get("checkpoint") or []]
+    return ", ".join(f"{path.parent.name}/{path.name}" for path in paths) or str(run.get("agent"))
 
 
 def _plain(value: Any) -> str:
@@ -93,10 +103,10 @@ def _plain(value: Any) -> str:
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
 
 
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]], kind: str = "scroll") -> str:
     cells = ["<tr>" + "".join(f"<th>{html.escape(text)}</th>" for text in head) + "</tr>"]
     cells += ["<tr>" + "".join(f"<td>{html.escape(str(text))}</td>" for text in row) + "</tr>" for row in rows]
-    return f"<div class=scroll><table>{''.join(cells)}</table></div>"
+    return f"<div class='{kind}'><table>{''.join(cells)}</table></div>"
 
 
 def _summary_row(task: str, summary: dict[str, Any], names: Sequence[str]) -> list[str]:
@@ -118,7 +128,7 @@ def _success_figure(summaries: dict[str, dict[str, Any]]) -> Any:
 
     figure = Figure(figsize=(7.0, 0.5 * len(summaries) + 1.2), layout="constrained")
     axes = figure.subplots()
-    for place, (task, of) in enumerate(summaries.items()):
+    for place, of in enumerate(summaries.values()):
         rate = of["success"]
         axes.errorbar(
             100 * rate.value,
@@ -128,8 +138,8 @@ def _success_figure(summaries: dict[str, dict[str, Any]]) -> Any:
             capsize=4,
             color="C0",
         )
-        axes.annotate(task, (2, place + 0.18), fontsize="small")
-    axes.set(xlim=(-2, 102), ylim=(-0.5, len(summaries) - 0.2), yticks=[], xlabel="success [%]")
+    axes.set(xlim=(-2, 102), ylim=(len(summaries) - 0.5, -0.5), xlabel="success [%]")
+    axes.set_yticks(range(len(summaries)), list(summaries), fontsize="small")
     return figure
 
 

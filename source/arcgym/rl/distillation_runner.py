@@ -7,8 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import torch
-
+from arcgym.rl.checkpoint import read_checkpoint
 from arcgym.rl.runner import OnPolicyRunner
 from arcgym.utils.errors import UsageError
 
@@ -41,5 +40,5 @@ class DistillationRunner(OnPolicyRunner):
             raise UsageError("No teacher: set agent.teacher_checkpoint to a checkpoint of a privileged PPO policy.")
         if not Path(path).is_file():
             raise UsageError(f"No teacher checkpoint '{path}'.")
-        checkpoint = torch.load(path, weights_only=False, map_location=self.device)
+        checkpoint = read_checkpoint(path, self.device)
         self.alg.load(checkpoint, {"teacher": True}, strict=True)
