@@ -89,6 +89,22 @@ def test_a_piece_that_was_not_recorded_so_shows(session, capsys) -> None:
         mark_steps(episode)
 
 
+def test_the_first_of_two_worlds_is_steered_and_replays_alone(make_session) -> None:
+    two = make_session(num_envs=2)
+    inserted = two.env.scene["endoscope"].data.inserted_length.clone()
+    drive(two, 6, 1.0, 0.0, 0.3, 0.0)
+    moved = two.env.scene["endoscope"].data.inserted_length - inserted
+    assert moved[0] > 0.02 and abs(moved[1]) < 0.003
+    two.mark().result()
+    two.give("expert").result()
+    drive(two, 4, 0.0, 0.0, 0.0, 0.0)
+    assert (two.env.scene["endoscope"].data.inserted_length - inserted)[1] > 0.005
+    two.undo().result()
+    drive(two, 2, 0.5, 0.0, 0.0, 0.0)
+    path = two.save().result()
+    assert Episode.load(path).info["length"] == 8 and main(["replay", str(path), "--device", "cpu"]) == 0
+
+
 def test_a_reduced_session_records_and_replays(make_session) -> None:
     reduced = make_session(reduced=True)
     drive(reduced, 6, 1.0, 0.0, 0.3, 0.0)

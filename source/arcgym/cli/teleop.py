@@ -104,7 +104,7 @@ def serve(args: Any, steers: bool) -> None:
     choice = Choice(
         args.task, patient, args.tissue, args.start, args.driver, choose_device(args.device), args.seed or 0,
         overrides=tuple(text for text in args.overrides if text.startswith("env.")), settings=settings,
-        reduced=getattr(args, "reduced", False),
+        num_envs=args.num_envs or 1, reduced=getattr(args, "reduced", False),
     )  # fmt: skip
     out = Path(args.out)
     check_environment(make_cfg(choice, out)[1], args.device, [out])

@@ -52,6 +52,8 @@ class Choice:
     """Texts ``env.path=value``, applied last."""
     settings: dict[str, Any] | None = None
     """Configuration that the task was trained with, as plain values, for the policy that was trained in it."""
+    num_envs: int = 1
+    """Number of worlds; the first is shown, steered and recorded."""
     reduced: bool = False
     """Whether what only policies and their judges need is left out: observations, rewards, costs, most metrics."""
 
@@ -91,7 +93,7 @@ def patients() -> list[str]:
 
 
 def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
-    """Return the task's name and its configuration for one world, recorded to a folder.
+    """Return the task's name and its configuration, its first world recorded to a folder.
 
     Raises:
         UsageError: If the task is unknown, or an override is wrong.
@@ -102,11 +104,12 @@ def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
         if choice.settings is not None:
             plain = to_plain(load_cfg_from_registry(choice.task, "env_cfg_entry_point"))
             restore(cfg, choice.settings, "env", keep=list(differences(plain, to_plain(cfg))))
-        cfg.scene.num_envs, cfg.sim.device, cfg.seed = 1, choice.device, choice.seed
+        cfg.scene.num_envs, cfg.sim.device, cfg.seed = choice.num_envs, choice.device, choice.seed
         _choose(cfg, choice)
         if choice.reduced:
             _reduce(cfg)
         recorders = mdp.TrajectoryRecorderCfg(dataset_export_dir_path=str(out), dataset_filename="teleop")
+        recorders.env_ids = (0,)
         recorders.wall = mdp.PostStepWallRecorderCfg(positions=True)
         recorders.hand = RecorderTermCfg(class_type=HandRecorder)
         recorders.marks = RecorderTermCfg(class_type=MarksRecorder)

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""One world that runs in a thread of its own, steered by a hand or a policy, recorded, marked and undone."""
+"""A world that runs in a thread of its own, steered by a hand or a policy, recorded, marked and undone."""
 
 from __future__ import annotations
 
@@ -73,7 +73,10 @@ class Status:
 
 
 class Session:
-    """Runs one world; everything asked of it is done between two steps. Pages read :attr:`status` and :attr:`frame`."""
+    """Runs one world, or the first of many; everything asked of it is done between two steps.
+
+    Pages read :attr:`status` and :attr:`frame`. Other worlds do what the policy chosen last does, or stand still.
+    """
 
     def __init__(
         self, choice: Choice, out: Path, drivers: Mapping[str, Callable[[RslRlVecEnvWrapper], Policy]]
@@ -109,6 +112,7 @@ class Session:
         self._marks: list[Mark] = []
         self._times: deque[float] = deque(maxlen=11)
         self._due = 0.0
+        self._policy: Policy | None = None
 
     def start(self) -> None:
         """Build the environment and run, in a thread of its own."""
@@ -209,15 +213,20 @@ class Session:
         commanded = self.hand.value()
         if commanded.any() and self.status.driver != HAND:
             self._say("a hand has taken over", driver=HAND, interventions=self.status.interventions + 1)
+        action = self._actions()
         if self.status.driver == HAND:
-            action = torch.as_tensor(commanded, device=self.env.device)[None]
-        else:
-            action = self._policy(self._wrapped._pack(self.env.obs_buf)).clone()
+            action[0] = torch.as_tensor(commanded, device=self.env.device)
         self.env.hand_leads.fill_(self.status.driver == HAND)
         self.env.step(action)
         self._look()
         if bool(self.env.reset_buf[0]) and self.status.state != "ended" and not self._has_ended:
             self._end()
+
+    def _actions(self) -> torch.Tensor:
+        """Return what the policy chosen last does in all worlds, and nothing where there is none."""
+        if self._policy is None or (self.status.driver == HAND and self.env.num_envs == 1):
+            return torch.zeros(self.env.num_envs, self.env.action_manager.total_action_dim, device=self.env.device)
+        return self._policy(self._wrapped._pack(self.env.obs_buf)).clone()
 
     def _end(self) -> None:
         """Stop where the episode ends; one may go on nevertheless."""
@@ -317,11 +326,11 @@ class Session:
             self._say(f"building {choice.task}", state="starting")
             self._close_env()
             env: Any = gym.make(name, cfg=cfg).unwrapped
-            env.hand_leads = torch.zeros(1, dtype=torch.uint8, device=env.device)
+            env.hand_leads = torch.zeros(env.num_envs, dtype=torch.uint8, device=env.device)
             env.hand_marks = []
-            self._wrapped = RslRlVecEnvWrapper(env)
+            self._wrapped, self._policy = RslRlVecEnvWrapper(env), None
             env.cfg.autoreset = False
-            env.step(torch.zeros(1, env.action_manager.total_action_dim))  # captures the graph, while nobody draws
+            env.step(torch.zeros(env.num_envs, env.action_manager.total_action_dim))  # captures the graph
             env.recorder_manager.ignore([0])
             env.recorder_manager.ignore([])
             self.env = env
@@ -342,9 +351,9 @@ class Session:
             self.env = None
 
     def _forget_policy(self) -> None:
-        policy: Any = getattr(self, "_policy", None)
+        policy: Any = self._policy
         if hasattr(policy, "reset"):
-            policy.reset(torch.ones(1, dtype=torch.bool, device=self.env.device))
+            policy.reset(torch.ones(self.env.num_envs, dtype=torch.bool, device=self.env.device))
 
     def _tell_marks(self, message: str, **changes: Any) -> None:
         marks = [{"name": mark.name, "step": mark.step} for mark in self._marks]
