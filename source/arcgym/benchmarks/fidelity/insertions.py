@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,11 +21,11 @@ from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_
 from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 
-SPEED = 0.04
+SPEED = {"magnetic": 0.04, "proximal": 0.04}
 """Speed of the experts [m/s]."""
-WORLDS = 4
+WORLDS = 8
 """Insertions over which the figures of one case are means: single ones differ by which fold the tip slips past when."""
-SPREAD = 0.01
+SPREAD = 0.1
 """Share by which the slowest and the fastest of them are off the speed."""
 CONTROL_STEP = 0.1
 """Time between two decisions of the expert, over which forces are averaged [s]."""
@@ -39,6 +40,10 @@ LONGEST = 60.0
 """Simulated time after which an insertion ends that has not come through [s]."""
 HIGH = 5.0
 """Force of which the time above it is counted [N]."""
+NEAR = 0.1
+"""Share of it within which a force counts as near it."""
+HALT = 0.002
+"""Way that a tip makes in no less than a halt [m]."""
 SPECS = {"magnetic": magnetic_spec, "proximal": proximal_spec}
 """Robots."""
 STEERING: dict[str, dict[str, float]] = {"magnetic": {}, "proximal": {"patience": 25.0, "least_pace": 0.15}}
@@ -77,15 +82,24 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
         cases: The cases.
     """
     missing = [(case, k) for case in cases for k in range(WORLDS) if ("insertion", case, k) not in run.shared]
-    if missing:
-        if any(case.setting == "wall_half" for case, _ in missing):
-            write_smooth(run.folder, refine=2)
+    if any(case.setting == "wall_half" for case, _ in missing):
+        write_smooth(run.folder, refine=2)
+    if run.device.startswith("cuda"):
+        for case in dict.fromkeys(case for case, _ in missing):
+            keep_figures(run, case, range(WORLDS), insert(case, range(WORLDS), run.device, run.folder))
+    elif missing:
         workers = min(len(missing), len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1)
         with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-            tasks = [pool.submit(insert, case, k, run.device, run.folder) for case, k in missing]
+            tasks = [pool.submit(insert, case, (k,), run.device, run.folder) for case, k in missing]
             for (case, k), task in zip(missing, tasks, strict=True):
-                run.shared["insertion", case, k] = task.result()
+                keep_figures(run, case, (k,), task.result())
     return [mean_figures([run.shared["insertion", case, k] for k in range(WORLDS)]) for case in cases]
+
+
+def keep_figures(run: Run, case: Insertion, numbers: Sequence[int], figures: list[dict[str, float]]) -> None:
+    """Keep the figures of insertions of a case among the run's results."""
+    for number, of in zip(numbers, figures, strict=True):
+        run.shared["insertion", case, number] = of
 
 
 def mean_figures(figures: list[dict[str, float]]) -> dict[str, float]:
@@ -93,14 +107,24 @@ def mean_figures(figures: list[dict[str, float]]) -> dict[str, float]:
     return {name: float(np.mean([of[name] for of in figures])) for name in figures[0]}
 
 
-def insert(case: Insertion, number: int, device: str, folder: Path) -> dict[str, float]:
-    """Drive a robot by its expert from the anus through the sigmoid, and return the figures of the insertion.
+def insert(case: Insertion, numbers: Sequence[int], device: str, folder: Path) -> list[dict[str, float]]:
+    """Drive a robot by its expert from the anus through the sigmoid, and return the figures of every insertion.
 
     Args:
         case: The case.
-        number: Which of its insertions, from 0; they differ in their speed.
+        numbers: Which of its insertions, from 0, each in a world of its own; they differ in their speed.
         device: Device of the simulation.
         folder: Folder for the stages.
+    """
+    return [figures_of(samples) for samples in drive(case, numbers, device, folder)]
+
+
+def drive(case: Insertion, numbers: Sequence[int], device: str, folder: Path) -> list[np.ndarray]:
+    """Make insertions, one a world, and return what was measured until each came through or time was up.
+
+    Returns:
+        For every insertion, by control step: force on the tip, largest force on a window, force of the drive [N], arc
+        length of the tip from the end of the insertion on [m], shape (T, 4).
     """
     import torch
 
@@ -108,31 +132,52 @@ def insert(case: Insertion, number: int, device: str, folder: Path) -> dict[str,
 
     torch.set_num_threads(1)
     torch.manual_seed(0)
-    scene = build_scene(case, device, folder)
-    pace = SPEED * (1.0025 if case.setting == "noise" else 1.0)
-    pace *= float(np.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS)[number])
-    expert = make_expert(scene, speed=pace, **STEERING[case.robot])
+    scene = build_scene(case, device, folder, num_envs=len(numbers))
+    pace = SPEED[case.robot] * (1.0025 if case.setting == "noise" else 1.0)
+    paces = pace * np.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS)[list(numbers)]
+    expert = make_expert(scene, speed=torch.tensor(paces), **STEERING[case.robot])
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
     steps = round(CONTROL_STEP / scene.sim.physics_dt)
-    samples, through = list[np.ndarray](), False
+    samples = list[np.ndarray]()
+    through = np.zeros(len(numbers), bool)
     with torch.inference_mode():
-        while not through and len(samples) * CONTROL_STEP < LONGEST:
+        while not through.all() and len(samples) * CONTROL_STEP < LONGEST:
             expert.act()
             scene.sim.step(steps)
-            samples.append(read_forces(scene.sim, case.robot)[0])
-            through = bool(scene.endoscope.data.tip_arc_length[0] >= end + PAST)
-    return figures_of(np.array(samples)) | {"through": float(through)}
+            left = scene.endoscope.data.tip_arc_length.cpu().numpy().astype(float) - (end + PAST)
+            samples.append(np.column_stack([read_forces(scene.sim, case.robot), left]))
+            through |= left >= 0.0
+    return [cut(series) for series in np.array(samples).swapaxes(0, 1)]
+
+
+def cut(series: np.ndarray) -> np.ndarray:
+    """Return what was measured until the tip first was at the end of the insertion, shape (T, 4)."""
+    there = np.flatnonzero(series[:, 3] >= 0.0)
+    return series[: there[0] + 1] if len(there) else series
 
 
 def figures_of(samples: np.ndarray) -> dict[str, float]:
-    """Return the figures of an insertion.
+    """Return the figures of an insertion, and what a well-conditioned one is judged by.
 
     Args:
-        samples: Force on the tip, largest force on a window and force of the drive by control step [N], shape (T, 3).
+        samples: Force on the tip, largest force on a window and force of the drive by control step [N], and the tip's
+            arc length from the end of the insertion on [m], shape (T, 4).
     """
-    tip, window, drive = samples.T
+    tip, window, drive, arc = samples.T
     values = (np.percentile(tip, 95), window.mean(), window.max(), CONTROL_STEP * np.sum(window > HIGH), drive.mean())
-    return dict(zip(METRICS, map(float, values), strict=True)) | {"time": CONTROL_STEP * len(tip)}
+    return dict(zip(METRICS, map(float, values), strict=True)) | {
+        "time": CONTROL_STEP * len(tip),
+        "through": float(arc.max() >= 0.0),
+        "peak_base_force": float(drive.max()),
+        "standstill": CONTROL_STEP * longest_halt(arc),
+        "time_near_5N": CONTROL_STEP * float(np.sum(np.abs(window - HIGH) < NEAR * HIGH)),
+    }
+
+
+def longest_halt(arc: np.ndarray) -> int:
+    """Return the largest number of control steps in which the farthest that the tip was grows by less than HALT."""
+    best = np.maximum.accumulate(arc)
+    return max(k - int(np.searchsorted(best, best[k] - HALT, side="right")) for k in range(len(best)))
 
 
 def read_forces(sim: Any, robot: str) -> np.ndarray:

@@ -12,11 +12,13 @@ import numpy as np
 import torch
 
 from arcgym.benchmarks.fidelity.brute_force import sample_contacts
-from arcgym.benchmarks.fidelity.insertions import CONTROL_STEP, LONGEST, SPEED, STEERING, Insertion, build_scene
+from arcgym.benchmarks.fidelity.insertions import CONTROL_STEP, LONGEST, Insertion, build_scene
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, absolute
 
 EVERY = 3
 """Control steps between two samples."""
+EXPERT = {"speed": 0.04, "patience": 25.0, "least_pace": 0.15}
+"""Settings of the expert: its tip catches, which gathers the wall."""
 HOOK = 2.5
 """Angle of the bending section while the scope is withdrawn [rad]."""
 WITHDRAWAL = 0.03
@@ -85,7 +87,7 @@ def commands(scene: Any) -> Iterator[None]:
     from arcgym.experts import make_expert
 
     scope = scene.endoscope
-    expert = make_expert(scene, speed=SPEED, **STEERING["proximal"])
+    expert = make_expert(scene, **EXPERT)
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
     for _ in range(round(LONGEST / CONTROL_STEP)):
         expert.act()
