@@ -14,15 +14,15 @@ from arcgym.assets import PROXIMAL_CFG
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
 from arcgym.benchmarks.fidelity.brute_force import sample_contacts, segment_triangle
-from arcgym.benchmarks.fidelity.indenter import Curve
-from arcgym.benchmarks.fidelity.insertions import figures_of, halved
+from arcgym.benchmarks.fidelity.indenter import Curve, join_curves
+from arcgym.benchmarks.fidelity.insertions import cut, figures_of, halved, longest_halt
 from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.placement import follow
 from arcgym.benchmarks.fidelity.pushes import BEND, DEPTH
 from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.smooth_colon import smooth_stage
 from arcgym.benchmarks.fidelity.tube_model import TubeModel, load_size
-from arcgym.benchmarks.fidelity.tubes import shipped_stage
+from arcgym.benchmarks.fidelity.tubes import Tube, shipped_stage, tube_stage, wall_measures
 from arcgym.benchmarks.fidelity.volumes import shell_volume_ratio
 from arcgym.sim import ContactCfg
 
@@ -125,10 +125,36 @@ def test_a_finer_colon_has_the_shipped_vertices_among_its_own() -> None:
 
 
 def test_figures_of_an_insertion() -> None:
-    samples = np.array([[1.0, 2.0, 3.0], [1.0, 6.0, 5.0]])
+    samples = np.array([[1.0, 2.0, 3.0, -0.01], [1.0, 6.0, 5.0, 0.001]])
     figures = figures_of(samples)
+    assert figures["through"] == 1.0 and figures["peak_base_force"] == 5.0 and figures["time_near_5N"] == 0.0
     assert figures["mean_window_force"] == 4.0 and figures["peak_window_force"] == 6.0
     assert figures["time_above_5N"] == pytest.approx(0.1) and figures["mean_base_force"] == 4.0
+
+
+def test_a_halt_is_the_longest_time_without_two_millimetres() -> None:
+    arc = 0.001 * np.array([0.0, 3.0, 3.5, 1.0, 4.0, 4.5, 8.0])
+    assert longest_halt(arc) == 4  # from 3 mm, in the second sample, to 4.5 mm in the sixth
+
+
+def test_an_insertion_is_cut_where_the_tip_first_comes_through() -> None:
+    series = np.zeros((4, 4))
+    series[:, 3] = -0.1, 0.0, -0.1, 0.1
+    assert len(cut(series)) == 2 and len(cut(series[:1])) == 1
+
+
+def test_curves_of_places_that_end_at_other_loads_are_joined() -> None:
+    short = Curve(np.array([[0.0, 0.001]]), np.array([[0.0, 2.0]]))
+    long = Curve(np.array([[0.0, 0.001, 0.002]]), np.array([[0.0, 1.0, 2.0]]))
+    both = join_curves([short, long])
+    np.testing.assert_allclose(both.depth_at(1.0), [0.0005, 0.001])
+    assert both.force_at(0.001) == 1.5
+
+
+def test_a_bend_has_a_line_of_vertices_on_its_outside() -> None:
+    tube = Tube(0.4, np.radians(90.0), 0.15, 0.05)
+    inner = tube_stage(tube).wall.points.reshape(2, -1, wall_measures().sectors, 3)[0]
+    assert abs(inner[-1, 0, 0]) < 1e-6 and inner[-1, 0, 2] == inner[-1, :, 2].max()  # the bend turns Z to Y
 
 
 def test_distance_of_segment_and_triangle_is_that_of_a_dense_search() -> None:

@@ -9,7 +9,9 @@ vertex of the shipped mesh and at the middle of one triangle. Depth counts from 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,7 @@ import torch
 
 from arcgym.assets.endoscope_spec import EndoscopeSpec, capsule_spec
 from arcgym.benchmarks.fidelity.models import build
+from arcgym.benchmarks.fidelity.processes import in_processes
 from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.tubes import Tube, wall_measures
 from arcgym.sim import WallSolverCfg
@@ -60,7 +63,8 @@ class Curve:
 
     def force_at(self, depth: float) -> float:
         """Return the force at a depth, mean of the places [N]."""
-        return float(np.mean([np.interp(depth, x, f) for x, f in zip(self.depth, self.force, strict=True)]))
+        known = [(x[np.isfinite(f)], f[np.isfinite(f)]) for x, f in zip(self.depth, self.force, strict=True)]
+        return float(np.mean([np.interp(depth, x, f) for x, f in known]))
 
 
 def _crossing(depth: np.ndarray, force: np.ndarray, load: float) -> float:
@@ -73,12 +77,30 @@ def _crossing(depth: np.ndarray, force: np.ndarray, load: float) -> float:
     return float(depth[k - 1] + share * (depth[k] - depth[k - 1]))
 
 
-def indent(run: Run, tube: Tube, material: str, thickness: float | None = None, **cfg: Any) -> Curve:
-    """Drive the indenter into a tube's wall, one world a place; the wall is as thick as its tissue's by default [m]."""
+def indent(
+    run: Run,
+    tube: Tube,
+    material: str,
+    thickness: float | None = None,
+    places: Sequence[str] = tuple(PLACES),
+    top: float = math.inf,
+    **cfg: Any,
+) -> Curve:
+    """Drive the indenter into a tube's wall, one world a place.
+
+    Args:
+        run: Device and folder.
+        tube: The tube.
+        material: Its tissue preset.
+        thickness: Thickness of its wall [m]; the tissue's by default.
+        places: Which of :data:`PLACES`.
+        top: Force at which it ends, once every place has reached it [N].
+        cfg: Changes of ``SimulationCfg``.
+    """
     colon = {"material": material, "wall_thickness": thickness}
-    sim = build(run, indenter(), tube, len(PLACES), colon, **cfg)
+    sim = build(run, indenter(), tube, len(places), colon, **cfg)
     data, measures = sim.endoscope.data, wall_measures()
-    shares = torch.tensor(list(PLACES.values()), device=sim.device)
+    shares = torch.tensor([PLACES[place] for place in places], device=sim.device)
     angle = shares * 2.0 * math.pi / measures.sectors
     across = torch.stack([angle.cos(), angle.sin(), 0.0 * angle], dim=1)
     middle = (round(0.5 * tube.length / tube.spacing()) + shares) * tube.spacing()
@@ -101,9 +123,45 @@ def indent(run: Run, tube: Tube, material: str, thickness: float | None = None, 
         sim.step(round(SAMPLE / sim.physics_dt))
         way.append(((data.body_pos_w[:, 0] - start) * across).sum(dim=1).cpu().numpy())
         force.append(-(data.link_force_w[:, 0] * across).sum(dim=1).cpu().numpy())
+        if (force[-1] > top).all():
+            break
     depth, forces = np.array(way).T, np.array(force).T
     touch = [_crossing(x, f, TOUCH) for x, f in zip(depth, forces, strict=True)]
     return Curve(depth - np.array(touch)[:, None], forces)
+
+
+def indent_both(run: Run, material: str, top: float) -> tuple[Curve, Curve]:
+    """Return the curves of the shipped mesh and of the refined one up to a force [N]; on a CPU each place is a process.
+
+    Args:
+        run: Device and folder.
+        material: Tissue preset.
+        top: Force at which a curve ends [N].
+    """
+    alone = [tuple(PLACES)] if run.device.startswith("cuda") else [(place,) for place in PLACES]
+    tasks = [(run.device, run.folder, fine, material, places, top) for fine in (True, False) for places in alone]
+    curves = in_processes(indent_places, tasks)
+    limit, ours = curves[: len(alone)], curves[len(alone) :]
+    return join_curves(ours), join_curves(limit)
+
+
+def indent_places(device: str, folder: Path, fine: bool, material: str, places: tuple[str, ...], top: float) -> Curve:
+    """Return the curves at some places, of the refined mesh or of the shipped one; what a process of its own does."""
+    torch.set_num_threads(1)
+    own = folder / f"indent_{'fine' if fine else 'shipped'}_{'_'.join(places)}"
+    own.mkdir(parents=True, exist_ok=True)
+    tube, cfg = (REFINED, converged()) if fine else (TUBE, {})
+    return indent(Run(device, own), tube, material, places=places, top=top, **cfg)
+
+
+def join_curves(curves: Sequence[Curve]) -> Curve:
+    """Return the curves of all places, none a number where another place went on."""
+    longest = max(curve.force.shape[1] for curve in curves)
+
+    def fill(values: np.ndarray) -> np.ndarray:
+        return np.pad(values, ((0, 0), (0, longest - values.shape[1])), constant_values=math.nan)
+
+    return Curve(np.concatenate([fill(c.depth) for c in curves]), np.concatenate([fill(c.force) for c in curves]))
 
 
 def indenter() -> EndoscopeSpec:

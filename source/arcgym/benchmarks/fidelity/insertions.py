@@ -7,10 +7,8 @@ Each insertion runs in a process of its own, as many at a time as there are core
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
+from arcgym.benchmarks.fidelity.processes import in_processes
 from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 
@@ -87,12 +86,10 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
     if run.device.startswith("cuda"):
         for case in dict.fromkeys(case for case, _ in missing):
             keep_figures(run, case, range(WORLDS), insert(case, range(WORLDS), run.device, run.folder))
-    elif missing:
-        workers = min(len(missing), len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1)
-        with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-            tasks = [pool.submit(insert, case, (k,), run.device, run.folder) for case, k in missing]
-            for (case, k), task in zip(missing, tasks, strict=True):
-                keep_figures(run, case, (k,), task.result())
+    else:
+        tasks = [(case, (k,), run.device, run.folder) for case, k in missing]
+        for (case, k), figures in zip(missing, in_processes(insert, tasks), strict=True):
+            keep_figures(run, case, (k,), figures)
     return [mean_figures([run.shared["insertion", case, k] for k in range(WORLDS)]) for case in cases]
 
 

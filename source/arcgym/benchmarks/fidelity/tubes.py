@@ -30,6 +30,9 @@ SEGMENT = "sigmoid"
 """Part of the shipped colon that the tubes take their measures from."""
 HELD_SPACINGS = (2, 1)
 """Spacings of the shipped rings over which a tube is held at its start and at its end, as the colon is."""
+OUTSIDE = -0.5 * np.pi
+"""Angle of the outside of a bend, where its first line of vertices is: a tip runs in that groove. In the middle between
+two lines it stands on a ridge, from which it slides to the one side or the other: both are right."""
 FREE = dict.fromkeys(SEGMENTS, 0.0)
 """Anchor stiffness of a tube that is held at its ends alone."""
 
@@ -112,7 +115,7 @@ def tube_stage(tube: Tube) -> ColonStage:
     measures = wall_measures()
     sectors = measures.sectors * tube.refine
     arc = np.linspace(0.0, tube.length, round(tube.length / tube.spacing()) * tube.refine + 1)
-    theta = 2.0 * np.pi * np.arange(sectors) / sectors
+    theta = 2.0 * np.pi * np.arange(sectors) / sectors + (OUTSIDE if tube.bend else 0.0)
     radius = measures.radius if tube.radius is None else tube.radius
     radii = (radius, radius + measures.thickness)
     layers = np.stack([tube.surface(arc, theta, r) for r in radii])

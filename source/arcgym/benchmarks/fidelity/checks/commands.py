@@ -10,12 +10,15 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.placement import follow
+from arcgym.benchmarks.fidelity.processes import in_processes
 from arcgym.benchmarks.fidelity.pushes import BEND, CONTROL_STEP
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, absolute
 from arcgym.benchmarks.lumen import LumenCheck
@@ -28,6 +31,8 @@ SPEED_TIME = 4.0
 """Time for which each command is kept [s]."""
 RANDOM_WORLDS = 20
 """Worlds of random actions."""
+RANDOM_SHARE = 5
+"""Worlds of them in a process, on a CPU."""
 RANDOM_TIME = 30.0
 """Time of each of them [s]: ten minutes in all."""
 REDRAW = 0.2
@@ -80,24 +85,24 @@ def commander(sim: Any, robot: str) -> tuple[int, Callable[[Any], None]]:
     return 4, push
 
 
-class Watch:
-    """Counts links outside the lumen and worlds that are not finite, control step by control step."""
+@dataclass
+class Watched:
+    """What was seen of worlds: links outside the lumen, worlds that are not finite, forces."""
 
-    def __init__(self, sim: Any):
-        """Watch a simulation."""
-        self._sim, self._check = sim, LumenCheck(sim)
-        self.outside, self.broken, self.worlds = 0, 0, np.zeros(sim.num_envs, bool)
-        self.force: list[np.ndarray] = []
+    worlds: np.ndarray
+    """Which worlds had either, shape (N,)."""
+    outside: int = 0
+    """Links outside, counted once a control step."""
+    broken: int = 0
+    """Worlds that are not finite at the end."""
+    force: list[np.ndarray] = field(default_factory=list)
+    """Largest force on a window by control step [N], shape (N,) each."""
 
-    def look(self) -> None:
-        """Count the present state."""
-        outside, _ = self._check.outside()
-        lost = self._sim.non_finite
-        outside = outside & ~lost[:, None]
-        self.outside += int(outside.sum())
-        self.broken = int(lost.sum())
-        self.worlds |= (outside.any(dim=1) | lost).cpu().numpy()
-        self.force.append(self._sim.endoscope.data.window_force_norm.amax(dim=1).cpu().numpy())
+    def join(self, other: Watched) -> None:
+        """Add what was seen of other worlds in the same control steps."""
+        self.worlds = np.concatenate([self.worlds, other.worlds])
+        self.outside, self.broken = self.outside + other.outside, self.broken + other.broken
+        self.force = [np.concatenate(pair) for pair in zip(self.force, other.force, strict=True)]
 
     def plot(self, name: str) -> Plot:
         """Draw the largest force on a window over time, in the worst of the worlds and in the median one."""
@@ -110,6 +115,25 @@ class Watch:
         """Return the events counted; each world that is not finite at the end is one."""
         note = f"{what}: {self.worlds.sum()} of {len(self.worlds)} worlds, {self.broken} not finite"
         return absolute(name, float(self.outside + self.broken), 0.0, 0.0, "", note)
+
+
+class Watch:
+    """Counts links outside the lumen and worlds that are not finite, control step by control step."""
+
+    def __init__(self, sim: Any):
+        """Watch a simulation."""
+        self._sim, self._check = sim, LumenCheck(sim)
+        self.seen = Watched(np.zeros(sim.num_envs, bool))
+
+    def look(self) -> None:
+        """Count the present state."""
+        outside, _ = self._check.outside()
+        lost = self._sim.non_finite
+        outside = outside & ~lost[:, None]
+        self.seen.outside += int(outside.sum())
+        self.seen.broken = int(lost.sum())
+        self.seen.worlds |= (outside.any(dim=1) | lost).cpu().numpy()
+        self.seen.force.append(self._sim.endoscope.data.window_force_norm.amax(dim=1).cpu().numpy())
 
 
 def speeds(run: Run, robot: str) -> list[Row]:
@@ -125,23 +149,37 @@ def speeds(run: Run, robot: str) -> list[Row]:
         command(corners)
         sim.step(round(CONTROL_STEP / sim.physics_dt))
         watch.look()
-    run.plots.append(watch.plot(f"speed_{robot}"))
-    return [watch.row(f"speed_{robot}", f"full commands for {SPEED_TIME:g} s")]
+    run.plots.append(watch.seen.plot(f"speed_{robot}"))
+    return [watch.seen.row(f"speed_{robot}", f"full commands for {SPEED_TIME:g} s")]
 
 
 def random_actions(run: Run, robot: str) -> list[Row]:
-    """Give uniform actions, each kept for five control steps on average."""
+    """Give uniform actions, each kept for five control steps on average; on a CPU each five worlds are a process."""
+    share = RANDOM_WORLDS if run.device.startswith("cuda") else RANDOM_SHARE
+    tasks = [(robot, first, share, run.device, run.folder) for first in range(0, RANDOM_WORLDS, share)]
+    watches = in_processes(watch_random, tasks)
+    both = watches[0]
+    for watch in watches[1:]:
+        both.join(watch)
+    run.plots.append(both.plot(f"random_{robot}"))
+    return [both.row(f"random_{robot}", f"{RANDOM_WORLDS * RANDOM_TIME / 60.0:g} min")]
+
+
+def watch_random(robot: str, first: int, count: int, device: str, folder: Path) -> Watched:
+    """Give the worlds from the first on the random actions that are theirs among all, and return what was seen."""
     import torch
 
-    sim = scene(run, robot, RANDOM_WORLDS)
-    count, command = commander(sim, robot)
+    torch.set_num_threads(1)
+    own = folder / f"random_{robot}_{first}"
+    own.mkdir(parents=True, exist_ok=True)
+    sim = scene(Run(device, own), robot, count)
+    actions, command = commander(sim, robot)
     draw = torch.Generator().manual_seed(1)
-    action, watch = torch.zeros(RANDOM_WORLDS, count), Watch(sim)
+    action, watch = torch.zeros(RANDOM_WORLDS, actions), Watch(sim)
     for _ in range(round(RANDOM_TIME / CONTROL_STEP)):
-        fresh = 2.0 * torch.rand(RANDOM_WORLDS, count, generator=draw) - 1.0
+        fresh = 2.0 * torch.rand(RANDOM_WORLDS, actions, generator=draw) - 1.0
         action = torch.where(torch.rand(RANDOM_WORLDS, 1, generator=draw) < REDRAW, fresh, action)
-        command(action.to(sim.device))
+        command(action[first : first + count].to(sim.device))
         sim.step(round(CONTROL_STEP / sim.physics_dt))
         watch.look()
-    run.plots.append(watch.plot(f"random_{robot}"))
-    return [watch.row(f"random_{robot}", f"{RANDOM_WORLDS * RANDOM_TIME / 60.0:g} min")]
+    return watch.seen
