@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 import torch
 from pixel_tasks import SteerToDot
 from small_agents import runner_cfg
 
 from arcgym.rl import OnPolicyRunner, RslRlPpoAlgorithmCfg
-from arcgym.rl.learning_rate import linear_rate
+from arcgym.rl.learning_rate import linear_rate, set_learning_rate
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
@@ -36,6 +38,14 @@ def test_resumed_run_goes_on_along_the_line(tmp_path):
     resumed.load(str(tmp_path / "model_1.pt"))
     resumed.learn(1)
     assert resumed.alg.optimizer.param_groups[0]["lr"] == resumed.alg.learning_rate == pytest.approx(2e-3)
+
+
+def test_a_rate_that_a_graph_reads_changes_in_place():
+    rate = torch.tensor(4e-3)
+    learner = SimpleNamespace(optimizer=torch.optim.Adam([torch.zeros(1)], lr=rate))
+    set_learning_rate(learner, 1e-3)
+    assert learner.optimizer.param_groups[0]["lr"] is rate
+    assert float(rate) == pytest.approx(1e-3)
 
 
 def test_adaptive_schedule_is_refused():

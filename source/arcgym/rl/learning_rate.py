@@ -22,9 +22,15 @@ def linear_rate(start: float, end: float, fraction: float) -> float:
 
 
 def set_learning_rate(algorithm: Any, rate: float) -> None:
-    """Give every optimizer of an algorithm the same learning rate, and the log the value."""
+    """Give every optimizer of an algorithm the same learning rate, and the log the value.
+
+    Rates that are tensors are written in place: a CUDA graph reads them there.
+    """
     for optimizer in vars(algorithm).values():
         if isinstance(optimizer, torch.optim.Optimizer):
             for group in optimizer.param_groups:
-                group["lr"] = rate
+                if isinstance(group["lr"], torch.Tensor):
+                    group["lr"].fill_(rate)
+                else:
+                    group["lr"] = rate
     algorithm.learning_rate = rate

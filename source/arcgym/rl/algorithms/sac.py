@@ -105,7 +105,7 @@ class SAC:
         self.target_entropy = -float(num_actions) if target_entropy is None else target_entropy
         self.log_temperature = torch.tensor(math.log(init_temperature), device=device, requires_grad=learn_temperature)
         self.uses_graphs = use_cuda_graphs and torch.device(device).type == "cuda" and not self.is_multi_gpu
-        adam = partial(torch.optim.Adam, lr=learning_rate, capturable=self.uses_graphs)
+        adam = partial(torch.optim.Adam, lr=self._rate(learning_rate), capturable=self.uses_graphs)
         self.actor_optimizer = adam(self.actor.parameters())
         self.critic_optimizer = adam(self.critics.parameters())
         self.temperature_optimizer = adam([self.log_temperature])
@@ -279,6 +279,8 @@ class SAC:
             self.log_temperature.copy_(loaded_dict["log_temperature"])
         for optimizer, state in zip(self._optimizers(), loaded_dict["optimizer_state_dicts"], strict=True):
             optimizer.load_state_dict(state)
+            for group in optimizer.param_groups:
+                group["lr"] = self._rate(group["lr"])
         self.num_updates, self._owed = loaded_dict["num_updates"], loaded_dict["owed"]
         return True
 
@@ -357,6 +359,10 @@ class SAC:
             for model in (self.actor, *self.critics):
                 model.update_normalization(obs)  # type: ignore[operator]
         self._fresh.clear()
+
+    def _rate(self, rate: float | torch.Tensor) -> float | torch.Tensor:
+        """Return a learning rate as the optimizers keep it: graphs read it from the device, where it can change."""
+        return torch.tensor(float(rate), device=self.device) if self.uses_graphs else float(rate)
 
     def _optimizers(self) -> tuple[torch.optim.Optimizer, ...]:
         return self.actor_optimizer, self.critic_optimizer, self.temperature_optimizer
