@@ -13,6 +13,7 @@ from small_agents import runner_cfg
 from arcgym.rl import constrained_runner, export_policy_as_jit
 from arcgym.rl.agent_cfgs.ppo_masked import ActionConstraintCfg, RslRlConstrainedRunnerCfg
 from arcgym.rl.constrained_runner import ConstrainedRunner
+from arcgym.rl.trained_policy import trained_policy
 
 
 @pytest.fixture
@@ -29,13 +30,16 @@ def env(monkeypatch) -> SteerToDot:
     return env
 
 
-def make_runner(env, **switches) -> ConstrainedRunner:
-    torch.manual_seed(0)
+def make_cfg(**switches) -> RslRlConstrainedRunnerCfg:
     base = runner_cfg()
     constraint = ActionConstraintCfg(**switches)
     values = {name: getattr(base, name) for name in vars(base) if name != "class_name"}
-    cfg = RslRlConstrainedRunnerCfg(**values, action_constraint=constraint)
-    return ConstrainedRunner(env, cfg.to_dict(), device="cpu")
+    return RslRlConstrainedRunnerCfg(**values, action_constraint=constraint)
+
+
+def make_runner(env, **switches) -> ConstrainedRunner:
+    torch.manual_seed(0)
+    return ConstrainedRunner(env, make_cfg(**switches).to_dict(), device="cpu")
 
 
 def allowed(actions: torch.Tensor) -> torch.Tensor:
@@ -64,6 +68,14 @@ def test_evaluation_obeys_if_asked_to(env, in_evaluation):
     expected = allowed(free) if in_evaluation else free
     assert not torch.equal(allowed(free), free)
     torch.testing.assert_close(runner.get_inference_policy("cpu")(obs), expected)
+
+
+@pytest.mark.parametrize("in_evaluation", [True, False])
+def test_a_loaded_policy_says_that_it_obeys_rules(env, tmp_path, capsys, in_evaluation):
+    make_runner(env).save(str(tmp_path / "model_0.pt"))
+    env.device = "cpu"
+    trained_policy(env, make_cfg(in_evaluation=in_evaluation), tmp_path / "model_0.pt")
+    assert ("agent.action_constraint.in_evaluation=false" in capsys.readouterr().out) == in_evaluation
 
 
 def test_exported_policy_is_free_of_the_rules(env, tmp_path):
