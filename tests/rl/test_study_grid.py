@@ -9,10 +9,13 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.study import SHIPPED
+from arcgym.cli.task import agent_key
 from arcgym.rl.studies.grid import hydra_value
 from arcgym.rl.studies.launch import all_cells, check_cells
 from arcgym.rl.studies.study_cfg import StudyCfg, find_study, read_study
 from arcgym.utils.errors import UsageError
+from arcgym.utils.hydra import apply_overrides
+from arcgym.utils.registry import load_cfg_from_registry
 
 FOLDER = Path("/studies/one")
 RECTUM, SIGMOID = "ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"
@@ -92,6 +95,34 @@ def test_a_resumed_cell_makes_the_iterations_that_are_left(tmp_path):
     assert words[words.index("--max_iterations") + 1] == "15"
     assert words[words.index("--checkpoint") + 1].endswith("run_1/model_9.pt")
     assert words[words.index("--log_dir") + 1].endswith("run_3")
+
+
+def test_an_algorithm_may_be_another_one_with_values_given_whole():
+    whole = "agent.algorithm.limits={tip_force: 0.2}"
+    cfg = study(
+        algorithm="gentle", algorithms={"gentle": {"like": "ppo_lagrangian", "overrides": [whole], "env": {"a": 1}}}
+    )
+    (cell,) = all_cells(cfg, FOLDER)
+    words = cell.command(None)
+    assert cell.name == "rectum-magnetic_gentle_seed1"
+    assert words[words.index("--agent") + 1] == "ppo_lagrangian"
+    assert cell.overrides == ("env.a=1", whole)
+
+
+def test_the_limits_study_fits_its_task():
+    """Limits and controls reach the configurations: 0.05, 0.2 and 1 s, a price of 1, and an early end after 0.2 s."""
+    limits, prices, ends = [], [], []
+    for cell in all_cells(read_study(find_study("limits", SHIPPED)), FOLDER):
+        env_cfg = load_cfg_from_registry(cell.task, "env_cfg_entry_point")
+        agent_cfg = load_cfg_from_registry(cell.task, agent_key(cell.like or cell.algorithm))
+        apply_overrides({"env": env_cfg, "agent": agent_cfg}, cell.overrides)
+        algorithm = agent_cfg.algorithm
+        limits.append(getattr(algorithm, "limits", {}).get("tip_force"))
+        prices.append(algorithm.multiplier.init if hasattr(algorithm, "multiplier") else None)
+        ends.append(env_cfg.terminations.cost_limit and env_cfg.terminations.cost_limit.params["limit"])
+    assert limits == [None, 0.05, 0.2, 1.0, 0.0, None, None]
+    assert prices == [None, 0.001, 0.001, 0.001, 1.0, None, None]
+    assert ends == [None, None, None, None, None, 0.2, None]
 
 
 @pytest.mark.parametrize(

@@ -140,6 +140,9 @@ class TerminationsCfg:
     perforation: DoneTerm | None = None
     """Off, as in the paper. Ends the episode at a tip force that may perforate, 14.1 N by default:
     ``DoneTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "perforation"})``."""
+    cost_limit: DoneTerm | None = None
+    """Off. Ends the episode when its cost passes a limit, with which constrained algorithms are compared:
+    ``DoneTerm(func=mdp.episode_cost_above, params={"limit": 0.5, "cost": "tip_force"})``."""
 
 
 @configclass

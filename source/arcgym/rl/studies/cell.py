@@ -64,6 +64,9 @@ class Cell:
     overrides: tuple[str, ...] = ()
     """Overrides ``env.…=…`` and ``agent.…=…``."""
 
+    like: str | None = None
+    """Registered agent, where ``algorithm`` is a name of the study's own."""
+
     @property
     def name(self) -> str:
         """Name of the cell, which is that of its folder."""
@@ -99,7 +102,8 @@ class Cell:
 
     def command(self, device: str | None) -> list[str]:
         """Return the command that starts this cell, or goes on with it."""
-        words = [sys.executable, "-m", "arcgym", "train", "--task", self.task, "--agent", self.algorithm]
+        words = [sys.executable, "-m", "arcgym", "train", "--task", self.task]
+        words += ["--agent", self.like or self.algorithm]
         words += ["--seed", str(self.seed), "--log_dir", str(self.folder / f"run_{len(self.runs) + 1}")]
         iterations = self.max_iterations or (ENDLESS if self.minutes else None)
         checkpoint = self.checkpoint()

@@ -51,8 +51,10 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
     groups = [values["tasks"].get(task, {}), values["algorithms"].get(values["algorithm"], {})]
     merged = {name: values[name] for name in ("num_envs", "minutes", "max_iterations")}
     overrides: dict[str, Any] = {}
+    whole: list[str] = []
     for group in ({"env": values["env"], "agent": values["agent"]}, *groups):
-        merged |= {name: value for name, value in group.items() if name not in ("env", "agent")}
+        merged |= {name: value for name, value in group.items() if name not in ("env", "agent", "overrides")}
+        whole += group.get("overrides", ())
         for kind in ("env", "agent"):
             overrides |= dict(_leaves(group.get(kind, {}), kind))
     axes = {}
@@ -60,7 +62,7 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
         if name not in NAMED:
             axes[name] = values[name] if name in AXES else _at(values, name)
             (merged if name in AXES else overrides)[name] = axes[name]
-    texts = tuple(f"{path}={hydra_value(value)}" for path, value in overrides.items())
+    texts = (*(f"{path}={hydra_value(value)}" for path, value in overrides.items()), *whole)
     return Cell(
         study, task, values["algorithm"], values["seed"], axes, evaluate=values["evaluate"], overrides=texts, **merged
     )

@@ -150,10 +150,10 @@ def _check_settings(cell: Cell) -> None:
         return
     now = cell.settings()
     for name in now:
-        if name not in ("minutes", "max_iterations") and began[name] != now[name]:
+        if name not in ("minutes", "max_iterations") and began.get(name) != now[name]:
             raise UsageError(
-                f"The cell '{cell.name}' was begun with other settings: {name} {began[name]}, now {now[name]}. Choose "
-                f"another --folder, or remove {cell.folder}."
+                f"The cell '{cell.name}' was begun with other settings: {name} {began.get(name)}, now {now[name]}. "
+                f"Choose another --folder, or remove {cell.folder}."
             )
 
 

@@ -19,7 +19,7 @@ from arcgym.utils.validation import FieldError, require_at_least, require_positi
 AXES = ("algorithm", "task", "robot", "seed", "num_envs", "minutes", "max_iterations")
 """Names that the grid may vary, beside paths ``env.…`` and ``agent.…``."""
 
-GROUP_FIELDS = ("num_envs", "minutes", "max_iterations", "env", "agent", "after")
+GROUP_FIELDS = ("num_envs", "minutes", "max_iterations", "env", "agent", "after", "like", "overrides")
 """Names that the settings of one algorithm or one task may have."""
 
 
@@ -66,7 +66,9 @@ class StudyCfg:
 
     algorithms: dict[str, dict[str, Any]] = {}
     """Settings of single algorithms, on top of those. ``after`` names an algorithm of the grid that must be finished
-    first; the text ``{checkpoint}`` in a value stands for its last checkpoint with the same task and seed."""
+    first; the text ``{checkpoint}`` in a value stands for its last checkpoint with the same task and seed. ``like``
+    names the agent of an algorithm that is another one with other settings. ``overrides`` is a list of texts as on the
+    command line, for values that are given whole: ``["agent.algorithm.limits={tip_force: 0.2}"]``."""
 
     grid: dict[str, list[Any]] = {}
     """Values by name: ``algorithm``, ``task``, ``robot``, ``seed``, ``num_envs``, ``minutes``, ``max_iterations``, or a
