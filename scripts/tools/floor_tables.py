@@ -3,6 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Make the tables of ``docs/evaluation.md`` from result folders, between its two marks.
 
+A task is shown of the agents that have run all of its trials: those that end early come first, so that a part would be
+another sample.
+
 python scripts/tools/floor_tables.py results --commit 1e655ad           # prints them
 python scripts/tools/floor_tables.py results --commit 1e655ad --write   # writes them into the page
 """
@@ -10,6 +13,7 @@ python scripts/tools/floor_tables.py results --commit 1e655ad --write   # writes
 from __future__ import annotations
 
 import argparse
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -18,6 +22,7 @@ from arcgym.evaluation.result_folder import RUN_FILE, read_run, read_trial_rows
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
+from arcgym.evaluation.trials import read_conditions
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "evaluation.md"
 BEGIN, END = "<!-- floor -->", "<!-- end of floor -->"
@@ -55,13 +60,20 @@ def main() -> None:
 def tables(folders: Sequence[Path], commit: str | None) -> str:
     """Return a table a suite, in the suites' order, with what was run where."""
     runs = [(read_run(folder), read_trial_rows(folder)) for folder in folders]
-    runs = [(run, rows) for run, rows in runs if rows]
+    runs = [(run, rows) for run, rows in runs if run["agent"] in AGENTS and rows]
     parts = [f"{_origin([run for run, _ in runs], commit)}\n"]
-    for suite in read_suites():
-        rows = [row for run, rows in runs if run["suite"] == suite for row in rows]
+    for name, suite in read_suites().items():
+        count = len(read_conditions(suite.conditions_path).trials)
+        rows = _whole([row for run, rows in runs if run["suite"] == name for row in rows], count)
         if rows:
-            parts.append(f"**`{suite}`**\n\n{_table(rows)}")
+            parts.append(f"**`{name}`**\n\n{_table(rows)}")
     return "\n".join(parts)
+
+
+def _whole(rows: Sequence[dict[str, Any]], count: int) -> list[dict[str, Any]]:
+    """Return the rows of the agents and tasks that have ``count`` trials."""
+    numbers = Counter((row["task"], row["agent"]) for row in rows)
+    return [row for row in rows if numbers[row["task"], row["agent"]] == count]
 
 
 def _origin(runs: Sequence[dict[str, Any]], commit: str | None) -> str:
