@@ -77,6 +77,14 @@ def test_costs_are_indicators(env) -> None:
     assert CostTermCfg(func=mdp.view_blocked).params == {}
 
 
+def test_a_corner_is_visible_off_center_and_a_flat_wall_is_centered_and_no_lumen(env) -> None:
+    """World 0: one deep pixel of 24 in the corner, s_c = 0 and s_o = 2 * 0.6 * 1 * 1 - 1 = 0.2. World 1: s_o = -1."""
+    env.scene["camera"].data.output["depth"][0, 0, 0] = 0.2
+    assert mdp.centered_rate(env).tolist() == [False, True]
+    assert mdp.visible_rate(env).tolist() == [True, False]
+    assert mdp.visible_rate(env, threshold=0.3).tolist() == [False, False]
+
+
 def test_progress_fraction_is_clamped(env) -> None:
     env.scope.tip_arc_length[:] = torch.tensor([0.2, 0.7])
     torch.testing.assert_close(mdp.progress_fraction(env), torch.tensor([0.25, 1.0]))
