@@ -7,16 +7,14 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from arcgym.anatomy.validation.surface_distance import surface_samples as spread
 
-def surface_samples(points: np.ndarray, faces: np.ndarray, spacing: float, seed: int = 0) -> np.ndarray:
+
+def surface_samples(points: np.ndarray, faces: np.ndarray, spacing: float) -> np.ndarray:
     """Return random points spread evenly over a surface, about one per square of edge ``spacing``, shape (n, 3)."""
     a, b, c = (points[faces[:, k]].astype(float) for k in range(3))
-    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    rng = np.random.default_rng(seed)
-    face = rng.choice(len(faces), int(area.sum() / spacing**2), p=area / area.sum())
-    u, v = rng.uniform(size=(2, len(face), 1))
-    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
-    return a[face] + u * (b[face] - a[face]) + v * (c[face] - a[face])
+    area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+    return spread(points, faces, int(area / spacing**2))
 
 
 def hausdorff95(a: np.ndarray, b: np.ndarray) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from typing import ClassVar
 import torch
 
 from arcgym.experts.expert_base import ExpertBase
+from arcgym.experts.loops import Loops
 from arcgym.experts.lumen_way import LumenWay, along
 from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
@@ -29,7 +30,8 @@ LOOPED = 0.2
 class PushExpert(ExpertBase):
     """Bends the tip towards the way that is open and pushes; withdraws where it does not get on.
 
-    As an examiner does, it may jiggle the shaft, turn it to and fro, and withdraw so far that loops straighten.
+    As an examiner does, it may jiggle the shaft and turn it to and fro, and where more scope goes in than the tip gets
+    on, it pulls back until loops have straightened or the tip slips.
     """
 
     VARIED: ClassVar[dict[str, tuple[float, float]]] = {
@@ -41,6 +43,7 @@ class PushExpert(ExpertBase):
         "twist": (0.0, 0.8),
         "least_pace": (0.15, 0.8),
         "patience": (25.0, 120.0),
+        "slack": (0.04, 0.4),
     }
 
     PERIOD = 40
@@ -56,6 +59,7 @@ class PushExpert(ExpertBase):
         twist: float = 0.0,
         least_pace: float = 0.4,
         patience: float = 60.0,
+        slack: float = 0.15,
     ):
         """Keep the settings; each may be one number or one a world.
 
@@ -69,24 +73,29 @@ class PushExpert(ExpertBase):
             twist: Amplitude of turning the shaft to and fro [rad/s].
             least_pace: Share of the speed at which it is pushed where the way is off to a side.
             patience: Control steps without progress after which it withdraws: until then the push grows.
+            slack: Length of scope that may go into loops, beyond where it lay straightest, before it is pulled back to
+                straighten them [m].
         """
         super().__init__(scene, speed)
         self.look, self.gain, self.largest = self.each(look), self.each(gain), self.each(largest)
         self.jiggle, self.twist = self.each(jiggle), self.each(twist)
-        self.least_pace, self.patience = self.each(least_pace), self.each(patience)
+        self.least_pace, self.patience, self.slack = self.each(least_pace), self.each(patience), self.each(slack)
         self.bending = torch.zeros(scene.num_envs, 2, device=scene.device)
         """Commanded pitch and yaw [rad], shape (N, 2)."""
         self.velocity = torch.zeros(scene.num_envs, device=scene.device)
         """Commanded insertion [m/s], shape (N,)."""
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=self.patience, first=10, longest=60)
+        self._loops = Loops(scene.num_envs, scene.device, self.slack)
         self._turn = torch.zeros_like(self.velocity)
         self._steps = torch.zeros_like(self.velocity)
 
     def act(self) -> None:
         """Set bending and insertion commands."""
-        backs, begins = self._retreat.update(self.scene["endoscope"].data.tip_arc_length)
-        backs, begins = backs & (self.speed > 0.0), begins & (self.speed > 0.0)
+        data, inserts = self.scene["endoscope"].data, self.speed > 0.0
+        backs, begins = self._retreat.update(data.tip_arc_length)
+        straightens, starts = self._loops.update(data.tip_arc_length, data.inserted_length)
+        backs, begins = (backs | straightens) & inserts, (begins | starts) & inserts
         self._turn = torch.where(begins, 1.2 * self.uniform("turn") - 0.6, self._turn)
         self._steps += 1.0
         angle = self._bend(torch.where(backs, 0.5, 1.0))
@@ -105,6 +114,7 @@ class PushExpert(ExpertBase):
         self.velocity[env_ids] = 0.0
         self._steps[env_ids] = 0.0
         self._retreat.reset(env_ids)
+        self._loops.reset(env_ids)
 
     def merit(self) -> torch.Tensor:
         """Return the arc length of the tip less a share of the scope that lies in loops [m], shape (N,)."""
@@ -113,7 +123,7 @@ class PushExpert(ExpertBase):
 
     def memory(self) -> list[torch.Tensor]:
         """Return the commands of each world, and how far it came."""
-        return [*self._retreat.memory, self.bending, self.velocity, self._turn, self._steps]
+        return [*self._retreat.memory, *self._loops.memory, self.bending, self.velocity, self._turn, self._steps]
 
     def _bend(self, share: torch.Tensor) -> torch.Tensor:
         """Bend towards the way by a share of the gain, shape (N,); return the angle to it [rad], shape (N,)."""

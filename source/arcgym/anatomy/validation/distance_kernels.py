@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Kernel of the signed distance to a closed surface."""
+"""Kernels of the distance to a surface."""
 
 import warp as wp
 
@@ -22,3 +22,11 @@ def signed_distances(mesh: wp.uint64, points: wp.array[wp.vec3], out: wp.array[f
     found = wp.mesh_query_point_sign_winding_number(mesh, points[i], FAR, ACCURACY, INSIDE)
     nearest = wp.mesh_eval_position(mesh, found.face, found.u, found.v)
     out[i] = -found.sign * wp.length(nearest - points[i])
+
+
+@wp.kernel
+def distances(mesh: wp.uint64, points: wp.array[wp.vec3], out: wp.array[float]):
+    """Distance of each point to the nearest triangle of the mesh [m]. Launch (n,)."""
+    i = wp.tid()
+    found = wp.mesh_query_point_no_sign(mesh, points[i], FAR)
+    out[i] = wp.length(wp.mesh_eval_position(mesh, found.face, found.u, found.v) - points[i])
