@@ -36,7 +36,8 @@ def subcommand(line: str) -> str:
 
 def flags(name: str) -> set[str]:
     module = importlib.import_module(COMMANDS[name][0])
-    parser = CommandParser(f"arcgym {name}", "", getattr(module, "TAKES_OVERRIDES", False))
+    accepts = (getattr(module, mark, False) for mark in ("TAKES_OVERRIDES", "PASSES_ON"))
+    parser = CommandParser(f"arcgym {name}", "", *accepts)
     module.add_arguments(parser)
     return set(parser._option_string_actions)
 

@@ -99,6 +99,17 @@ def test_refused_files_are_in_the_table_and_not_tried_again(release: Path, capsy
     assert rows(out)[0]["problem"] == "error: said before"
 
 
+def test_options_after_two_dashes_go_to_the_import(tmp_path: Path) -> None:
+    """Wherever the command's own options stand; import-colon says what is wrong with them before any work."""
+    folder = tmp_path / "masks"
+    folder.mkdir()
+    write_volume(folder / "tube_prone.mha")
+    command = [str(folder), str(tmp_path / "colons"), "--licence", "CC0", "--", "--voxels", "3"]
+    with pytest.raises(SystemExit, match="2"):
+        run_command("import-dataset", command)
+    assert "unknown flag '--voxels'" in (tmp_path / "colons" / "logs" / "tube_prone.log").read_text()
+
+
 @pytest.mark.slow
 def test_mask_becomes_a_colon_once(tmp_path: Path) -> None:
     folder, out = tmp_path / "masks", tmp_path / "colons"

@@ -25,6 +25,8 @@ from arcgym.utils.errors import UsageError
 if TYPE_CHECKING:
     from arcgym.anatomy.importing.dataset import Scan
 
+PASSES_ON = True
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the folders and which files are taken."""
@@ -38,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--limit", type=positive, help="import no more than so many files, the first by name")
     parser.add_argument("--timeout", type=positive, default=900, help="longest time of an import [s] (default: 900)")
     parser.add_argument("--retry", action="store_true", help="try files again that were refused")
-    parser.add_argument("options", nargs="*", metavar="-- OPTION", help="options of import-colon, for every file")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -91,7 +92,7 @@ def _import(scan: Scan, args: argparse.Namespace) -> str:
     from arcgym.anatomy.importing.dataset import refusal
 
     command = [sys.executable, "-m", "arcgym", "import-colon", str(scan.path), str(args.out / scan.name)]
-    command += ["--posture", scan.posture, "--patient", scan.about, "--licence", args.licence, *args.options]
+    command += ["--posture", scan.posture, "--patient", scan.about, "--licence", args.licence, *args.passed_on]
     log, began = args.out / "logs" / f"{scan.name}.log", time.monotonic()
     with log.open("w") as file:
         try:

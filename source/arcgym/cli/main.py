@@ -89,7 +89,8 @@ def run_command(name: str, argv: Sequence[str] | None = None, prog: str | None =
         prog: Name to show in messages; None takes ``arcgym <name>``.
     """
     module = importlib.import_module(COMMANDS[name][0])
-    parser = CommandParser(prog or f"arcgym {name}", module.__doc__, getattr(module, "TAKES_OVERRIDES", False))
+    accepts = (getattr(module, mark, False) for mark in ("TAKES_OVERRIDES", "PASSES_ON"))
+    parser = CommandParser(prog or f"arcgym {name}", module.__doc__, *accepts)
     module.add_arguments(parser)
     args = parser.parse(sys.argv[1:] if argv is None else argv)
     try:

@@ -19,13 +19,21 @@ OVERRIDE = re.compile(r"\+?(env|agent)\.[^=]*=.*", re.DOTALL)
 class CommandParser(argparse.ArgumentParser):
     """Parser of one subcommand. Flags are written out in full: an abbreviation could mean another flag tomorrow."""
 
-    def __init__(self, prog: str, description: str | None, takes_overrides: bool = False, **kwargs: Any):
+    def __init__(
+        self,
+        prog: str,
+        description: str | None,
+        takes_overrides: bool = False,
+        passes_on: bool = False,
+        **kwargs: Any,
+    ):
         """Create the parser.
 
         Args:
             prog: Command as it was typed, such as ``arcgym train``.
             description: Text of ``--help``.
             takes_overrides: Whether ``env.…=value`` and ``agent.…=value`` are accepted.
+            passes_on: Whether arguments after ``--`` are accepted, for another command.
             kwargs: Further arguments of ``argparse.ArgumentParser``.
         """
         epilog = "Any other argument is an override: env.scene.num_envs=64 agent.algorithm.learning_rate=1e-4"
@@ -37,13 +45,21 @@ class CommandParser(argparse.ArgumentParser):
             allow_abbrev=False,
             **kwargs,
         )
-        self.takes_overrides = takes_overrides
+        self.takes_overrides, self.passes_on = takes_overrides, passes_on
         self.override = OVERRIDE
         """Form of the overrides that are accepted."""
 
     def parse(self, argv: Sequence[str]) -> argparse.Namespace:
-        """Return the arguments; overrides are in ``overrides``. A mistake exits with status 2."""
-        args, rest = self.parse_known_args(list(argv))
+        """Return the arguments; overrides are in ``overrides``, those after ``--`` in ``passed_on``.
+
+        A mistake exits with status 2.
+        """
+        own, passed_on = list(argv), list[str]()
+        if self.passes_on and "--" in own:
+            at = own.index("--")
+            own, passed_on = own[:at], own[at + 1 :]
+        args, rest = self.parse_known_args(own)
+        args.passed_on = passed_on
         args.overrides = [text for text in rest if self.takes_overrides and self.override.fullmatch(text)]
         for text in rest:
             if text not in args.overrides:

@@ -59,7 +59,7 @@ class PushExpert(ExpertBase):
         twist: float = 0.0,
         least_pace: float = 0.4,
         patience: float = 60.0,
-        slack: float = 0.15,
+        slack: float = math.inf,
     ):
         """Keep the settings; each may be one number or one a world.
 
@@ -74,7 +74,7 @@ class PushExpert(ExpertBase):
             least_pace: Share of the speed at which it is pushed where the way is off to a side.
             patience: Control steps without progress after which it withdraws: until then the push grows.
             slack: Length of scope that may go into loops, beyond where it lay straightest, before it is pulled back to
-                straighten them [m].
+                straighten them [m]; infinite for never.
         """
         super().__init__(scene, speed)
         self.look, self.gain, self.largest = self.each(look), self.each(gain), self.each(largest)
