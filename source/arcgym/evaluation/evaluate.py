@@ -43,9 +43,12 @@ SET_HERE = (
 )
 """Fields that an evaluation sets itself."""
 
-ON_GPU, ON_CPU = 256, 30
-"""Worlds, and patients, at a time where no number is given. On a GPU a step of 256 worlds takes little longer than one
-of 30; on a CPU its time grows with their number."""
+WORLDS = {"cuda": 256, "cpu": 6}
+"""Worlds at a time where no number is given, by kind of device. On a GPU a step of 256 worlds takes little longer than
+one of 30. On a CPU its time grows with their number, those included for which no trial is left while the last end."""
+
+PATIENTS = {"cuda": 256, "cpu": 64}
+"""Patients at a time where no number is given, by kind of device."""
 
 LoadCfgs = Callable[[str, Path | None], tuple[Any, Any]]
 """From task and checkpoint to the configurations of environment and agent."""
@@ -70,10 +73,10 @@ class EvaluationOptions:
     """Overrides of the configurations, for the record."""
 
     num_envs: int | None = None
-    """Largest number of worlds at a time, :data:`ON_GPU` or :data:`ON_CPU` for None. Results do not depend on it."""
+    """Largest number of worlds at a time; None takes that of :data:`WORLDS`. Results do not depend on it."""
 
     num_patients: int | None = None
-    """Largest number of patients in the memory of the device at a time, as ``num_envs``."""
+    """Largest number of patients in the memory of the device at a time; None takes that of :data:`PATIENTS`."""
 
     device: str | None = None
     """``cpu``, ``cuda`` or ``cuda:<n>``; None takes the first GPU, or the CPU where there is none."""
@@ -81,9 +84,9 @@ class EvaluationOptions:
     share: Share = Share()
     """Trials that are run."""
 
-    def most(self, number: int | None) -> int:
-        """Return a largest number of worlds or patients, or the device's where none was given."""
-        return number or (ON_CPU if choose_device(self.device) == "cpu" else ON_GPU)
+    def most(self, given: int | None, usual: dict[str, int]) -> int:
+        """Return a largest number of worlds or patients: the given one, or that of the kind of device."""
+        return given or usual[choose_device(self.device).partition(":")[0]]
 
 
 def evaluate(
@@ -107,7 +110,7 @@ def evaluate(
         trials = options.share.trials(conditions.trials)
         left = [trial for trial in trials if trial.trial not in done]
         print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
-        for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients)):
+        for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
             _run_batch(task, agent, batch, load_cfgs, options, folder)
     return folder
 
@@ -207,7 +210,7 @@ def opened(
     """
     env_cfg, agent_cfg = cfgs
     _hold_patients(env_cfg, patients_of(trials))
-    env_cfg.scene.num_envs = min(options.most(options.num_envs), len(trials))
+    env_cfg.scene.num_envs = min(options.most(options.num_envs, WORLDS), len(trials))
     env_cfg.recorders = None
     place(env_cfg, agent_cfg, options.device)
     env = make_env(split_task(task)[0], env_cfg, agent_cfg)
