@@ -17,6 +17,10 @@ MAX_HARDENING = wp.constant(3.0)
 """Depth beyond which a contact does not harden any more, in multiples of its hardening depth."""
 CLEARANCE = wp.constant(0.25)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
+BEHIND_REACH = wp.constant(0.5)
+"""Share of its radius up to which a link can be behind a face that it went through; a face behind which it is farther
+away is another side of a fold. Twice ``CLEARANCE``: a link that close to the wall is behind the faces around it at no
+more than that, where they meet its axis at the angle of ``BEHIND_COSINE``."""
 
 
 @wp.struct

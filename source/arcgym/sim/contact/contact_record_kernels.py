@@ -8,7 +8,15 @@ W worlds, L links a world, S contact slots a world, V wall vertices.
 
 import warp as wp
 
-from arcgym.sim.contact.contact_kernels import CLEARANCE, ContactLaw, ContactRecords, LinkShapes, carried, softness
+from arcgym.sim.contact.contact_kernels import (
+    BEHIND_REACH,
+    CLEARANCE,
+    ContactLaw,
+    ContactRecords,
+    LinkShapes,
+    carried,
+    softness,
+)
 from arcgym.sim.contact.contact_search_kernels import Candidates, sum_before
 from arcgym.sim.contact.lumen_kernels import FAR, LumenSurface
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
@@ -105,6 +113,25 @@ def closest_point(
     t = segment_parameter(p, center - axis, center + axis)
     out.direction = wp.normalize(p - center - (2.0 * t - 1.0) * axis)
     return out
+
+
+@wp.func
+def side_normal(point: ClosestPoint, distance: float, nearest: float, radius: float) -> wp.vec3:
+    """Return the normal that tells on which side of a face a link is, see ``contact_geometry``.
+
+    That of the wall if the link may have gone through the face, else the direction to it: the link is then in front of
+    the face whichever way it turns. Where a wall is crumpled, a link has one fold at its axis and others around it,
+    whose far sides are towards it: taken for faces that it went through, they threw it about with hundreds of newtons.
+
+    Args:
+        point: Closest point of the face.
+        distance: Distance of the face from the link's axis [m].
+        nearest: Least distance of a face from it [m].
+        radius: Radius of the link [m].
+    """
+    if nearest > CLEARANCE * radius or distance > BEHIND_REACH * radius:
+        return point.direction
+    return point.normal
 
 
 @wp.struct
@@ -219,9 +246,7 @@ def locate_contact(
     records.ring[slot] = surface.ring[face]
     edges = edge_proximity(u[0]) + edge_proximity(u[1]) + edge_proximity(u[2])
     records.weight[slot] = softness(law, moduli[w]) * wp.pow(EDGE_WEIGHT, edges)
-    records.normal[slot] = point.normal
-    if nearest[w, link] > CLEARANCE * links.radius[link]:
-        records.normal[slot] = point.direction
+    records.normal[slot] = side_normal(point, records.distance[slot], nearest[w, link], links.radius[link])
     records.slide[slot] = past_slide(past, face, link, w, records.capacity)
 
 

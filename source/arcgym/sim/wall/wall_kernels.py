@@ -21,6 +21,7 @@ from arcgym.sim.contact.contact_kernels import (
 from arcgym.sim.contact.self_contact_kernels import SelfContactForce
 from arcgym.sim.wall.anchor_kernels import Anchors, anchor_hessian, anchor_pull
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.math_kernels import clamp_length
 
 
 @wp.struct
@@ -289,6 +290,7 @@ def predict(
     nodes: WallNodes,
     tissue: Tissue,
     decay: float,
+    largest_speed: float,
     dt: float,
     x: wp.array2d[wp.vec3],
     x_prev: wp.array2d[wp.vec3],
@@ -301,6 +303,7 @@ def predict(
         nodes: Vertices of all patients.
         tissue: Values of each world.
         decay: Factor on the velocity over the step.
+        largest_speed: Speed at most [m/s].
         dt: Physics step [s].
         x: Positions [m], shape (V, W); moved on in place.
         x_prev: Positions before [m], shape (V, W); written.
@@ -310,7 +313,7 @@ def predict(
     target = x[i, w]
     x_prev[i, w] = target
     if nodes.mobile[i, nodes.patient[w]] == 1 and tissue.rigid[w] == 0:
-        target += decay * dt * v[i, w]
+        target += dt * clamp_length(decay * v[i, w], largest_speed)
     inertial[i, w] = target
     x[i, w] = target
 

@@ -152,9 +152,8 @@ class WallSolver:
             wall_kernels.share_debts, contact.debt.shape, [contact.links, contact.law, contact.debt], [contact.records]
         )
         decay = math.exp(-self.cfg.drag * self.dt)
-        self._launch(
-            wall_kernels.predict, shape, [v, self.nodes, self.tissue, decay, self.dt], [x, self.x_prev, self.inertial]
-        )
+        inputs = [v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
+        self._launch(wall_kernels.predict, shape, inputs, [x, self.x_prev, self.inertial])
         for _ in range(self.cfg.repeats):
             self._residual(x, self.inertial, contacts, self.force)
             if self.cfg.coarse_correction:
