@@ -70,6 +70,15 @@ def test_the_command_line_sweeps_too():
     ]
 
 
+def test_more_minutes_on_the_command_line_are_for_the_same_cell():
+    """5 minutes given stand over the algorithm's 3; the grid's worlds are a part of the name, the minutes are not."""
+    cfg = study(minutes=1.0, algorithms={"ppo": {"minutes": 3.0}}, grid={"num_envs": [8]})
+    (cell,) = all_cells(cfg, FOLDER, ["minutes=5"])
+    assert cell.minutes == 5
+    assert cell.name == "rectum-magnetic_ppo_seed1_num_envs=8"
+    assert [one.minutes for one in all_cells(cfg, FOLDER, ["minutes=5,6"])] == [5, 6]
+
+
 def test_a_cell_names_the_checkpoint_of_the_one_it_comes_after(tmp_path):
     cfg = study(
         grid={"algorithm": ["ppo_teacher", "distillation"]},

@@ -82,6 +82,12 @@ def test_the_table_is_of_first_episodes(tmp_path):
     assert [row["cell"] for row in read_rows(tmp_path / "episodes.csv")] == ["rectum-magnetic_ppo_seed1"] * 2
 
 
+def test_the_table_keeps_the_cells_of_an_earlier_call(tmp_path):
+    for seed in (1, 2):
+        report(tmp_path, launch(StudyCfg(name="s", task=TASK, seed=seed), tmp_path, LaunchOptions()))
+    assert sorted(row["seed"] for row in read_rows(tmp_path / "table.csv")) == [1.0, 2.0]
+
+
 def test_a_cell_waits_for_the_one_it_comes_after(tmp_path):
     cfg = StudyCfg(
         name="s",

@@ -78,16 +78,21 @@ def run(namespace: argparse.Namespace) -> int:
 
 
 def report(folder: Path, cells: list[Any]) -> int:
-    """Write curves, table and pictures, say where they are and how many cells are in which state; return the status."""
+    """Write curves, table and pictures, say where they are and how many cells are in which state; return the status.
+
+    Table and pictures show the folder's other cells too, which an earlier call with other settings has left.
+    """
+    from arcgym.rl.studies.cell import read_cells
     from arcgym.rl.studies.curves import make_curves
     from arcgym.rl.studies.table import write_table
 
-    for cell in cells:
+    shown = list({cell.name: cell for cell in [*cells, *read_cells(folder)]}.values())
+    for cell in shown:
         if cell.runs:
             make_curves(cell)
-    write_table(folder, cells)
+    write_table(folder, shown)
     print(f"table: {folder / 'table.md'}")
-    for path in draw(folder, cells):
+    for path in draw(folder, shown):
         print(f"picture: {path}")
     states = Counter(cell.read_state()["state"] for cell in cells)
     print(f"cells: {', '.join(f'{count} {state}' for state, count in states.items())}")

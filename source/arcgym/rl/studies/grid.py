@@ -44,7 +44,8 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
     Settings of the task come on top of the study's, those of the algorithm on top of both, and the grid's last.
 
     Args:
-        values: Fields of :class:`StudyCfg` as plain values, and ``axes``, the names that the grid varies.
+        values: Fields of :class:`StudyCfg` as plain values, ``axes``, the names that the grid varies, and
+            ``fixed``, budgets that the command line gives as one value.
         study: Folder of the study.
     """
     task = f"ARC-{str(values['task']).capitalize()}-{values['robot']}" if values.get("robot") else values["task"]
@@ -57,6 +58,7 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
         whole += group.get("overrides", ())
         for kind in ("env", "agent"):
             overrides |= dict(_leaves(group.get(kind, {}), kind))
+    merged |= {name: values[name] for name in values.get("fixed", ())}
     axes = {}
     for name in values["axes"]:
         if name not in NAMED:

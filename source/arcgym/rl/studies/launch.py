@@ -74,7 +74,7 @@ def launch(cfg: StudyCfg, folder: Path, options: LaunchOptions) -> list[Cell]:
         package, extra = EXTRAS[options.launcher]
         check_installed(package, f"--launcher {options.launcher}", extra)
     values = to_plain(cfg) | {
-        "axes": _axes(cfg, options.overrides),
+        **_axes(cfg, options.overrides),
         "folder": str(folder),
         "device": None,
         "stop_at": None if options.stop_after is None else time.time() + 60.0 * options.stop_after,
@@ -102,7 +102,7 @@ def all_cells(cfg: StudyCfg, folder: Path, overrides: Sequence[str] = ()) -> lis
     from omegaconf import OmegaConf
 
     own = [text for text in overrides if not text.lstrip("+").startswith("hydra")]
-    plain = to_plain(cfg) | {"axes": _axes(cfg, overrides)}
+    plain = to_plain(cfg) | _axes(cfg, overrides)
     try:
         parser = OverridesParser.create()
         by_key = {one.key_or_group: one for one in parser.parse_overrides([*sweep_overrides(cfg), *own])}
@@ -157,11 +157,17 @@ def _check_settings(cell: Cell) -> None:
             )
 
 
-def _axes(cfg: StudyCfg, overrides: Sequence[str]) -> list[str]:
-    """Return names that the grid or an override on the command line varies."""
-    own = [text.partition("=")[0].lstrip("+") for text in overrides]
+def _axes(cfg: StudyCfg, overrides: Sequence[str]) -> dict[str, list[str]]:
+    """Return ``axes``, names that the grid or the command line varies, and ``fixed``, budgets given there as one value.
+
+    Both come on top of the settings of algorithms and tasks. What is fixed is no part of a cell's name: the same cell
+    goes on with more minutes.
+    """
+    own = {text.partition("=")[0].lstrip("+"): text for text in overrides}
     given = [name for name in own if name in AXES or name.startswith(("env.", "agent."))]
-    return [name for name in dict.fromkeys([*cfg.grid, *given]) if name not in NAMED]
+    names = [name for name in dict.fromkeys([*cfg.grid, *given]) if name not in NAMED]
+    fixed = [name for name in names if name in AXES and name not in cfg.grid and "," not in own[name]]
+    return {"axes": [name for name in names if name not in fixed], "fixed": fixed}
 
 
 def _launcher(options: LaunchOptions) -> list[str]:
