@@ -153,6 +153,7 @@ def _distribution_figure(rows: Sequence[dict[str, Any]]) -> Any:
             values = np.sort([row[name] for row in rows if row["task"] == task])
             axes.step(values, 100.0 * np.arange(1, len(values) + 1) / len(values), where="post", label=task)
         axes.set(xlabel=LABELS.get(name, name), ylim=(0, 105))
+        axes.locator_params(axis="x", nbins=4)
     figure.axes[0].set_ylabel("trials at or below [%]")
     figure.axes[0].legend(fontsize="x-small")
     return figure
