@@ -214,8 +214,30 @@ def share_debts(links: LinkShapes, law: ContactLaw, debt: wp.array2d[wp.vec3], r
 
 
 @wp.kernel
+def advance_slides(contacts: WallContacts, x: wp.array2d[wp.vec3], measured: MeasuredContacts):
+    """Keep of every contact's displacement along the wall what friction holds, and measure its force. Launch (W, T).
+
+    Args:
+        contacts: Contacts of the step.
+        x: Wall positions at its end [m], shape (V, W).
+        measured: ``force`` is written.
+    """
+    w, thread = wp.tid()
+    slot = w * contacts.records.capacity + thread
+    end = w * contacts.records.capacity + contacts.records.start[w, contacts.links.radius.shape[0]]
+    while slot < end:
+        c = contact_force_at(contacts, slot, x, w)
+        slide = wp.vec3(0.0)
+        if c.normal_force > 0.0:
+            slide = -(c.friction / (contacts.records.weight[slot] * contacts.law.friction_stiffness)) * c.slip
+        contacts.records.slide[slot] = slide
+        measured.force[slot] = c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[slot]
+        slot += contacts.records.threads
+
+
+@wp.kernel
 def settle_debts(
-    contacts: WallContacts, x: wp.array2d[wp.vec3], link_force: wp.array[wp.vec3], debt: wp.array2d[wp.vec3]
+    records: ContactRecords, measured: MeasuredContacts, link_force: wp.array[wp.vec3], debt: wp.array2d[wp.vec3]
 ):
     """Find what each link has had from the wall in this step and not given back: its debt. Launch (W, L).
 
@@ -226,37 +248,20 @@ def settle_debts(
     less a tenth a step.
 
     Args:
-        contacts: Contacts of the step.
-        x: Wall positions at its end [m], shape (V, W).
+        records: Contacts of the step.
+        measured: Their forces on the wall at its end.
         link_force: Mean force of the wall on each link in it [N], shape (W*L,).
         debt: Impulse over the step that each link owes the wall [N], shape (W, L); updated.
     """
     w, link = wp.tid()
-    first = w * contacts.records.capacity
-    begin = contacts.records.start[w, link]
-    end = contacts.records.start[w, link + 1]
+    begin = records.start[w, link]
+    end = records.start[w, link + 1]
     rest = debt[w, link] - link_force[w * debt.shape[1] + link]
     for k in range(begin, end):
-        c = contact_force_at(contacts, first + k, x, w)
-        rest -= c.normal_force * c.normal - c.friction * c.slip + contacts.records.owed[first + k]
+        rest -= measured.force[w * records.capacity + k]
     if begin == end:
         rest = 0.9 * rest
     debt[w, link] = rest
-
-
-@wp.kernel
-def advance_slides(contacts: WallContacts, x: wp.array2d[wp.vec3]):
-    """Keep of every contact's displacement along the wall what friction holds. Launch (W, T)."""
-    w, thread = wp.tid()
-    slot = w * contacts.records.capacity + thread
-    end = w * contacts.records.capacity + contacts.records.start[w, contacts.links.radius.shape[0]]
-    while slot < end:
-        c = contact_force_at(contacts, slot, x, w)
-        slide = wp.vec3(0.0)
-        if c.normal_force > 0.0:
-            slide = -(c.friction / (contacts.records.weight[slot] * contacts.law.friction_stiffness)) * c.slip
-        contacts.records.slide[slot] = slide
-        slot += contacts.records.threads
 
 
 @wp.func

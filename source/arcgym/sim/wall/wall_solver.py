@@ -170,10 +170,11 @@ class WallSolver:
         ``link_force`` is the mean force of the wall on each link in this step [N], shape (W*L,), vec3.
         """
         contacts = wall_contacts(contact, self.dt, self.x_prev if self.moves else x, body_q, body_q_prev)
+        shape, measured = (self.num_envs, contacts.records.threads), self.measured
+        self._launch(wall_kernels.advance_slides, shape, [contacts, x], [measured])
         if self.moves:
-            self._launch(wall_kernels.settle_debts, contact.debt.shape, [contacts, x, link_force], [contact.debt])
-        shape = (self.num_envs, contacts.records.threads)
-        self._launch(wall_kernels.advance_slides, shape, [contacts, x], [])
+            inputs = [contact.records, measured, link_force]
+            self._launch(wall_kernels.settle_debts, contact.debt.shape, inputs, [contact.debt])
 
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         for color in self.colors:
