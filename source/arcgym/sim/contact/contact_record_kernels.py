@@ -30,6 +30,9 @@ EDGE_WEIGHT = wp.constant(0.45)
 """Weight of a contact for each edge that it lies on: two faces touch it there, and about six at a corner."""
 
 
+LIST_ROOM = wp.constant(16)
+"""Entries of a vertex's list up to which it is sorted in a copy."""
+Entries = wp.types.vector(length=16, dtype=int)
 BATCH = wp.constant(8)
 """Records that are read at a time."""
 Batch = wp.types.vector(length=8, dtype=int)
@@ -289,16 +292,9 @@ def locate_contacts(
         slot += records.threads
 
 
-@wp.kernel
-def sort_vertex_lists(records: ContactRecords):
-    """Put the entries of each vertex's list in ascending order. Launch (V, W).
-
-    Threads append entries as they come. Sorted, every sum over contacts is the same on CPU and GPU, and in every run.
-    """
-    v, w = wp.tid()
-    entry = records.vertex_head[v, w]
-    if entry < 0:
-        return
+@wp.func
+def sort_long_list(entry: int, records: ContactRecords) -> int:
+    """Sort the list that begins with ``entry``, of any length, where it is; return its new first entry."""
     head = int(-1)
     while entry >= 0:
         rest = records.vertex_next[entry]
@@ -312,7 +308,38 @@ def sort_vertex_lists(records: ContactRecords):
             records.vertex_next[entry] = records.vertex_next[at]
             records.vertex_next[at] = entry
         entry = rest
-    records.vertex_head[v, w] = head
+    return head
+
+
+@wp.kernel
+def sort_vertex_lists(records: ContactRecords):
+    """Put the entries of each vertex's list in ascending order. Launch (V, W).
+
+    Threads append entries as they come. Sorted, every sum over contacts is the same on CPU and GPU, and in every run.
+    Lists of up to ``LIST_ROOM`` entries are sorted in a copy, since a GPU waits for every step along a list.
+    """
+    v, w = wp.tid()
+    entry = records.vertex_head[v, w]
+    if entry < 0:
+        return
+    entries = Entries()
+    count = int(0)
+    rest = int(entry)
+    while rest >= 0 and count < LIST_ROOM:
+        at = int(count)
+        while at > 0 and entries[wp.max(at - 1, 0)] > rest:
+            entries[at] = entries[at - 1]
+            at -= 1
+        entries[at] = rest
+        rest = records.vertex_next[rest]
+        count += 1
+    if rest >= 0:
+        records.vertex_head[v, w] = sort_long_list(entry, records)
+    elif count > 1:
+        records.vertex_head[v, w] = entries[0]
+        for k in range(count - 1):
+            records.vertex_next[entries[k]] = entries[k + 1]
+        records.vertex_next[entries[count - 1]] = -1
 
 
 @wp.kernel
