@@ -17,10 +17,11 @@ from arcgym.sim.contact.contact_kernels import (
     carried,
     softness,
 )
-from arcgym.sim.contact.contact_search_kernels import Candidates, sum_before
+from arcgym.sim.contact.contact_search_kernels import Candidates, count_link, count_pair, measure_faces, sum_before
 from arcgym.sim.contact.lumen_kernels import FAR, LumenSurface
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.block_queue_kernels import wait_for_block
 
 SMOOTHING = wp.constant(5.0e-5)
 """Length over which the contact point is a mean of a face's nearest points, weighted by exp(-distance / length) [m]."""
@@ -38,10 +39,9 @@ BATCH = wp.constant(8)
 Batch = wp.types.vector(length=8, dtype=int)
 
 
-@wp.kernel
-def allot_slots(candidates: Candidates, records: ContactRecords):
-    """Give every link as many slots as it has candidates, link after link. Launch (W, L)."""
-    w, link = wp.tid()
+@wp.func
+def allot_slots(link: int, w: int, candidates: Candidates, records: ContactRecords):
+    """Give a link as many slots as it has candidates, after those of the links before."""
     before = sum_before(candidates.count, w, link)
     records.start[w, link] = wp.min(before, records.capacity)
     if link == candidates.count.shape[1] - 1:
@@ -182,30 +182,68 @@ def past_slide(past: PastContacts, face: int, link: int, w: int, capacity: int) 
     return wp.vec3(0.0)
 
 
+@wp.func
+def fill_slots(k: int, w: int, surface: LumenSurface, candidates: Candidates, records: ContactRecords):
+    """Copy the faces of a pair that are near into the slots of its link."""
+    link = candidates.link[w, k]
+    slot = records.start[w, link] + candidates.faces[w, k]
+    for m in range(candidates.patch_faces):
+        d = candidates.distance[w, k, m]
+        if d < FAR and slot < records.start[w, link + 1]:
+            at = w * records.capacity + slot
+            records.link[at] = link
+            records.face[at] = surface.patch_start[candidates.patch[w, k] // 2] + m
+            records.distance[at] = d
+            slot += 1
+
+
 @wp.kernel
-def fill_slots(surface: LumenSurface, candidates: Candidates, stride: int, records: ContactRecords):
-    """Copy the candidates into the slots of their links. Launch (W, ``stride``).
+def record_faces(
+    x: wp.array2d[wp.vec3],
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    surface: LumenSurface,
+    law: ContactLaw,
+    candidates: Candidates,
+    records: ContactRecords,
+):
+    """Give each face near a link a slot, link after link, in ascending order. Launch (W, T).
+
+    The T threads of a world share each part of the work out. On a GPU they are one block; they list the faces that
+    quick tests leave, a quarter of all, and share those out, so that all threads of a warp have one to measure.
 
     Args:
+        x: Vertices of the surface [m], shape (V, W).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
         surface: Inner faces of one world.
-        candidates: Faces near each link.
-        stride: Threads a world, each of which takes every ``stride``-th pair.
-        records: Contacts; ``link``, ``face`` and ``distance`` are written.
+        law: Contact law.
+        candidates: Patches near each link; all but them is written.
+        records: Contacts; ``start``, ``link``, ``face`` and ``distance`` are written.
     """
     w, thread = wp.tid()
+    threads = records.threads
+    count = links.radius.shape[0]
+    measure_faces(x, body_q, links, surface, law, w, thread, threads, candidates)
     k = int(thread)
-    while k < candidates.start[w, candidates.count.shape[1]]:
-        link = candidates.link[w, k]
-        slot = records.start[w, link] + candidates.faces[w, k]
-        for m in range(candidates.patch_faces):
-            d = candidates.distance[w, k, m]
-            if d < FAR and slot < records.start[w, link + 1]:
-                at = w * records.capacity + slot
-                records.link[at] = link
-                records.face[at] = surface.patch_start[candidates.patch[w, k] // 2] + m
-                records.distance[at] = d
-                slot += 1
-        k += stride
+    while k < candidates.start[w, count]:
+        count_pair(k, w, candidates)
+        k += threads
+    wait_for_block()
+    link = int(thread)
+    while link < count:
+        count_link(link, w, candidates)
+        link += threads
+    wait_for_block()
+    link = int(thread)
+    while link < count:
+        allot_slots(link, w, candidates, records)
+        link += threads
+    wait_for_block()
+    k = int(thread)
+    while k < candidates.start[w, count]:
+        fill_slots(k, w, surface, candidates, records)
+        k += threads
 
 
 @wp.func

@@ -22,13 +22,9 @@ FURTHER_LINKS = 5
 GPU_LIST_PARTS = 32
 """Threads a world that list the contacts by ring on a GPU, where a list waits for memory at every entry."""
 GPU_RECORD_THREADS = 256
-"""Threads a world that go through its contacts on a GPU: as many as most worlds have contacts."""
+"""Threads a world that go through its contacts on a GPU, one block: as many as most worlds have contacts."""
 CARRIED_ROOM = 3
 """How much more room contacts and patches have on a fine surface."""
-PAIR_THREADS = 256
-"""Threads a world that measure the pairs of a link and a patch near it: one block of a GPU."""
-SLOT_THREADS = 1024
-"""Threads a world that copy those pairs into the slots, at most one a pair: they wait for memory all the time."""
 MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
@@ -211,34 +207,30 @@ class ContactSearch:
         self._record(x, self.points, body_q)
 
     def _find(self, points: wp.array, body_q: wp.array) -> None:
-        """Find the patches near each link, and the distances of their faces."""
+        """Find the patches near each link."""
         links = (self.num_envs, self.link_count)
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
         self._launch(lumen_kernels.bound_faces, (self.ring_count, self.num_envs), [points, self.surface], [self.bounds])
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
-        wp.launch(
-            kernels.face_distances,
-            (self.num_envs, PAIR_THREADS),
-            inputs=[points, body_q, self.links, self.surface, self.law, PAIR_THREADS],
-            outputs=[self.candidates],
-            device=self.device,
-            block_dim=PAIR_THREADS,
-        )
-        self._launch(kernels.count_candidates, links, [], [self.candidates])
 
     def _record(self, x: wp.array, points: wp.array, body_q: wp.array) -> None:
         """Record the faces near each link, and what friction held where it touched the same face before."""
-        records, stride = self.records, min(SLOT_THREADS, self.candidates.capacity)
+        records = self.records
         of_records, parts = (self.num_envs, records.threads), self.list_parts
         self._launch(record_kernels.keep_past, of_records, [records], [self.past])
         records.vertex_head.fill_(-1)
         records.ring_head.fill_(-1)
-        links = (self.num_envs, self.link_count)
-        self._launch(record_kernels.allot_slots, links, [self.candidates], [records])
-        inputs = [self.surface, self.candidates, stride]
-        self._launch(record_kernels.fill_slots, (self.num_envs, stride), inputs, [records])
+        inputs = [points, body_q, self.links, self.surface, self.law]
+        wp.launch(
+            record_kernels.record_faces,
+            of_records,
+            inputs=inputs,
+            outputs=[self.candidates, records],
+            device=self.device,
+            block_dim=records.threads,
+        )
         near = [self.links, self.surface, self.candidates.nearest, self.past]
         inputs = [x, points, body_q, *near, self.law, self.moduli]
         self._launch(record_kernels.locate_contacts, of_records, inputs, [records])

@@ -251,34 +251,23 @@ def pair_reach(
     return out
 
 
-@wp.kernel
-def face_distances(
+@wp.func
+def measure_faces(
     x: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
     links: LinkShapes,
     surface: LumenSurface,
     law: ContactLaw,
-    stride: int,
+    w: int,
+    thread: int,
+    threads: int,
     candidates: Candidates,
 ):
-    """Measure the distance of the faces of the patches near each link. Launch (W, ``stride``).
+    """Measure the distances of the faces of a world's pairs; all threads of the world have to call it.
 
     Far along the colon from the link's own ring, faces count that have the link on their lumen's side: the wall
     gathered around the link, but not the outside of a neighboring loop.
-
-    On a GPU a world's threads are one block. They list the faces that quick tests leave, a quarter of all, and then
-    share those out, so that all threads of a warp have one to measure.
-
-    Args:
-        x: Vertices of the surface [m], shape (V, W).
-        body_q: Link poses, shape (W*L,).
-        links: Capsules of one world.
-        surface: Inner faces of one world.
-        law: Contact law.
-        stride: Threads a world, each of which takes every ``stride``-th pair.
-        candidates: Patches near each link; ``distance`` and ``faces`` are written.
     """
-    w, thread = wp.tid()
     pairs = candidates.start[w, links.radius.shape[0]]
     clear_queue(thread)
     k = int(thread)
@@ -293,7 +282,7 @@ def face_distances(
                 if not queued(k * candidates.patch_faces + m):
                     d = face_distance(surface, first + m, x, w, reach, code % 2 == 1)
             candidates.distance[w, k, m] = d
-        k += stride
+        k += threads
     wait_for_block()
     entry = int(thread)
     while entry < queue_length():
@@ -303,26 +292,22 @@ def face_distances(
         code = candidates.patch[w, k]
         face = surface.patch_start[code // 2] + m
         candidates.distance[w, k, m] = face_distance(surface, face, x, w, reach, code % 2 == 1)
-        entry += stride
+        entry += threads
     wait_for_block()
-    k = int(thread)
-    while k < pairs:
-        n = int(0)
-        for m in range(candidates.patch_faces):
-            n += int(candidates.distance[w, k, m] < FAR)
-        candidates.faces[w, k] = n
-        k += stride
 
 
-@wp.kernel
-def count_candidates(candidates: Candidates):
-    """Count the faces near each link, and find the nearest. Launch (W, L).
+@wp.func
+def count_pair(k: int, w: int, candidates: Candidates):
+    """Count the faces of a pair that are near."""
+    n = int(0)
+    for m in range(candidates.patch_faces):
+        n += int(candidates.distance[w, k, m] < FAR)
+    candidates.faces[w, k] = n
 
-    Args:
-        candidates: Distances of the faces of the patches near each link; ``count`` and ``nearest`` are written, and
-            ``faces`` becomes the number of the link's faces in the pairs before.
-    """
-    w, link = wp.tid()
+
+@wp.func
+def count_link(link: int, w: int, candidates: Candidates):
+    """Count the faces near a link, also those before each of its pairs, and find the nearest."""
     n = int(0)
     nearest = float(FAR)
     for k in range(candidates.start[w, link], candidates.start[w, link + 1]):
