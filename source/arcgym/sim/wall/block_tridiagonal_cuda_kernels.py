@@ -36,10 +36,10 @@ _SOLVE = """
     float* const d = diagonal.data + (long long)world * M * M;
     float* const u = upper.data + (long long)world * M * M - side * block;  // the last rows couple with those before
     float* const b = rhs.data + (long long)world * M;
-    const float* source = in_s ? d + lane : b;
+    float* column = in_s ? d + lane : b;  // this lane's, of the first row; the last rows' U is transposed
     int stride = in_s ? M : 1;
     if (in_u) {
-        source = side == 0 ? u + (lane - M) : u + (lane - M) * M;
+        column = side == 0 ? u + (lane - M) : u + (lane - M) * M;
         stride = side == 0 ? M : 1;
     }
     const long long further = in_s || in_u ? block : row;
@@ -48,7 +48,8 @@ _SOLVE = """
     float pivot = 0.0f;  // inverse of the factor's diagonal, in lane j that of row j
 
     auto load = [&](int r, float* to) {
-        for (int k = 0; k < M; ++k) to[k] = source[r * further + k * stride];
+        const float* from = column + r * further;
+        for (int k = 0; k < M; ++k) to[k] = from[k * stride];
     };
     auto factor = [&]() {
         for (int j = 0; j < M; ++j) {
@@ -58,12 +59,11 @@ _SOLVE = """
             for (int i = j + 1; i < M; ++i) a[i] -= __shfl_sync(ALL, a[j], i) * a[j];
         }
     };
-    auto store = [&](int r) {
-        for (int k = 0; k < M; ++k) {
-            if (in_s && k <= lane) d[r * block + lane * M + k] = k == lane ? pivot : a[k];
-            if (in_u && r != middle) u[r * block + k * M + lane - M] = a[k];
-            if (in_b) b[r * row + k] = a[k];
-        }
+    auto store = [&](int r) {  // L^T with inverted diagonal, W and y where S, U and b were
+        const int last = in_s ? lane : in_b || (in_u && r != middle) ? M - 1 : -1;
+        float* to = column + r * further;
+        for (int k = 0; k < M; ++k)
+            if (k <= last) to[k * stride] = in_s && k == lane ? pivot : a[k];
     };
     auto product = [&](float* out) {  // W^T W and W^T y
         if (in_u)
@@ -77,9 +77,12 @@ _SOLVE = """
         __syncwarp();
     };
     const int own = in_s ? lane : M - 1;  // row of the solution that this lane is to find
+    const float* const own_d = d + own * M;
+    const float* const own_u = side == 0 ? u + own * M : u + own;
+    const int stride_u = side == 0 ? 1 : M;
     auto load_back = [&](int r, float* lower, float* coupling, float& y) {
-        for (int k = 0; k < M; ++k) lower[k] = d[r * block + k * M + own];
-        for (int k = 0; k < M; ++k) coupling[k] = u[r * block + own * M + k];
+        for (int k = 0; k < M; ++k) lower[k] = own_d[r * block + k];
+        for (int k = 0; k < M; ++k) coupling[k] = own_u[r * block + k * stride_u];
         y = b[r * row + own];
     };
     auto substitute = [&](const float* lower, float y) {  // x = L^-T y
@@ -114,7 +117,7 @@ _SOLVE = """
         factor();
         store(middle);
         __syncwarp();
-        for (int k = 0; k < M; ++k) lower[k] = d[middle * block + k * M + own];
+        for (int k = 0; k < M; ++k) lower[k] = own_d[middle * block + k];
         const float x = substitute(lower, b[middle * row + own]);
         if (in_s) solved[lane] = b[middle * row + lane] = x;
     }
