@@ -43,15 +43,18 @@ def matrix(sim: Simulation, points: np.ndarray) -> np.ndarray:
     inputs, outputs = [sim.nodal_pos, solver.rings, solver.loads], [solver.axes, solver.shift]
     wp.launch(coarse_kernels.place_rings, (rings, 1), inputs=inputs, outputs=outputs)
     inputs = [sim.nodal_pos, solver.elements.data, solver.rings, solver.axes, solver.tissue]
-    blocks = [solver.own, solver.behind, solver.coupling]
-    wp.launch(solver.elements.measure_bands, (rings - 1, 1), inputs=inputs, outputs=blocks)
-    own, behind, coupling = (block.numpy()[:, 0].astype(float) for block in blocks)
-    out = np.zeros((rings, MODES, rings, MODES))
-    for r in range(rings):
-        out[r, :, r] = own[r] + behind[r]
-        if r + 1 < rings:
-            out[r, :, r + 1], out[r + 1, :, r] = coupling[r], coupling[r].T
-    return out.reshape(rings * MODES, rings * MODES)
+    wp.launch(solver.elements.measure_bands, (rings - 1, 1), inputs=inputs, outputs=[solver.bands])
+    upper = np.triu(solver.bands.numpy()[..., 0].astype(float))
+    of_rings = np.zeros((15, 2 * MODES))  # t of the ring less t of the next one, g_p and g_q of the one, of the other
+    of_rings[:9, :9] = np.eye(9)
+    of_rings[:3, 9:12] = -np.eye(3)
+    of_rings[9:, 12:] = np.eye(6)
+    out = np.zeros((rings * MODES, rings * MODES))
+    for r in range(rings - 1):
+        band = upper[r] + np.triu(upper[r], 1).T
+        both = slice(MODES * r, MODES * (r + 2))
+        out[both, both] += of_rings.T @ band @ of_rings
+    return out
 
 
 def basis(sim: Simulation) -> np.ndarray:

@@ -14,8 +14,10 @@ Bending along the colon joins three rings, which a system of neighbours cannot h
 
 import warp as wp
 
+from arcgym.sim.wall.band_matrix_kernels import BandMatrix, Five, add_strain_difference, write_band
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.warp_setup import GPU_BLOCK
 
 
 @wp.struct
@@ -31,31 +33,6 @@ class Rings:
     band: wp.array[int]  # elements, sorted by band, shape (E,)
 
 
-@wp.struct
-class BandMatrix:
-    """Upper blocks of a band's stiffness between its five vectors [N/m]."""
-
-    k00: wp.mat33
-    k01: wp.mat33
-    k02: wp.mat33
-    k03: wp.mat33
-    k04: wp.mat33
-    k11: wp.mat33
-    k12: wp.mat33
-    k13: wp.mat33
-    k14: wp.mat33
-    k22: wp.mat33
-    k23: wp.mat33
-    k24: wp.mat33
-    k33: wp.mat33
-    k34: wp.mat33
-    k44: wp.mat33
-
-
-Five = wp.types.vector(length=5, dtype=float)
-"""Values at a point of the five fields that a band's vectors are multiplied with."""
-
-
 @wp.func
 def band_fields(rings: Rings, i: int, r: int, p: int) -> Five:
     """Return the five fields of the band of ring ``r`` at vertex ``i`` of patient ``p``."""
@@ -65,73 +42,12 @@ def band_fields(rings: Rings, i: int, r: int, p: int) -> Five:
     return Five(0.0, 0.0, 0.0, plane[0], plane[1])
 
 
-@wp.func
-def add_edges(band: BandMatrix, a: Five, b: Five, aa: wp.mat33, ab: wp.mat33, bb: wp.mat33) -> BandMatrix:
-    """Add the stiffness between two edges of an element.
-
-    Args:
-        band: Matrix of the band.
-        a: Differences of the fields along one edge.
-        b: Differences along the other.
-        aa: Stiffness of the one edge [N/m].
-        ab: Stiffness between the one and the other.
-        bb: Stiffness of the other.
-    """
-    out = band
-    ba = wp.transpose(ab)
-    u = a[0] * aa + b[0] * ab
-    v = a[0] * ba + b[0] * bb
-    out.k00 += a[0] * u + b[0] * v
-    u = a[1] * aa + b[1] * ab
-    v = a[1] * ba + b[1] * bb
-    out.k01 += a[0] * u + b[0] * v
-    out.k11 += a[1] * u + b[1] * v
-    u = a[2] * aa + b[2] * ab
-    v = a[2] * ba + b[2] * bb
-    out.k02 += a[0] * u + b[0] * v
-    out.k12 += a[1] * u + b[1] * v
-    out.k22 += a[2] * u + b[2] * v
-    u = a[3] * aa + b[3] * ab
-    v = a[3] * ba + b[3] * bb
-    out.k03 += a[0] * u + b[0] * v
-    out.k13 += a[1] * u + b[1] * v
-    out.k23 += a[2] * u + b[2] * v
-    out.k33 += a[3] * u + b[3] * v
-    u = a[4] * aa + b[4] * ab
-    v = a[4] * ba + b[4] * bb
-    out.k04 += a[0] * u + b[0] * v
-    out.k14 += a[1] * u + b[1] * v
-    out.k24 += a[2] * u + b[2] * v
-    out.k34 += a[3] * u + b[3] * v
-    out.k44 += a[4] * u + b[4] * v
-    return out
-
-
 @wp.struct
 class RingAxes:
     """Directions in which the in-plane coordinates of each ring point now, shape (R, W)."""
 
     p: wp.array2d[wp.vec3]
     q: wp.array2d[wp.vec3]
-
-
-@wp.func
-def add_strain_difference(
-    band: BandMatrix, k: float, a_p: wp.vec3, a_q: wp.vec3, b_p: wp.vec3, b_q: wp.vec3
-) -> BandMatrix:
-    """Add a spring ``k`` on b_p.g_p + b_q.g_q of the next ring less a_p.g_p + a_q.g_q of this one."""
-    out = band
-    out.k11 += k * wp.outer(a_p, a_p)
-    out.k12 += k * wp.outer(a_p, a_q)
-    out.k13 -= k * wp.outer(a_p, b_p)
-    out.k14 -= k * wp.outer(a_p, b_q)
-    out.k22 += k * wp.outer(a_q, a_q)
-    out.k23 -= k * wp.outer(a_q, b_p)
-    out.k24 -= k * wp.outer(a_q, b_q)
-    out.k33 += k * wp.outer(b_p, b_p)
-    out.k34 += k * wp.outer(b_p, b_q)
-    out.k44 += k * wp.outer(b_q, b_q)
-    return out
 
 
 @wp.func
@@ -166,21 +82,6 @@ def add_bending(band: BandMatrix, axes: RingAxes, factor: wp.mat33, rigidity: fl
     return out
 
 
-@wp.func
-def write_block(blocks: wp.array4d[float], r: int, k: int, n: int, w: int, block: wp.mat33):
-    """Write the block between the vectors ``k`` and ``n`` of ring ``r``."""
-    for i in range(3):
-        for j in range(3):
-            blocks[r, w, 3 * k + i, 3 * n + j] = block[i, j]
-
-
-@wp.func
-def write_symmetric(blocks: wp.array4d[float], r: int, k: int, n: int, w: int, block: wp.mat33):
-    """Write the blocks between the vectors ``k`` and ``n`` of ring ``r``, and between ``n`` and ``k``."""
-    write_block(blocks, r, k, n, w, block)
-    write_block(blocks, r, n, k, w, wp.transpose(block))
-
-
 def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
     """Make the kernel that measures the bands' stiffness, for one kind of elements.
 
@@ -190,16 +91,14 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
             positions, element, ring, world and moduli.
     """
 
-    @wp.kernel(module="unique")
+    @wp.kernel(module="unique", launch_bounds=(GPU_BLOCK, 3))
     def measure_bands(
         x: wp.array2d[wp.vec3],
         elements: elements_type,
         rings: Rings,
         axes: RingAxes,
         tissue: Tissue,
-        own: wp.array4d[float],
-        behind: wp.array4d[float],
-        upper: wp.array4d[float],
+        bands: wp.array4d[float],
     ):
         """Measure the stiffness of every band. Launch (R - 1, W).
 
@@ -209,35 +108,13 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
             rings: Rings of all patients.
             axes: Directions of the rings.
             tissue: Values of each world.
-            own: Blocks of each ring by its band [N/m], shape (R, W, M, M); written.
-            behind: Blocks of each ring by the band before [N/m], shape (R, W, M, M); written.
-            upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
+            bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W); written.
         """
         r, w = wp.tid()
         band = BandMatrix()
         for e in range(rings.band_start[r], rings.band_start[r + 1]):
             band = add_element(band, elements, rings, x, rings.band[e], r, w, tissue.moduli[w])
         band = add_bending(band, axes, rings.bending[r, rings.patient[w]], tissue.moduli[w][2], r, w)
-        write_symmetric(own, r, 0, 0, w, band.k00)
-        write_symmetric(own, r, 0, 1, w, band.k01)
-        write_symmetric(own, r, 0, 2, w, band.k02)
-        write_symmetric(own, r, 1, 1, w, band.k11)
-        write_symmetric(own, r, 1, 2, w, band.k12)
-        write_symmetric(own, r, 2, 2, w, band.k22)
-        write_symmetric(behind, r + 1, 0, 0, w, band.k00)
-        write_symmetric(behind, r + 1, 0, 1, w, -band.k03)
-        write_symmetric(behind, r + 1, 0, 2, w, -band.k04)
-        write_symmetric(behind, r + 1, 1, 1, w, band.k33)
-        write_symmetric(behind, r + 1, 1, 2, w, band.k34)
-        write_symmetric(behind, r + 1, 2, 2, w, band.k44)
-        write_block(upper, r, 0, 0, w, -band.k00)
-        write_block(upper, r, 0, 1, w, band.k03)
-        write_block(upper, r, 0, 2, w, band.k04)
-        write_block(upper, r, 1, 0, w, -wp.transpose(band.k01))
-        write_block(upper, r, 1, 1, w, band.k13)
-        write_block(upper, r, 1, 2, w, band.k14)
-        write_block(upper, r, 2, 0, w, -wp.transpose(band.k02))
-        write_block(upper, r, 2, 1, w, band.k23)
-        write_block(upper, r, 2, 2, w, band.k24)
+        write_band(bands, r, w, band)
 
     return measure_bands

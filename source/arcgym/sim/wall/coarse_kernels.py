@@ -18,7 +18,9 @@ from arcgym.sim.contact.contact_kernels import ContactRecords
 from arcgym.sim.contact.self_contact_kernels import SelfContactForce
 from arcgym.sim.wall.anchor_kernels import secant_share
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
+from arcgym.sim.wall.band_matrix_kernels import band_entry
 from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
+from arcgym.sim.wall.row_store_kernels import store_row
 from arcgym.sim.wall.wall_kernels import MeasuredContacts, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.math_kernels import clamp_length
@@ -151,13 +153,24 @@ def self_contact_row(
     return out
 
 
+@wp.func
+def next_unknown(i: int) -> int:
+    """Return the unknown of a band that unknown ``i`` of its next ring is part of: t's with the other sign."""
+    return wp.where(i < 3, i, i + 6)
+
+
+@wp.func
+def next_sign(i: int) -> float:
+    """Return the sign with which unknown ``i`` of a ring is part of that of the band before."""
+    return wp.where(i < 3, -1.0, 1.0)
+
+
 @wp.kernel
 def assemble(
     force: wp.array2d[wp.vec3],
     rings: Rings,
     loads: RingLoads,
-    own: wp.array4d[float],
-    behind: wp.array4d[float],
+    bands: wp.array4d[float],
     shift: wp.array2d[wp.vec3],
     tissue: Tissue,
     inv_dt2: float,
@@ -165,19 +178,17 @@ def assemble(
     records: ContactRecords,
     measured: MeasuredContacts,
     self_contact: SelfContactForce,
-    coupling: wp.array4d[float],
     diagonal: wp.array4d[float],
     upper: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """Assemble one row of the coarse system of every world. Launch (R, W, M).
+    """Assemble one row of the coarse system of every world. Launch (R, W, M) in blocks of ``GPU_BLOCK``.
 
     Args:
         force: Residual of each vertex [N], shape (V, W).
         rings: Rings of all patients.
         loads: Loads of all patients.
-        own: Blocks of each ring by its own band [N/m], shape (R, W, M, M).
-        behind: Blocks of each ring by the band before [N/m], shape (R, W, M, M).
+        bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W).
         shift: Shift of each ring's centre [m], shape (R, W).
         tissue: Values of each world.
         inv_dt2: One over the squared physics step [1/s^2].
@@ -185,7 +196,6 @@ def assemble(
         records: Contacts, listed by ring.
         measured: Their normals and stiffness.
         self_contact: Contact of the wall with itself.
-        coupling: Blocks from each ring to the next by its band [N/m], shape (R, W, M, M).
         diagonal: Blocks of the rings [N/m], shape (R, W, M, M); written.
         upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
         rhs: Force on each unknown [N], shape (R, W, M); written.
@@ -206,9 +216,13 @@ def assemble(
         own_row = add_share(Unknowns(), inv_dt2 * (loads.mass[r, p] * field), along)
         own_row += tissue.anchor[w] * anchor_row(rings, loads, shift[r, w], r, field, along, p)
         for i in range(MODES):
-            own_row[i] = own_row[i] + own[r, w, a, i] + behind[r, w, a, i]
+            if r + 1 < count:
+                own_row[i] = own_row[i] + band_entry(bands, r, a, i, w)
+            if r > 0:
+                behind = band_entry(bands, r - 1, next_unknown(a), next_unknown(i), w)
+                own_row[i] = own_row[i] + next_sign(a) * next_sign(i) * behind
             if next_free == 1:
-                next_row[i] = coupling[r, w, a, i]
+                next_row[i] = next_sign(i) * band_entry(bands, r, a, next_unknown(i), w)
         for i in range(MODES):  # own_row[a], which would keep the row out of the registers
             if i == a:
                 own_row[i] = own_row[i] * (1.0 + regularisation) + 1.0e-6
@@ -237,9 +251,8 @@ def assemble(
         for i in range(MODES):
             own_row[i] = wp.where(i == a, 1.0, 0.0)
     rhs[r, w, a] = total
-    for i in range(MODES):
-        diagonal[r, w, a, i] = own_row[i]
-        upper[r, w, a, i] = next_row[i]
+    store_row(diagonal, r, w, a, own_row)
+    store_row(upper, r, w, a, next_row)
 
 
 @wp.kernel

@@ -17,7 +17,8 @@ step, which spares the sweep its normals and inverse tangents.
 
 import warp as wp
 
-from arcgym.sim.wall.band_kernels import BandMatrix, Rings, add_edges, band_fields
+from arcgym.sim.wall.band_kernels import Rings, band_fields
+from arcgym.sim.wall.band_matrix_kernels import BandMatrix, add_edge, add_next_edge, add_own_edge
 from arcgym.sim.wall.wall_kernels import Tissue, VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -367,12 +368,25 @@ def add_band_triangle(
     w: int,
     moduli: wp.vec3,
 ) -> BandMatrix:
-    """Add the stretching of triangle ``t`` to the stiffness of the band of ring ``r`` of world ``w``."""
+    """Add the stretching of triangle ``t`` to the stiffness of the band of ring ``r`` of world ``w``.
+
+    Two of its corners lie in one ring: the edge between them is the first one, that to the third the second.
+    """
     p = shell.patient[w]
     corners = shell.triangles[t]
+    rest = shell.rest[t, p]
+    if rings.ring[corners[0]] != rings.ring[corners[1]]:
+        if rings.ring[corners[1]] == rings.ring[corners[2]]:
+            corners = wp.vec3i(corners[1], corners[2], corners[0])
+            rest = wp.vec4(rest[1], rest[2], rest[0], rest[3])
+        else:
+            corners = wp.vec3i(corners[2], corners[0], corners[1])
+            rest = wp.vec4(rest[2], rest[0], rest[1], rest[3])
     x0 = x[corners[0], w]
-    k = edge_stiffness(x[corners[1], w] - x0, x[corners[2], w] - x0, shell.rest[t, p], moduli)
-    f0 = band_fields(rings, corners[0], r, p)
-    f1 = band_fields(rings, corners[1], r, p) - f0
-    f2 = band_fields(rings, corners[2], r, p) - f0
-    return add_edges(band, f1, f2, k.one, k.both, k.two)
+    k = edge_stiffness(x[corners[1], w] - x0, x[corners[2], w] - x0, rest, moduli)
+    along = rings.plane[corners[1], p] - rings.plane[corners[0], p]
+    across = band_fields(rings, corners[2], r, p) - band_fields(rings, corners[0], r, p)
+    out = add_edge(band, across, k.two)
+    if rings.ring[corners[0]] == r:
+        return add_own_edge(out, along, across, k.one, k.both)
+    return add_next_edge(out, along, across, k.one, k.both)

@@ -9,7 +9,8 @@ parameters; force and Hessian of a vertex are written in closed form.
 
 import warp as wp
 
-from arcgym.sim.wall.band_kernels import BandMatrix, Five, Rings, add_edges, band_fields
+from arcgym.sim.wall.band_kernels import Rings, band_fields
+from arcgym.sim.wall.band_matrix_kernels import BandMatrix, add_edge, add_pair
 from arcgym.sim.wall.wall_kernels import VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -116,7 +117,7 @@ def add_band_tet(
             block += (k * wp.dot(h, g) + wp.dot(m, tension * n)) * eye
             block = solid.volume[t, p] * block
             if a == b:
-                out = add_edges(out, fields, Five(), block, wp.mat33(), wp.mat33())
+                out = add_edge(out, fields, block)
             else:
-                out = add_edges(out, fields, band_fields(rings, corners[b], r, p), wp.mat33(), block, wp.mat33())
+                out = add_pair(out, fields, band_fields(rings, corners[b], r, p), block)
     return out

@@ -17,6 +17,7 @@ from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall import coarse_kernels, wall_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
+from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.wall_elements import wall_elements
@@ -100,8 +101,7 @@ class WallSolver:
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
         self.axes = RingAxes()
         self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
-        blocks = (self.ring_count, num_envs, MODES, MODES)
-        self.own, self.behind, self.coupling = (wp.zeros(blocks, dtype=float, device=device) for _ in range(3))
+        self.bands = wp.zeros((self.ring_count, ENTRIES, ENTRIES, num_envs), dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.self_contact = SelfContact(
@@ -219,12 +219,12 @@ class WallSolver:
         self._launch(coarse_kernels.place_rings, self.shift.shape, inputs, outputs)
         inputs = [x, self.elements.data, rings, self.axes, tissue]
         shape = (self.ring_count - 1, self.num_envs)
-        self._launch(self.elements.measure_bands, shape, inputs, [self.own, self.behind, self.coupling])
-        inputs = [self.force, rings, self.loads, self.own, self.behind, self.shift, tissue, 1.0 / self.dt**2]
+        self._launch(self.elements.measure_bands, shape, inputs, [self.bands])
+        inputs = [self.force, rings, self.loads, self.bands, self.shift, tissue, 1.0 / self.dt**2]
         self._launch(
             coarse_kernels.assemble,
             (self.ring_count, self.num_envs, MODES),
-            [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact, self.coupling],
+            [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact],
             [system.diagonal, system.upper, system.rhs],
         )
         system.solve()
