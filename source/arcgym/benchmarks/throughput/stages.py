@@ -85,7 +85,7 @@ def physics_stages(env: Any) -> dict[str, Action]:
         return stages
     detect, move_wall = recorded_call(sim, sim.contact, "detect"), recorded_call(sim, sim.wall, "step")
     stages["contact"] = repeated(sim, detect, steps)
-    with silenced((sim.contact, "detect"), (sim.wall, "step")):
+    with silenced((sim.contact, "detect"), (sim.wall, "prepare"), (sim.wall, "step")):
         stages["scope"] = repeated(sim, sim.coupling.step, steps)
     stages["wall"] = repeated(sim, move_wall, steps)
     for name, field, off in (("wall_coarse", "iterations", 0), ("wall_sweep", "coarse_correction", False)):

@@ -34,6 +34,9 @@ class TwoLevelCoupling:
     Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, implicitly;
     the wall solve then sees the scope's final pose.
 
+    On a GPU the scope moves on a stream of its own while the wall prepares its step: the chain's solver keeps few of
+    the processors busy, and neither reads what the other writes.
+
     **Stale within a step:** the contact points, and for the scope the place of the wall. That acts like a normal
     dashpot of stiffness * dt where the wall yields. Moving the wall on at its velocity meanwhile would undo that, but
     sets light walls swinging.
@@ -50,21 +53,35 @@ class TwoLevelCoupling:
         self.solver.resistance = sim.actuation.resistance
         self.body_q_prev = wp.clone(sim.state.body_q)
         """Link poses at the start of the last step, shape (W*L,), transform."""
+        on_gpu = wp.get_device(sim.device).is_cuda
+        self._scope_stream = wp.Stream(sim.device, priority=-1) if on_gpu else None
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
         sim, state = self.sim, self.sim.state
+        self.find_contacts()
+        if self._scope_stream is None:
+            self._move_scope()
+            sim.wall.prepare(sim.nodal_pos, sim.nodal_vel)
+        else:
+            with wp.ScopedStream(self._scope_stream):
+                self._move_scope()
+            sim.wall.prepare(sim.nodal_pos, sim.nodal_vel)
+            wp.get_stream(sim.device).wait_stream(self._scope_stream)
+        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
+        link_force = sim.scope_readout.step_force
+        sim.wall.finish_contacts(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev, link_force)
+
+    def _move_scope(self) -> None:
+        """Advance the scope by all substeps of a physics step; of the wall, positions and velocities are read."""
+        sim, state = self.sim, self.sim.state
         count = sim.cfg.scope_substeps
         dt = sim.cfg.dt / count
-        self.find_contacts()
         for k in range(count):
             self.load_contacts(k * dt, dt)
             sim.actuation.apply(state, sim.control, sim.contact.ring, dt)
             self.solver.step(state, state, sim.control, None, dt)
             self._record(1.0 / count)
-        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
-        link_force = sim.scope_readout.step_force
-        sim.wall.finish_contacts(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev, link_force)
 
     def find_contacts(self) -> None:
         """Begin a step: remember where the links are, and find their contacts."""

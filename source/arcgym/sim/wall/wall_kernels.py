@@ -291,27 +291,27 @@ def add_self_contact(block: VertexBlock, self_contact: SelfContactForce, x: wp.v
 
 @wp.kernel
 def predict(
+    x: wp.array2d[wp.vec3],
     v: wp.array2d[wp.vec3],
     nodes: WallNodes,
     tissue: Tissue,
     decay: float,
     largest_speed: float,
     dt: float,
-    x: wp.array2d[wp.vec3],
     x_prev: wp.array2d[wp.vec3],
     inertial: wp.array2d[wp.vec3],
 ):
-    """Move mobile vertices on at their damped velocity. Launch (V, W).
+    """Find where mobile vertices would go at their damped velocity. Launch (V, W).
 
     Args:
+        x: Positions [m], shape (V, W).
         v: Velocities [m/s], shape (V, W).
         nodes: Vertices of all patients.
         tissue: Values of each world.
         decay: Factor on the velocity over the step.
         largest_speed: Speed at most [m/s].
         dt: Physics step [s].
-        x: Positions [m], shape (V, W); moved on in place.
-        x_prev: Positions before [m], shape (V, W); written.
+        x_prev: The same positions [m], shape (V, W); written.
         inertial: Positions that inertia pulls to [m], shape (V, W); written.
     """
     i, w = wp.tid()
@@ -320,7 +320,6 @@ def predict(
     if nodes.mobile[i, nodes.patient[w]] == 1 and tissue.rigid[w] == 0:
         target += dt * clamp_length(decay * v[i, w], largest_speed)
     inertial[i, w] = target
-    x[i, w] = target
 
 
 @wp.kernel

@@ -103,6 +103,7 @@ class WallSolver:
         self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
         self.bands = wp.zeros((self.ring_count, ENTRIES, ENTRIES, num_envs), dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
+        self._prepared = False
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.self_contact = SelfContact(
             cfg, [wall.points for wall in walls], first.ring, modes[0].members, first.thickness, patient, device
@@ -134,8 +135,27 @@ class WallSolver:
         loads.rest_center = patient_array([ring_mean(wall.points, ring) for wall in walls], wp.vec3, device)
         return rings, loads
 
+    def prepare(self, x: wp.array, v: wp.array) -> None:
+        """Begin a physics step with what takes the wall alone: where it would go by inertia, and what it is like there.
+
+        Nothing of the scope is read, and ``x`` and ``v`` are not written to, so that the scope may move meanwhile.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            v: Wall velocities [m/s], shape (V, W), vec3.
+        """
+        if not self.moves:
+            return
+        decay = math.exp(-self.cfg.drag * self.dt)
+        inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
+        shape, outputs = (self.vertex_count, self.num_envs), [self.x_prev, self.inertial]
+        self._launch(wall_kernels.predict, shape, inputs, outputs)
+        self.self_contact.measure(x)
+        self._measure(self.inertial)
+        self._prepared = True
+
     def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
-        """Advance the wall by one physics step, in place.
+        """Advance the wall by one physics step, in place, after :meth:`prepare` or with it.
 
         Args:
             x: Wall positions [m], shape (V, W), vec3.
@@ -146,15 +166,17 @@ class WallSolver:
         """
         if not self.moves:
             return
-        shape = (self.vertex_count, self.num_envs)
+        if not self._prepared:
+            self.prepare(x, v)
+        self._prepared = False
         contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
         self._launch(
             wall_kernels.share_debts, contact.debt.shape, [contact.links, contact.law, contact.debt], [contact.records]
         )
-        decay = math.exp(-self.cfg.drag * self.dt)
-        inputs = [v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
-        self._launch(wall_kernels.predict, shape, inputs, [x, self.x_prev, self.inertial])
-        for _ in range(self.cfg.repeats):
+        wp.copy(x, self.inertial)
+        for repeat in range(self.cfg.repeats):
+            if repeat > 0:
+                self._measure(x)
             self._residual(x, self.inertial, contacts, self.force)
             if self.cfg.coarse_correction:
                 self._correct_rings(x, contacts)
@@ -195,13 +217,26 @@ class WallSolver:
             body_q: Link poses, shape (W*L,).
         """
         force = wp.zeros_like(x)
-        self._residual(x, x, wall_contacts(contact, self.dt, x, body_q, body_q), force)
+        contacts = wall_contacts(contact, self.dt, x, body_q, body_q)
+        self.self_contact.measure(x)
+        self._measure(x)
+        self._residual(x, x, contacts, force)
         return force
 
-    def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
-        """Measure elements and contacts at ``x``, and sum them up to the ``force`` on every vertex."""
+    def _measure(self, x: wp.array) -> None:
+        """Measure the elements at ``x``: their forces, and their stiffness in the rings' modes."""
         self.elements.measure(x, self.tissue)
-        contacts.self_contact = self.self_contact.measure(contacts.x_prev)
+        if not self.cfg.coarse_correction:
+            return
+        rings, shape = self.rings, (self.ring_count - 1, self.num_envs)
+        inputs, outputs = [x, rings, self.loads], [self.axes, self.shift]
+        self._launch(coarse_kernels.place_rings, self.shift.shape, inputs, outputs)
+        inputs = [x, self.elements.data, rings, self.axes, self.tissue]
+        self._launch(self.elements.measure_bands, shape, inputs, [self.bands])
+
+    def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
+        """Measure the contacts at ``x``, and sum all up to the ``force`` on every vertex."""
+        contacts.self_contact = self.self_contact.force
         shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
         self._launch(wall_kernels.measure_contacts, shape, [contacts, x], [measured])
@@ -215,11 +250,6 @@ class WallSolver:
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
-        inputs, outputs = [x, rings, self.loads], [self.axes, self.shift]
-        self._launch(coarse_kernels.place_rings, self.shift.shape, inputs, outputs)
-        inputs = [x, self.elements.data, rings, self.axes, tissue]
-        shape = (self.ring_count - 1, self.num_envs)
-        self._launch(self.elements.measure_bands, shape, inputs, [self.bands])
         inputs = [self.force, rings, self.loads, self.bands, self.shift, tissue, 1.0 / self.dt**2]
         self._launch(
             coarse_kernels.assemble,
