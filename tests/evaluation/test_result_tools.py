@@ -46,6 +46,14 @@ def test_difference_is_of_the_same_trials(tmp_path: Path) -> None:
     assert (of.value, of.low, of.high) == pytest.approx((2.0, 2.0, 2.0))
 
 
+def test_other_versions_are_told(tmp_path: Path, capsys) -> None:
+    runs = [{**RUN, "versions": {"newton": "1.8.0", "arcgym commit": commit}} for commit in ("abc", "def")]
+    words = [str(result(tmp_path / name, run=run)) for name, run in zip("ab", runs, strict=True)]
+    main(["results", "compare", *words])
+    out = capsys.readouterr().out
+    assert f"note: arcgym commit is abc in {words[0]} and def in {words[1]}" in out and "newton" not in out
+
+
 def test_other_trials_cannot_be_compared(tmp_path: Path) -> None:
     other = result(tmp_path / "b", run={**RUN, "conditions_sha256": "other"})
     with pytest.raises(UsageError, match="conditions_sha256"):
@@ -176,7 +184,7 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert "old" not in text and text.endswith("<!-- end of entries -->\nend\n")
     line = next(line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`"))
     assert line.startswith(f"| `{TASKS[0]}` | Mine | A. Author | 100 (89–100) | 1.00 (1.00–1.00) |")
-    assert "| 2e+06 | 1.5 | abc | reproduced: B. Other 2026-12 |" in text and "| abc | self-reported |" in text
+    assert "| 2e+06 | 1.5 | abc | ? | reproduced: B. Other 2026-12 |" in text and "| abc | ? | self-reported |" in text
     (result(tmp_path / "all" / "wrong", seed=5) / "entry.yaml").write_text(ENTRY)
     result(tmp_path / "all" / "nameless")
     (tmp_path / "all" / "nameless" / "entry.yaml").write_text("name: Mine\ncost: 3\n")

@@ -155,6 +155,10 @@ def test_variants_are_tasks_of_their_own(tmp_path: Path, conditions: Path) -> No
     by_task = {name: [row["reward"] for row in rows if row["task"].endswith(name)] for name in ("ule", "_2", "_3")}
     assert by_task["ule"] == by_task["_2"] and len(by_task["_3"]) == 5
     assert by_task["_3"] != by_task["ule"]
+    friction = {(row["task"][18:], row["trial"]): row["friction"] for row in rows}
+    assert len(set(friction.values())) == 10 and all(0.05 <= friction["", k] <= 0.15 for k in range(5))
+    assert all(friction[":sticky_3", k] == pytest.approx(5.0 * friction["", k]) for k in range(5))
+    assert all(0.7 <= row["wall_stiffness"] <= 1.4 and row["anchor_stiffness"] == 1.0 for row in rows)
     assert read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule:sticky_3"]["robustness"] == ["none", "sticky_3"]
 
 

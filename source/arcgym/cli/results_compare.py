@@ -18,7 +18,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(namespace: argparse.Namespace) -> None:
-    """Print the table."""
-    from arcgym.evaluation.compare import compare, to_markdown
+    """Print the table, and in which versions the runs differ."""
+    from arcgym.evaluation.compare import compare, to_markdown, version_notes
 
-    print(to_markdown(compare(Path(namespace.first), Path(namespace.second))))
+    first, second = Path(namespace.first), Path(namespace.second)
+    print(to_markdown(compare(first, second)))
+    for line in version_notes(first, second):
+        print(line)

@@ -42,6 +42,15 @@ def compare(first: Path, second: Path) -> dict[str, dict[str, Interval]]:
     return {task: _differences(*([of[key] for key in keys] for of in rows)) for task, keys in by_task.items()}
 
 
+def version_notes(first: Path, second: Path) -> list[str]:
+    """Return a line for each version in which two folders differ: other code may draw and move otherwise."""
+    versions = [read_run(path).get("versions", {}) for path in (first, second)]
+    names = [name for name in {**versions[0], **versions[1]} if versions[0].get(name) != versions[1].get(name)]
+    return [
+        f"note: {name} is {versions[0].get(name)} in {first} and {versions[1].get(name)} in {second}" for name in names
+    ]
+
+
 def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:
     """Return the differences as a table: mean and 95 % interval."""
     names = list(next(iter(differences.values())))

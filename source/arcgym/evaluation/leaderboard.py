@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -101,7 +102,7 @@ def entries_table(folders: Sequence[Path]) -> str:
         lines = sorted((line for folder in own for line in _lines(folder)), key=lambda line: (line[0], -line[1]))
         if lines:
             columns = ["task", "method", "by", "success [%]", *(heading for heading, _ in METRICS.values())]
-            columns += ["sees", "trained on", "transitions", "GPU hours", "checkpoint", "marked"]
+            columns += ["sees", "trained on", "transitions", "GPU hours", "checkpoint", "ARCGym", "marked"]
             head = [f"| {' | '.join(columns)} |", f"|{'---|' * len(columns)}"]
             parts.append("\n".join([f"## {suite}\n", *head, *(text for _, _, text in lines)]))
     return "\n\n".join(parts) + "\n" if parts else "There is no entry yet.\n"
@@ -119,13 +120,27 @@ def _lines(folder: Path) -> list[tuple[str, float, str]]:
     name = f"[{entry.name}]({entry.url})" if entry.url else entry.name
     hashes = ", ".join(digest[:8] for digest in run["checkpoint_sha256"]) or run["agent"]
     marked = f"reproduced: {entry.reproduced}" if entry.reproduced else "self-reported"
-    about = [entry.sees, entry.trained_on, f"{entry.transitions:.3g}", f"{entry.gpu_hours:g}", hashes, marked]
+    about = [
+        entry.sees,
+        entry.trained_on,
+        f"{entry.transitions:.3g}",
+        f"{entry.gpu_hours:g}",
+        hashes,
+        _version(run),
+        marked,
+    ]
     lines = []
     for task, of in summarize(read_trial_rows(folder)).items():
         figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
         cells = [f"`{task}`", name, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
         lines.append((task, of["success"].value, f"| {' | '.join(cells)} |"))
     return lines
+
+
+def _version(run: dict[str, Any]) -> str:
+    """Return which ARCGym was run: the commit where it is known, else the release."""
+    versions = run.get("versions", {})
+    return str(versions.get("arcgym commit") or versions.get("arcgym", "?"))[:7]
 
 
 def _text(interval: Interval, digits: int, factor: float = 1.0) -> str:

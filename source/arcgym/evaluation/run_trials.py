@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 import torch
 
+from arcgym.evaluation.drawn_values import drawn_values
 from arcgym.evaluation.trial_queue import TrialQueue
 from arcgym.evaluation.trials import Trial
 from arcgym.rl.episode_sums import EpisodeRow, EpisodeSums
@@ -18,7 +19,7 @@ OF_THE_BATCH = "patient_index"
 """Metric that depends on what other patients there are; a trial names its patient itself."""
 
 TrialRow = EpisodeRow
-"""One trial's results by column: the trial's fields, then the episode's."""
+"""One trial's results by column: the trial's fields, what was drawn for it, then the episode's."""
 
 
 def run_trials(
@@ -38,7 +39,8 @@ def run_trials(
         env: Environment; its worlds start anew.
         make_policy: Makes the policy, once the first trials have begun.
         trials: The trials, of patients in ``env``.
-        on_row: Called with the row of each trial that ends: the fields of the trial, and those of
+        on_row: Called with the row of each trial that ends: the fields of the trial, those of
+            :func:`arcgym.evaluation.drawn_values.drawn_values`, and those of
             :meth:`arcgym.rl.episode_sums.EpisodeSums.take`.
         patients: Patients in ``env``, as the trials name them, where there are several. Its event ``patient`` is
             :func:`arcgym.evaluation.trial_queue.give_patient_of_trial`.
@@ -60,7 +62,7 @@ def _run(
     on_row: Callable[[TrialRow], None],
     on_step: Callable[[], None],
 ) -> None:
-    obs, sums = env.get_observations(), EpisodeSums(env)
+    obs, sums, drawn = env.get_observations(), EpisodeSums(env), drawn_values(env.unwrapped)
     with torch.inference_mode():
         while queue.left:
             on_step()
@@ -74,4 +76,6 @@ def _run(
                 trial = running[world]
                 if trial is not None:
                     row.pop(OF_THE_BATCH, None)
-                    on_row({**vars(trial), **row})
+                    on_row({**vars(trial), **drawn[world], **row})
+            if ended:
+                drawn = drawn_values(env.unwrapped)
