@@ -54,8 +54,14 @@ def test_thirty_trials_come_out_alike_in_one_world_in_six_and_in_thirty(tmp_path
 
 @pytest.mark.slow
 def test_two_processes_share_the_trials(tmp_path: Path, conditions: Path, capsys) -> None:
-    """Rows of both are in one folder, with what was changed; cut off, the same call goes on."""
+    """Rows of both are in one folder, with what was changed; cut off, the same call goes on, alone or not."""
     one = evaluate(tmp_path / "one", conditions)
+    (tmp_path / "cut").mkdir()
+    for name in ("run.json", "trials.csv"):
+        (tmp_path / "cut" / name).write_bytes((tmp_path / "one" / name).read_bytes())
+    assert evaluate(tmp_path / "cut", conditions, "--processes", "2") == one
+    log = (tmp_path / "cut" / "parts" / "1_of_2.log").read_text()
+    assert "ARC-Rectum-Capsule: 0 of 3 trials to run" in log
     assert evaluate(tmp_path / "two", conditions, "--processes", "2") == one
     assert read_run(tmp_path / "two")["changes"] == read_run(tmp_path / "one")["changes"]
     assert [len(read_trial_rows(tmp_path / "two" / "parts" / name)) for name in ("1_of_2", "2_of_2")] == [3, 2]

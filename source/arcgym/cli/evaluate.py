@@ -25,6 +25,7 @@ from typing import Any
 from arcgym.cli.arguments import add_fields, argument, positive, read_fields
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.sharing import Share, share
+from arcgym.evaluation.trials import Conditions
 
 TAKES_OVERRIDES = True
 
@@ -78,9 +79,8 @@ def run(namespace: argparse.Namespace) -> None:
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
         return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
-    num_trials = len(args.share.trials(conditions.trials))
-    if min(args.processes, num_trials) > 1:
-        folder = _evaluate_in_processes(args, num_trials, len(tasks))
+    if min(args.processes, len(conditions.trials)) > 1:
+        folder = _evaluate_in_processes(args, conditions, len(tasks))
     else:
         folder = evaluate(tasks, conditions, load, options, Path(args.out))
     _write_reports(folder)
@@ -91,7 +91,7 @@ def run(namespace: argparse.Namespace) -> None:
             print(f"video: {path}")
 
 
-def _evaluate_in_processes(args: EvaluateArguments, num_trials: int, num_tasks: int) -> ResultFolder:
+def _evaluate_in_processes(args: EvaluateArguments, conditions: Conditions, num_tasks: int) -> ResultFolder:
     """Run the evaluation in several processes and return the folder of all rows.
 
     Raises:
@@ -105,8 +105,8 @@ def _evaluate_in_processes(args: EvaluateArguments, num_trials: int, num_tasks: 
     names = ("agent", "suite", "tasks", "robot", "conditions", "num_envs", "num_patients", "device")
     given = [(name, getattr(args, name)) for name in names if getattr(args, name) is not None]
     words = [word for name, value in given for word in (f"--{name}", str(value))]
-    processes = min(args.processes, num_trials)
-    return run_shares([*words, *args.overrides], processes, num_trials * num_tasks, Path(args.out))
+    processes = min(args.processes, len(conditions.trials))
+    return run_shares([*words, *args.overrides], processes, conditions.trials, num_tasks, Path(args.out))
 
 
 def _write_reports(folder: ResultFolder) -> None:

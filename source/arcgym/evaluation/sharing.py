@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arcgym.evaluation.merge import merge
-from arcgym.evaluation.result_folder import TRIALS_FILE, ResultFolder
+from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, ResultFolder, read_run, read_trial_rows
 from arcgym.evaluation.trials import Trial
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
@@ -51,15 +51,19 @@ def share(text: str) -> Share:
     return Share(int(match[1]), int(match[2]))
 
 
-def run_shares(words: Sequence[str], processes: int, num_trials: int, out: Path) -> ResultFolder:
+def run_shares(
+    words: Sequence[str], processes: int, trials: Sequence[Trial], num_tasks: int, out: Path
+) -> ResultFolder:
     """Run an evaluation in several processes, each with its share of the trials, and return the folder of all rows.
 
-    Each share has a folder and a log below ``parts``; the same call goes on with those that were cut off.
+    Each share has a folder and a log below ``parts``. The same call goes on where one was cut off, also with another
+    number of processes.
 
     Args:
         words: Arguments of ``arcgym evaluate`` but ``--out`` and ``--share``.
         processes: Number of processes.
-        num_trials: Number of rows of all shares together.
+        trials: Trials of each task.
+        num_tasks: Number of tasks.
         out: Folder of the results.
 
     Raises:
@@ -68,9 +72,11 @@ def run_shares(words: Sequence[str], processes: int, num_trials: int, out: Path)
     shares = [Share(number, processes) for number in range(1, processes + 1)]
     folders = [out / "parts" / f"{part.number}_of_{part.of}" for part in shares]
     (out / "parts").mkdir(parents=True, exist_ok=True)
+    for part, folder in zip(shares, folders, strict=True):
+        _hand_down(out, folder, {trial.trial for trial in part.trials(trials)})
     running = [_start([*words, "--share", str(part)], of) for part, of in zip(shares, folders, strict=True)]
     try:
-        failed = _wait(running, folders, num_trials)
+        failed = _wait(running, folders, len(trials) * num_tasks)
     finally:
         for process in running:
             process.kill()
@@ -80,6 +86,17 @@ def run_shares(words: Sequence[str], processes: int, num_trials: int, out: Path)
         lines = log.read_text().strip().splitlines() or ["no message"]
         raise UsageError(f"Share {shares[failed]} failed, see {log}: {lines[-1]}")
     return merge(folders, out)
+
+
+def _hand_down(out: Path, folder: Path, numbers: set[int]) -> None:
+    """Give a share the rows of its trials that the whole has already."""
+    if not (out / RUN_FILE).is_file():
+        return
+    part = ResultFolder(folder, read_run(out))
+    known = {(row["task"], row["trial"]) for row in part.rows}
+    for row in read_trial_rows(out):
+        if row["trial"] in numbers and (row["task"], row["trial"]) not in known:
+            part.add(row)
 
 
 def _start(words: Sequence[str], folder: Path) -> subprocess.Popen:
