@@ -35,8 +35,9 @@ class ContactCfg:
     the full ``stiffness``. Friction's stiffness is smaller in the same proportion. 0 gives every wall the full one, as
     do walls of ``wall_model="solid"``, which are squeezed themselves."""
     hardening: float = 0.002
-    """Depth at which a contact pushes twice as hard as its stiffness says [m]; at three times that depth it pushes ten
-    times as hard. So 100 N do not push a link through the wall, while light contacts stay soft."""
+    """Depth at which a contact pushes twice as hard as its stiffness says [m]; at three times that depth it pushes
+    28 times as hard. So 100 N do not push a link through the wall, while light contacts stay soft. Beyond 1.5 times
+    that depth it hardens faster: no wall is squeezed by more than its thickness."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
     friction: float = 0.1

@@ -15,6 +15,11 @@ BEHIND_COSINE = wp.constant(-0.5)
 """Cosine between the direction from axis to wall and the wall's normal, under which the axis is behind the wall."""
 MAX_HARDENING = wp.constant(3.0)
 """Depth beyond which a contact does not harden any more, in multiples of its hardening depth."""
+SQUEEZED = wp.constant(1.5)
+"""Depth beyond which a contact hardens further, in the same multiples: 3 mm, the thickness of the thicker wall. Tissue
+is not squeezed by more than that."""
+FURTHER = wp.constant(8.0)
+"""Factor of the further hardening, which makes a contact 28 times as hard as a shallow one, instead of 10."""
 CLEARANCE = wp.constant(0.25)
 """Share of its radius by which a link's axis must stay off the wall to count as inside."""
 BEHIND_REACH = wp.constant(0.5)
@@ -95,12 +100,16 @@ def touched(records: ContactRecords, slot: int, x: wp.array2d[wp.vec3], w: int) 
 
 @wp.func
 def normal_force(law: ContactLaw, depth: float) -> wp.vec2:
-    """Return normal force k d (1 + min(d / h, 3)^2) [N] and stiffness [N/m] of a contact of weight 1 at depth d > 0."""
+    """Return normal force [N] and stiffness [N/m] of a contact of weight 1 at depth d > 0.
+
+    The force is k d (1 + s^2 + 8 max(s - 1.5, 0)^2) with s = min(d / h, 3).
+    """
     hard = wp.min(depth / law.hardening, MAX_HARDENING)
-    secant = 1.0 + hard * hard
+    beyond = wp.max(hard - SQUEEZED, 0.0)
+    secant = 1.0 + hard * hard + FURTHER * beyond * beyond
     if hard >= MAX_HARDENING:
         return law.stiffness * wp.vec2(depth * secant, secant)
-    return law.stiffness * wp.vec2(depth * secant, 1.0 + 3.0 * hard * hard)
+    return law.stiffness * wp.vec2(depth * secant, secant + 2.0 * hard * (hard + FURTHER * beyond))
 
 
 @wp.func

@@ -37,6 +37,11 @@ def contact_load(
     Springs and damper act with their values at the end of the step; the stiffness of the normal spring is a secant that
     keeps it from pulling.
 
+    The velocity alone tells whether link and wall touch at the end of the step. Where they do not, but are within
+    ``search_gap``, the contact's stiffness still resists acceleration, less the wider the gap: what presses on the link
+    may bring it back within the step. Without, 30 N drove a light link that was rebounding from the wall 15 mm through
+    it in one step. A steady motion is as it was.
+
     Args:
         law: Contact law.
         share: Weight of the contact.
@@ -67,6 +72,10 @@ def contact_load(
         along = wp.outer(normal, normal)
         across = wp.identity(n=3, dtype=float) - along
         out.ll = (dt * (damping + dt * stiffness)) * along + (dt * dt * hold) * across
+    elif gap < law.search_gap:
+        resting = share * normal_force(law, wp.max(-gap, 1.0e-6))
+        stiffness = wp.max(resting[0] / wp.max(-gap, 1.0e-6), 0.5 * resting[1])
+        out.ll = (dt * dt * stiffness * (1.0 - wp.max(gap, 0.0) / law.search_gap)) * wp.outer(normal, normal)
     return out
 
 
