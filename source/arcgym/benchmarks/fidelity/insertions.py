@@ -22,7 +22,7 @@ from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 
 SPEED = {"magnetic": 0.04, "proximal": 0.04}
 """Speed of the experts [m/s]."""
-WORLDS = 8
+WORLDS = {"magnetic": 4, "proximal": 8}
 """Insertions over which the figures of one case are means: single ones differ by which fold the tip slips past when."""
 SPREAD = 0.1
 """Share by which the slowest and the fastest of them are off the speed."""
@@ -80,17 +80,20 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
         run: Device, folder and results.
         cases: The cases.
     """
-    missing = [(case, k) for case in cases for k in range(WORLDS) if ("insertion", case, k) not in run.shared]
+    missing = [
+        (case, k) for case in cases for k in range(WORLDS[case.robot]) if ("insertion", case, k) not in run.shared
+    ]
     if any(case.setting == "wall_half" for case, _ in missing):
         write_smooth(run.folder, refine=2)
     if run.device.startswith("cuda"):
         for case in dict.fromkeys(case for case, _ in missing):
-            keep_figures(run, case, range(WORLDS), insert(case, range(WORLDS), run.device, run.folder))
+            numbers = range(WORLDS[case.robot])
+            keep_figures(run, case, numbers, insert(case, numbers, run.device, run.folder))
     else:
         tasks = [(case, (k,), run.device, run.folder) for case, k in missing]
         for (case, k), figures in zip(missing, in_processes(insert, tasks), strict=True):
             keep_figures(run, case, (k,), figures)
-    return [mean_figures([run.shared["insertion", case, k] for k in range(WORLDS)]) for case in cases]
+    return [mean_figures([run.shared["insertion", case, k] for k in range(WORLDS[case.robot])]) for case in cases]
 
 
 def keep_figures(run: Run, case: Insertion, numbers: Sequence[int], figures: list[dict[str, float]]) -> None:
@@ -131,7 +134,7 @@ def drive(case: Insertion, numbers: Sequence[int], device: str, folder: Path) ->
     torch.manual_seed(0)
     scene = build_scene(case, device, folder, num_envs=len(numbers))
     pace = SPEED[case.robot] * (1.0025 if case.setting == "noise" else 1.0)
-    paces = pace * np.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS)[list(numbers)]
+    paces = pace * np.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS[case.robot])[list(numbers)]
     expert = make_expert(scene, speed=torch.tensor(paces), **STEERING[case.robot])
     _, end = scene.colon.stage.segment_bounds()["sigmoid"]
     steps = round(CONTROL_STEP / scene.sim.physics_dt)
