@@ -62,13 +62,13 @@ LONG = [
     "start_rest_magnetic_in_situ",
     "start_rest_proximal_paper",
     "start_rest_proximal_in_situ",
-    "sensitivity_contact_double",
-    "sensitivity_contact_half",
-    "sensitivity_dt_half",
-    "sensitivity_damping_fifth",
-    "sensitivity_links_half",
-    "sensitivity_wall_half",
-    "sensitivity_noise",
+    "sensitivity_contact_double,sensitivity_contact_double_time",
+    "sensitivity_contact_half,sensitivity_contact_half_time",
+    "sensitivity_dt_half,sensitivity_dt_half_time",
+    "sensitivity_damping_fifth,sensitivity_damping_fifth_time",
+    "sensitivity_links_half,sensitivity_links_half_time",
+    "sensitivity_wall_half,sensitivity_wall_half_time",
+    "sensitivity_noise,sensitivity_noise_time",
 ]
 """Rows that take minutes each and are left to the script."""
 

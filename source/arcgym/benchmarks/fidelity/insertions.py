@@ -45,8 +45,11 @@ HALT = 0.002
 """Way that a tip makes in no less than a halt [m]."""
 SPECS = {"magnetic": magnetic_spec, "proximal": proximal_spec}
 """Robots."""
-STEERING: dict[str, dict[str, float]] = {"magnetic": {}, "proximal": {"patience": 25.0, "least_pace": 0.15}}
-"""Settings of their experts, those that the rows were measured with."""
+STEERING: dict[str, dict[str, float]] = {
+    "magnetic": {},
+    "proximal": {"look": 0.015, "gain": 0.15, "patience": 25.0, "least_pace": 0.15},
+}
+"""Settings of their experts. Those of the pushed scope were chosen by a rule, see docs/what_a_force_means.md."""
 SETTINGS = {
     "contact_double": "contact stiffness times 2",
     "contact_half": "contact stiffness over 2",

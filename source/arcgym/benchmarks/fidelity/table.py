@@ -82,13 +82,19 @@ TABLE: tuple[Check, ...] = (
     line("start_rest_magnetic_in_situ", "resting:start_rest", robot="magnetic", material="in_situ"),
     line("start_rest_proximal_paper", "resting:start_rest", robot="proximal", material="paper"),
     line("start_rest_proximal_in_situ", "resting:start_rest", robot="proximal", material="in_situ"),
-    line("sensitivity_contact_double", "sensitivity:sensitivity", setting="contact_double"),
-    line("sensitivity_contact_half", "sensitivity:sensitivity", setting="contact_half"),
-    line("sensitivity_dt_half", "sensitivity:sensitivity", setting="dt_half"),
-    line("sensitivity_damping_fifth", "sensitivity:sensitivity", setting="damping_fifth"),
-    line("sensitivity_links_half", "sensitivity:sensitivity", setting="links_half"),
-    line("sensitivity_wall_half", "sensitivity:sensitivity", setting="wall_half"),
-    line("sensitivity_noise", "sensitivity:sensitivity", setting="noise"),
+    line(
+        "sensitivity_contact_double sensitivity_contact_double_time",
+        "sensitivity:sensitivity",
+        setting="contact_double",
+    ),
+    line("sensitivity_contact_half sensitivity_contact_half_time", "sensitivity:sensitivity", setting="contact_half"),
+    line("sensitivity_dt_half sensitivity_dt_half_time", "sensitivity:sensitivity", setting="dt_half"),
+    line(
+        "sensitivity_damping_fifth sensitivity_damping_fifth_time", "sensitivity:sensitivity", setting="damping_fifth"
+    ),
+    line("sensitivity_links_half sensitivity_links_half_time", "sensitivity:sensitivity", setting="links_half"),
+    line("sensitivity_wall_half sensitivity_wall_half_time", "sensitivity:sensitivity", setting="wall_half"),
+    line("sensitivity_noise sensitivity_noise_time", "sensitivity:sensitivity", setting="noise"),
 )
 """All checks."""
 

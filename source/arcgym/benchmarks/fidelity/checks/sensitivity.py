@@ -4,9 +4,16 @@
 
 from __future__ import annotations
 
+import itertools
+
 from arcgym.benchmarks.fidelity.insertions import METRICS, SETTINGS, SPECS, Insertion, insert_all
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run
 
+TIMES = ("time_above_5N",)
+"""Figures that have a row of their own: what a force near the limit does to a time above it is not what it does to
+forces."""
+FORCES = tuple(name for name in METRICS if name not in TIMES)
+"""The other figures."""
 MATERIALS = ("paper", "in_situ")
 """Tissue presets."""
 LEAST = {"time_above_5N": 1.0}
@@ -16,22 +23,22 @@ LEAST_FORCE = 0.1
 
 
 def sensitivity(run: Run, setting: str) -> list[Row]:
-    """Change one setting in four insertions; the row is the largest change of any figure."""
+    """Change one setting in all insertions; the rows are the largest change of any force, and of the time above 5 N."""
     cases = [Insertion(robot, material) for robot in SPECS for material in MATERIALS]
     changed = [Insertion(case.robot, case.material, setting) for case in cases]
     figures = insert_all(run, cases + changed)
-    before, after = figures[: len(cases)], figures[len(cases) :]
-    table = {
-        f"{case.robot}, {case.material}": {name: change(old, new, name) for name in METRICS}
-        for case, old, new in zip(cases, before, after, strict=True)
-    }
-    keep(run, setting, table, {f"{case.robot}, {case.material}": old for case, old in zip(cases, before, strict=True)})
-    scene, name = max(((scene, name) for scene in table for name in METRICS), key=lambda at: abs(table[at[0]][at[1]]))
-    worst = list(table).index(scene)
-    unit = "s" if name.startswith("time") else "N"
-    per_scene = "; ".join(f"{k}: {max(map(abs, v.values())):.0%}" for k, v in table.items())
-    note = f"{SETTINGS[setting]}: {name} of {scene}; largest change of {per_scene}"
-    return [Row(f"sensitivity_{setting}", after[worst][name], before[worst][name], table[scene][name], 0.1, unit, note)]
+    scenes = [f"{case.robot}, {case.material}" for case in cases]
+    before, after = (dict(zip(scenes, part, strict=True)) for part in (figures[: len(cases)], figures[len(cases) :]))
+    table = {scene: {name: change(before[scene], after[scene], name) for name in METRICS} for scene in scenes}
+    keep(run, setting, table, before)
+    rows = []
+    for row, names in ((f"sensitivity_{setting}", FORCES), (f"sensitivity_{setting}_time", TIMES)):
+        scene, name = max(itertools.product(scenes, names), key=lambda at: abs(table[at[0]][at[1]]))
+        largest = "; ".join(f"{of}: {max(abs(table[of][name]) for name in names):.0%}" for of in scenes)
+        note = f"{SETTINGS[setting]}: {name} of {scene}; largest change of {largest}"
+        unit = "s" if name in TIMES else "N"
+        rows.append(Row(row, after[scene][name], before[scene][name], table[scene][name], 0.1, unit, note))
+    return rows
 
 
 def change(old: dict[str, float], new: dict[str, float], name: str) -> float:
