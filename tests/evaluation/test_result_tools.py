@@ -35,7 +35,8 @@ def result(path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = sl
     for task in TASKS:
         for trial in CONDITIONS.trials[trials]:
             row = {"task": task, "agent": "a", **vars(trial), "success": 1, "end": "success", "reward": 1.0}
-            folder.add(row | {"seconds": seconds + trial.trial, "progress": 1.0} | (changes if not folder.rows else {}))
+            row |= {"seconds": seconds + trial.trial, "progress": 1.0, "centered_rate": 1.0, "p95_tip_force": 0.0}
+            folder.add(row | (changes if not folder.rows else {}))
     return path
 
 
@@ -92,6 +93,9 @@ def test_what_the_parts_changed_is_known_of_the_whole(tmp_path: Path, capsys) ->
         ({"end": "time_out"}, "says success 1 and end 'time_out'"),
         ({"progress": 0.5}, "succeeded with a progress of 0.5"),
         ({"trial": 1}, "is there twice"),
+        ({"centered_rate": 1.5}, "has centered_rate = 1.5, expected 0 to 1"),
+        ({"p95_tip_force": -0.2}, "has p95_tip_force = -0.2, expected no negative number"),
+        ({"p95_tip_force": float("nan")}, "has p95_tip_force = nan, expected a finite number"),
     ],
 )
 def test_a_wrong_submission_is_refused_with_the_reason(tmp_path: Path, capsys, changes: dict, message: str) -> None:
@@ -195,14 +199,22 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert page.read_text() == text
 
 
-def test_training_on_unseen_patients_is_refused(tmp_path: Path) -> None:
-    conditions = read_conditions(read_suites()["population"].conditions_path)
-    run = {**RUN, "suite": "population", "conditions_sha256": conditions.sha256}
-    for name, trained, refused in (
-        ("a", "population:train", False),
-        ("b", ["colon_1/colon.usda", "population:20003"], True),
-        ("c", "population:test", True),
-        ("d", None, False),
-    ):
-        folder = ResultFolder(tmp_path / name, {**run, "trained_on": [trained]})
-        assert any("keeps unseen" in line for line in problems(folder.path)) == refused
+@pytest.mark.parametrize(
+    ("suite", "trained", "refused"),
+    [
+        ("population", "population:train", False),
+        ("population", ["colon_1/colon.usda", "population:20003"], True),
+        ("paper", "population:19999,20003*0.8", True),
+        ("paper", "population:test", True),
+        ("paper", None, False),
+        ("paper", "/data/assets/usd/ct_2/colon.usda", True),
+        ("paper", "colon_3/colon.usda", False),
+        ("cross_colon", "colon_3/colon.usda", True),
+        ("cross_colon", ["colon_1/colon.usda", "colon_2/colon.usda"], False),
+    ],
+)
+def test_training_on_unseen_patients_is_refused(tmp_path: Path, suite: str, trained, refused: bool) -> None:
+    conditions = read_conditions(read_suites()[suite].conditions_path)
+    run = {**RUN, "suite": suite, "conditions_sha256": conditions.sha256, "trained_on": [trained]}
+    found = problems(ResultFolder(tmp_path / "run", run).path)
+    assert any("kept unseen for tests" in line for line in found) == refused

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +29,18 @@ TASK_FIELDS = (
     *("metrics", "lumen", "scene.colon", "scene.endoscope"),
 )
 """Beginnings of the paths that make a task what it is: observations, actions and rewards are the agent's."""
+
+KEPT_UNSEEN = ("population", "ct")
+"""Suites whose patients nothing may be trained on."""
+
+KEPT_FROM_ITS_POLICIES = ("cross_colon",)
+"""Suites whose patients the policies evaluated in them must not have been trained on."""
+
+SHARES = ("s_c", "coverage")
+"""Columns from 0 to 1, beside those that end in ``_rate``."""
+
+POSITIVE = ("force", "impulse", "time", "seconds", "strain", "tension", "stretch", "friction", "stiffness", "length")
+"""Words in the names of columns that cannot be negative."""
 
 BASIC = ("task", "agent", *COLUMNS, "success", "end", "reward", "seconds")
 """Columns that every row must have."""
@@ -58,7 +72,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
         found.append(f"conditions are not those of {conditions.name}: the hash of the condition file differs")
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
-    found += _seen_in_training(run, conditions)
+    found += _seen_in_training(run, str(run.get("suite")))
     more = [text for text in run.get("overrides", []) if text not in suite.overrides]
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
@@ -73,16 +87,26 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     return found
 
 
-def _seen_in_training(run: dict[str, Any], conditions: Conditions) -> list[str]:
-    """Return a problem where a policy was trained on patients that its suite keeps unseen."""
-    unseen = {trial.patient for trial in conditions.trials if trial.patient.startswith("population:")}
-    if not unseen:
-        return []
-    trained = [
-        name for names in run.get("trained_on", []) for name in ([names] if isinstance(names, str) else names or [])
-    ]
-    seen = [name for name in trained if name in unseen or name == "population:test"]
-    return [f"was trained on {', '.join(sorted(set(seen)))}, which {conditions.name} keeps unseen"] if seen else []
+def _seen_in_training(run: dict[str, Any], suite: str) -> list[str]:
+    """Return a problem where a policy was trained on patients that are for testing."""
+    suites = read_suites()
+    kept = [*KEPT_UNSEEN, *([suite] if suite in KEPT_FROM_ITS_POLICIES else [])]
+    unseen = {trial.patient for name in kept for trial in read_conditions(suites[name].conditions_path).trials}
+    seen = [name for name in _patients(run.get("trained_on", [])) if name in unseen or name == "population:test"]
+    return [f"was trained on {', '.join(sorted(set(seen)))}, kept unseen for tests"] if seen else []
+
+
+def _patients(trained_on: Sequence[Any]) -> list[str]:
+    """Return the single patients of configurations' ``usd_path``: without their gas, and by folder and file."""
+    texts = [text for names in trained_on for text in ([names] if isinstance(names, str) else names or [])]
+    found = []
+    for text in texts:
+        population, colon, members = text.partition(":")
+        if colon and "/" not in population:
+            found += [f"{population}:{member.partition('*')[0]}" for member in members.split(",")]
+        else:
+            found.append("/".join(Path(text).parts[-2:]))
+    return found
 
 
 def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
@@ -107,7 +131,22 @@ def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
             found.append(f"{label} has a progress of {row['progress']}, expected 0 to 1")
         if row["success"] == 1 and row.get("progress", 1.0) < 0.999:
             found.append(f"{label} succeeded with a progress of {row['progress']}")
+        found += [f"{label} has {name} = {value}, {why}" for name, value, why in _impossible(row)]
     return found
+
+
+def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:
+    """Yield the columns of a row whose value cannot be, with why."""
+    for name, value in row.items():
+        if not isinstance(value, float):
+            continue
+        if not math.isfinite(value):
+            if row["end"] != "non_finite":  # an episode whose state broke may say so
+                yield name, value, "expected a finite number"
+        elif (name in SHARES or name.endswith("_rate")) and not -1e-6 <= value <= 1.0 + 1e-6:
+            yield name, value, "expected 0 to 1"
+        elif value < -1e-6 and any(word in name for word in POSITIVE):
+            yield name, value, "expected no negative number"
 
 
 def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
