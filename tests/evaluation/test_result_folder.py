@@ -37,6 +37,14 @@ def test_another_evaluation_does_not_go_on(tmp_path: Path) -> None:
         ResultFolder(tmp_path, {**RUN, "agent": "random"})
 
 
+def test_other_code_does_not_go_on(tmp_path: Path) -> None:
+    versions = {"arcgym commit": "abc", "python": "3.11", "torch": "2.13.0"}
+    ResultFolder(tmp_path, {**RUN, "versions": versions})
+    ResultFolder(tmp_path, {**RUN, "versions": {**versions, "python": "3.12"}})
+    with pytest.raises(UsageError, match="was begun with arcgym commit abc, and now it is def"):
+        ResultFolder(tmp_path, {**RUN, "versions": {**versions, "arcgym commit": "def"}})
+
+
 def test_rows_with_other_columns_are_refused(tmp_path: Path) -> None:
     folder = ResultFolder(tmp_path, RUN)
     folder.add(row(0, 1))

@@ -22,6 +22,9 @@ RUN_FILE = "run.json"
 IDENTITY = ("agent", "checkpoint_sha256", "suite", "conditions_sha256", "overrides")
 """Entries of the run that must agree for rows to belong together."""
 
+ANY_VERSION = ("python",)
+"""Versions that may differ between rows that belong together; all others must agree."""
+
 Row = dict[str, Any]
 """One trial's results by column."""
 
@@ -34,10 +37,10 @@ class ResultFolder:
 
         Args:
             path: The folder.
-            run: What is run; the entries in :data:`IDENTITY` must be those of the folder.
+            run: What is run; the entries in :data:`IDENTITY` and the versions must be those of the folder.
 
         Raises:
-            UsageError: The folder holds another evaluation.
+            UsageError: The folder holds another evaluation, or one by other code.
         """
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
@@ -125,6 +128,14 @@ def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
             raise UsageError(
                 f"{file} is of another evaluation: {name} is {old.get(name)!r} there and {new.get(name)!r} now. "
                 "Give another --out."
+            )
+    versions = [run.get("versions", {}) for run in (old, new)]
+    for name in sorted({*versions[0], *versions[1]} - {*ANY_VERSION}):
+        before, now = (of.get(name) for of in versions)
+        if all(versions) and before != now:
+            raise UsageError(
+                f"{file} was begun with {name} {before}, and now it is {now}: rows of other code do not belong "
+                "together. Go back to it, or give another --out."
             )
 
 
