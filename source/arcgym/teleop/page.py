@@ -92,15 +92,21 @@ class Page:
         while session.frame is None and session.status.state != "failed":
             time.sleep(0.1)
         time.sleep(3.0)  # first pictures compile kernels
-        steps, pictures = session.frames, self.pictures
-        start, busy = time.perf_counter(), time.process_time()
+        before, start = self._counts(), time.perf_counter()
         time.sleep(seconds)
-        spent, busy = time.perf_counter() - start, time.process_time() - busy
-        steps, pictures = session.frames - steps, self.pictures - pictures
+        spent = time.perf_counter() - start
+        steps, pictures, stepping, drawing = (now - then for now, then in zip(self._counts(), before, strict=True))
         return (
             f"measured over {spent:.1f} s: {steps / spent:.1f} control steps/s, {pictures / spent:.1f} pictures/s of "
-            f"{self._size} px, {1000.0 * busy / max(steps, 1):.0f} ms of processor time a step"
+            f"{self._size} px; processor time: {1000.0 * stepping / max(steps, 1):.0f} ms a step in one thread, "
+            f"{1000.0 * drawing / max(pictures, 1):.0f} ms a picture in another"
         )
+
+    def _counts(self) -> tuple[float, float, float, float]:
+        """Return control steps and pictures so far, and the processor times of the threads that make them [s]."""
+        clocks = [time.pthread_getcpuclockid(thread.ident or 0) for thread in (self._session.thread, self._thread)]
+        stepping, drawing = (time.clock_gettime(clock) for clock in clocks)
+        return self._session.frames, self.pictures, stepping, drawing
 
     def close(self) -> None:
         """Stop showing."""

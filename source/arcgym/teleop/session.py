@@ -107,7 +107,8 @@ class Session:
         """Counts the environments."""
         self._requests: queue.Queue[tuple[Callable[[], Any], Future[Any]]] = queue.Queue()
         self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="arcgym-session", daemon=True)
+        self.thread = threading.Thread(target=self._run, name="arcgym-session", daemon=True)
+        """Where the world is stepped."""
         self._paused, self._single, self._has_ended = True, False, False
         self._marks: list[Mark] = []
         self._times: deque[float] = deque(maxlen=11)
@@ -116,12 +117,12 @@ class Session:
 
     def start(self) -> None:
         """Build the environment and run, in a thread of its own."""
-        self._thread.start()
+        self.thread.start()
 
     def close(self) -> None:
         """Save what is under way and end."""
         self._stop.set()
-        self._thread.join()
+        self.thread.join()
 
     def ask(self, do: Callable[[], Any]) -> Future[Any]:
         """Have a function called between two steps, in the session's thread; its result comes in the future."""

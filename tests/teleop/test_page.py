@@ -1,0 +1,29 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page's servers without a browser."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+
+def test_speed_is_measured_without_a_browser(make_session) -> None:
+    pytest.importorskip("viser")
+    from arcgym.teleop.page import Page
+
+    session = make_session()
+    session.speed = 2.0
+    page = Page(session, "127.0.0.1", 0, None, size=64)
+    session.pause(False).result()
+    said = page.measure(1.0)
+    session.pause(True).result()
+    page.close()
+    found = re.search(
+        r"([\d.]+) control steps/s, ([\d.]+) pictures/s of 64 px; .* (\d+) ms a step .* (\d+) ms a pic", said
+    )
+    assert found, said
+    steps, pictures, stepping, drawing = map(float, found.groups())
+    # a thread cannot take more processor time than has passed
+    assert steps > 0.0 and pictures > 0.0 and 0.0 < stepping <= 1000.0 / steps * 1.2 and drawing >= 0.0
