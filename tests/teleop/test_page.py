@@ -14,7 +14,7 @@ def test_speed_is_measured_without_a_browser(make_session) -> None:
     from arcgym.teleop.page import Page
 
     session = make_session()
-    session.speed = 2.0
+    session.speed, session.starts_paused = 2.0, False  # episodes follow each other, as with --seconds
     page = Page(session, "127.0.0.1", 0, None, size=64)
     session.pause(False).result()
     said = page.measure(1.0)

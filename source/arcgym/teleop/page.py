@@ -36,6 +36,8 @@ REDUCED_SURFACE_PERIOD = 1.0
 """The same in a reduced session [s]."""
 TEXT_PERIOD = 0.2
 """Least time between two sets of numbers [s]."""
+LONGEST_START = 300.0
+"""Time after which speed is measured though nothing was drawn yet [s]."""
 BACKGROUND = (222, 228, 238)
 """Color behind the colon."""
 TASKS_OWN = "the task's"
@@ -89,9 +91,9 @@ class Page:
     def measure(self, seconds: float) -> str:
         """Let a session run for a while and return its control steps and pictures a second, in a line."""
         session = self._session
-        while session.frame is None and session.status.state != "failed":
-            time.sleep(0.1)
-        time.sleep(3.0)  # first pictures compile kernels
+        begun = time.monotonic()
+        while self.pictures < 3 and session.status.state != "failed" and time.monotonic() - begun < LONGEST_START:
+            time.sleep(0.1)  # building takes a while, and first pictures compile kernels
         before, start = self._counts(), time.perf_counter()
         time.sleep(seconds)
         spent = time.perf_counter() - start
