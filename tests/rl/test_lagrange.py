@@ -59,6 +59,13 @@ def test_fixed_never_moves():
     assert multiplier.value == 0.7
 
 
+def test_settings_of_another_kind_are_left_out():
+    """A configuration of the controller whose kind alone was changed."""
+    price = make_multiplier("fixed", 1.0, init=2.0, kp=0.1, ki=0.01, kd=0.01, smoothing=0.95, delay=10, maximum=9.0)
+    price.update(5.0)
+    assert price.value == 2.0
+
+
 def test_unknown_kind_lists_the_known():
     with pytest.raises(ValueError, match="'adam', expected one of: ascent, pid, fixed"):
         make_multiplier("adam", limit=1.0)

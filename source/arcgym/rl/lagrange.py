@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections import deque
 from typing import Any, Protocol
 
@@ -130,7 +131,8 @@ def make_multiplier(kind: str, limit: float, **settings: Any) -> Multiplier:
     Args:
         kind: ``ascent``, ``pid`` or ``fixed``.
         limit: Largest mean episode cost that is allowed.
-        settings: Further arguments of its class.
+        settings: Further arguments of its class. Those of the other kinds are left out, so that ``kind`` alone may be
+            changed in a configuration.
 
     Raises:
         ValueError: If the kind is unknown.
@@ -138,7 +140,8 @@ def make_multiplier(kind: str, limit: float, **settings: Any) -> Multiplier:
     kinds = {"ascent": GradientAscentMultiplier, "pid": PidMultiplier, "fixed": FixedMultiplier}
     if kind not in kinds:
         raise ValueError(f"Multiplier of kind '{kind}', expected one of: {', '.join(kinds)}.")
-    return kinds[kind](limit, **settings)
+    known = inspect.signature(kinds[kind]).parameters
+    return kinds[kind](limit, **{name: value for name, value in settings.items() if name in known})
 
 
 def _clamp(value: float, maximum: float) -> float:
