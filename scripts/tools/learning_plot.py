@@ -26,16 +26,15 @@ def main() -> None:
     chosen = sorted((run for run in runs if run["commit"] == commit), key=lambda run: run["task"])
     if not chosen:
         parser.error(f"no runs of commit {commit}; there are {sorted({run['commit'] for run in runs})}")
-    figure, axes = plt.subplots(1, 2, figsize=(10, 3.6), sharey=True)
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4.2), sharey=True, layout="constrained")
     for run in chosen:
         style = "-" if run["task"].endswith("Magnetic") else "--"
         millions = [count / 1e6 for count in run["curves"]["transitions"]]
         for axis, name in zip(axes, ("success", "progress"), strict=True):
-            axis.plot(millions, run["curves"][name], style, label=run["task"])
+            axis.plot(millions, run["curves"][name], style, label=f"{run['task']}, {run['worlds']} worlds")
             axis.set(xlabel="transitions [million]", title=f"{name} of the episodes that ended")
             axis.grid(alpha=0.3)
-    axes[1].legend(fontsize=8)
-    figure.tight_layout()
+    figure.legend(handles=axes[0].lines, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     figure.savefig(ROOT / "docs" / "images" / "learning_tasks.png", dpi=110)
 
 
