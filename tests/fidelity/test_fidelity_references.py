@@ -14,10 +14,12 @@ from arcgym.assets import PROXIMAL_CFG
 from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_spec
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
 from arcgym.benchmarks.fidelity.brute_force import sample_contacts, segment_triangle
+from arcgym.benchmarks.fidelity.checks.commands import Watched
 from arcgym.benchmarks.fidelity.indenter import Curve, join_curves
 from arcgym.benchmarks.fidelity.insertions import cut, figures_of, halved, longest_halt
 from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.placement import follow
+from arcgym.benchmarks.fidelity.processes import in_processes
 from arcgym.benchmarks.fidelity.pushes import BEND, DEPTH
 from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.smooth_colon import smooth_stage
@@ -149,6 +151,19 @@ def test_curves_of_places_that_end_at_other_loads_are_joined() -> None:
     both = join_curves([short, long])
     np.testing.assert_allclose(both.depth_at(1.0), [0.0005, 0.001])
     assert both.force_at(0.001) == 1.5
+
+
+def test_calls_in_processes_keep_their_order() -> None:
+    assert in_processes(pow, [(2, 3), (3, 2)]) == [8, 9]
+    assert in_processes(pow, [(2, 4)]) == [16]
+
+
+def test_what_was_seen_of_worlds_is_joined() -> None:
+    left = Watched(np.array([True, False]), outside=2, broken=0, force=[np.array([1.0, 2.0])])
+    left.join(Watched(np.array([True]), outside=1, broken=1, force=[np.array([3.0])]))
+    row = left.row("random_x", "10 min")
+    assert row.value == 4.0 and row.note == "10 min: 2 of 3 worlds, 1 not finite"
+    np.testing.assert_array_equal(left.force, [[1.0, 2.0, 3.0]])
 
 
 def test_a_bend_has_a_line_of_vertices_on_its_outside() -> None:
