@@ -45,7 +45,8 @@ class RslRlA2cAlgorithmCfg(RslRlPpoAlgorithmCfg):
     """Gradient clipping by norm."""
 
     optimizer: str = "rmsprop"
-    """Optimizer of the original."""
+    """Optimizer of the original. Its first step is ten times the learning rate; ``adam`` where a few updates drive the
+    policy to the end of its range."""
 
     optimizer_eps: float = 1.0e-5
     """Term that keeps the optimizer's division finite. Raise it when the first steps are too large."""
