@@ -58,7 +58,7 @@ def main() -> int:
 def film(scene: Scene, device: str) -> str | None:
     """Film a scene; return its name if that failed."""
     with tempfile.TemporaryDirectory() as folder:
-        result = subprocess.run(command(scene, device), cwd=folder, capture_output=True, text=True)
+        result = subprocess.run(command(scene, device, ROOT), cwd=folder, capture_output=True, text=True)
         videos = sorted(Path(folder).rglob("*.mp4"))
         if result.returncode or not videos:
             print(f"{scene['name']}: {(result.stdout + result.stderr).strip()[-600:]}", flush=True)
@@ -69,11 +69,16 @@ def film(scene: Scene, device: str) -> str | None:
     return None
 
 
-def command(scene: Scene, device: str) -> list[str]:
-    """Return the command line that plays a scene."""
+def command(scene: Scene, device: str, root: Path = Path()) -> list[str]:
+    """Return the command line that plays a scene, with files below a folder."""
+    if "recording" in scene:
+        file = str(root / scene["recording"])
+        words = ["replay", file, "--video", f"{scene['name']}.mp4", "--every", str(scene.get("every", 1))]
+        return [sys.executable, "-m", "arcgym", *words, "--device", device]
     play = ["play", "--task", scene["task"], "--policy", scene.get("policy", "expert"), "--num_envs", "1"]
     play += ["--device", device, "--video", "--video_length", str(scene.get("steps", LONGEST)), "--json"]
     play += ["--steps", str(scene["steps"])] if "steps" in scene else []
+    play += ["--checkpoint", str(root / scene["checkpoint"])] if "checkpoint" in scene else []
     return [sys.executable, "-m", "arcgym", *play, *scene.get("overrides", [])]
 
 
@@ -81,9 +86,9 @@ def record(output: str, device: str) -> dict[str, Any]:
     """Return what a run printed at its end, with the commit and the day it was filmed on."""
     from arcgym.envs.provenance import versions
 
-    return {"figures": json.loads(output.strip().splitlines()[-1]), "device": device, "day": str(date.today())} | {
-        "versions": versions()
-    }
+    last = output.strip().splitlines()[-1]
+    figures = json.loads(last) if last.startswith("{") else {"said": last}
+    return {"figures": figures, "device": device, "day": str(date.today())} | {"versions": versions()}
 
 
 def shrink(source: Path, target: Path) -> None:
@@ -118,7 +123,8 @@ def entry(scene: Scene) -> str:
     tag = f'<video controls loop muted preload="metadata" width="100%" src="{file}"></video>'
     when = f"Filmed on {made['day']}, commit {made['versions'].get('arcgym commit', 'unknown')[:7]}."
     shown = f"```{{raw}} html\n{tag}\n```\n\n{when} [{scene['name']}.mp4]({file})"
-    return f"\n## {scene['title']}\n\n{shown}\n\n```bash\n{said}\n```\n"
+    first = f"{scene['before']}\n" if "before" in scene else ""
+    return f"\n## {scene['title']}\n\n{shown}\n\n```bash\n{first}{said}\n```\n"
 
 
 if __name__ == "__main__":

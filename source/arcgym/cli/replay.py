@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from arcgym.cli.arguments import add_fields, argument, read_fields, whole
+from arcgym.cli.arguments import add_fields, argument, positive, read_fields, whole
 from arcgym.utils.errors import UsageError
 
 TAKES_OVERRIDES = True
@@ -30,6 +30,7 @@ class ReplayArguments:
     episode: int = argument("which episode of the file (default: 0)", 0, type=whole(0))
     pieces: bool = argument("from mark to mark, each from the complete state there, as far as there are marks", False)
     video: str | None = argument("draw it, to an .mp4 file", None, metavar="FILE")
+    every: int = argument("draw one of so many steps, so many times as fast (default: 1)", 1, type=positive)
     task: str | None = argument("task (default: the recorded one)", None)
     device: str | None = argument("cpu, cuda or cuda:<n> (default: the kind that it was recorded on)", None)
     overrides: list[str] = field(default_factory=list)
@@ -85,7 +86,8 @@ def _replay(episode: Any, args: ReplayArguments) -> int:
         with _video(args.video, env) as draw, counted("replaying", length) as show:
 
             def on_step(step: int) -> None:
-                draw()
+                if step % args.every == 0:
+                    draw()
                 if step:
                     show(step)
 
