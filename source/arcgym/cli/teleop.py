@@ -25,6 +25,8 @@ SIZE, REDUCED_SIZE = 320, 192
 """Width and height of the endoscope's view, and of that of a reduced session [px]."""
 SCRIPTED = ("expert", "zero", "random")
 """Drivers without a checkpoint."""
+UNPACED = 100.0
+"""Simulated seconds a second that a measurement aims at: more than any machine reaches."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +43,9 @@ class TeleopArguments(RunArguments):
     )
     host: str = argument("address to listen at (default: 127.0.0.1, this machine alone)", "127.0.0.1", group="page")
     port: int = argument("port (default: 8080; 0 takes a free one)", 8080, type=whole(0), group="page")
-    seconds: int | None = argument("measure: run by itself so long, say how fast, and close", None, type=positive)
+    seconds: int | None = argument(
+        "measure: run by itself so long, as fast as it goes, say how fast, and close", None, type=positive
+    )
     size: int | None = argument(
         "width and height of the endoscope's view [px] (default: 320, reduced 192)", None, type=positive, group="page"
     )
@@ -133,6 +137,7 @@ def show(session: Any, args: Any, steers: bool) -> None:
     print(f"page: {page.gate.url}", flush=True)
     try:
         if getattr(args, "seconds", None):
+            session.speed = UNPACED
             print(page.measure(args.seconds))
         else:
             while True:
