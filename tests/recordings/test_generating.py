@@ -45,7 +45,7 @@ def test_each_patient_has_its_episodes(data) -> None:
         assert [episode.info["complete"] for episode in episodes] == [True] * 3
         assert {episode.provenance["seed"] for episode in episodes} == {5, 7}
         assert all(episode.info["success"] for episode in episodes)
-        assert f"/{name}/" in episodes[0].provenance["stages"]["colon"]["path"]
+        assert Path(episodes[0].provenance["stages"]["colon"]["path"]).parent.name == name
 
 
 def test_pictures_fit_each_other(data) -> None:
@@ -119,7 +119,8 @@ def test_patients_in_one_batch(colons, tmp_path, capsys) -> None:
     drawn = [episode.info["patient"] for episode in episodes]
     assert len(episodes) == 6 and set(drawn) == {"straight", "bent"}
     assert all(
-        f"/{name}/" in one.provenance["stages"]["colon"]["path"] for name, one in zip(drawn, episodes, strict=True)
+        Path(one.provenance["stages"]["colon"]["path"]).parent.name == name
+        for name, one in zip(drawn, episodes, strict=True)
     )
     assert f"| bent | {drawn.count('bent')} |" in (tmp_path / "README.md").read_text()
     bent = episode_paths(tmp_path / "together")[drawn.index("bent")]

@@ -17,6 +17,7 @@ import warp as wp
 
 from arcgym import __version__
 from arcgym.utils.coerce import to_plain
+from arcgym.utils.paths import portable_asset
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -48,7 +49,9 @@ def provenance(env: ManagerBasedEnv, world: int = 0) -> tuple[dict[str, Any], di
         "step_dt": env.step_dt,
         "versions": versions(),
         "stages": {
-            name: {"path": str(path), "sha256": stage_hash(path)} for name, path in stages.items() if path is not None
+            name: {"path": portable_asset(path), "sha256": stage_hash(path)}
+            for name, path in stages.items()
+            if path is not None
         },
         "settings": settings_hash(settings),
     }

@@ -59,3 +59,9 @@ def resolve_asset(path: str | Path) -> Path:
     """Return `path` itself where it exists or is absolute, else the path inside :func:`assets_dir`."""
     given = Path(path).expanduser()
     return given if given.is_absolute() or given.exists() else assets_dir() / given
+
+
+def portable_asset(path: str | Path) -> str:
+    """Return how another machine finds an asset: the path inside :func:`assets_dir`, else the path itself."""
+    place, given = assets_dir().resolve(), Path(path).resolve()
+    return given.relative_to(place).as_posix() if given.is_relative_to(place) else str(path)

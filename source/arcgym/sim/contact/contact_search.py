@@ -8,6 +8,7 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sim.contact import contact_list_kernels as list_kernels
 from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
 from arcgym.sim.contact import lumen_kernels
@@ -234,8 +235,8 @@ class ContactSearch:
         near = [self.links, self.surface, self.candidates.nearest, self.past]
         inputs = [x, points, body_q, *near, self.law, self.moduli]
         self._launch(record_kernels.locate_contacts, of_records, inputs, [records])
-        self._launch(record_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
-        self._launch(record_kernels.list_rings, (self.num_envs, parts), [parts], [records])
+        self._launch(list_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
+        self._launch(list_kernels.list_rings, (self.num_envs, parts), [parts], [records])
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, int], inputs: list[object], outputs: list[object]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)
