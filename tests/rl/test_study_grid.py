@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,24 @@ def test_the_command_line_sweeps_too():
     assert [(cell.seed, cell.axes["agent.algorithm.gamma"]) for cell in cells] == [
         (seed, gamma) for seed in (5, 6, 7) for gamma in (0.9, 0.99)
     ]
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("algorithm=[ppo,sac]", "algorithm is ['ppo', 'sac'], expected one value, or several as algorithm=ppo,sac"),
+        ("minutes=soon", "minutes"),
+        ("algoritm=ppo", "no field 'algoritm'. Did you mean"),
+    ],
+)
+def test_mistakes_on_the_command_line_are_named(override, message):
+    with pytest.raises(UsageError, match=re.escape(message)):
+        all_cells(study(grid={"seed": [1]}), FOLDER, [override])
+
+
+def test_an_unknown_agent_lists_the_known():
+    with pytest.raises(UsageError, match="algorithm 'sax'. Did you mean 'sac'"):
+        check_cells(all_cells(study(algorithm="sax"), FOLDER))
 
 
 def test_more_minutes_on_the_command_line_are_for_the_same_cell():

@@ -8,11 +8,12 @@ from __future__ import annotations
 import itertools
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import gymnasium
 import hydra
 import yaml
 
@@ -23,9 +24,10 @@ from arcgym.rl.studies.grid import NAMED, make_cell, sweep_overrides
 from arcgym.rl.studies.run_cell import run_cell
 from arcgym.rl.studies.stopping import stopping_on_signals, was_stopped
 from arcgym.rl.studies.study_cfg import AXES, StudyCfg
-from arcgym.utils.coerce import to_plain
+from arcgym.utils.coerce import from_dict, to_plain
+from arcgym.utils.configclass import validate
 from arcgym.utils.errors import UsageError
-from arcgym.utils.registry import list_tasks
+from arcgym.utils.registry import CFG_SUFFIX, list_tasks
 from arcgym.utils.string import did_you_mean
 
 CONFIG = "study"
@@ -95,7 +97,7 @@ def all_cells(cfg: StudyCfg, folder: Path, overrides: Sequence[str] = ()) -> lis
     """Return the cells that the grid and the sweeps among ``overrides`` make.
 
     Raises:
-        UsageError: An override cannot be read.
+        UsageError: An override cannot be read, names no field, or gives a list where one value belongs.
     """
     from hydra.core.override_parser.overrides_parser import OverridesParser
     from hydra.errors import HydraException
@@ -114,14 +116,47 @@ def all_cells(cfg: StudyCfg, folder: Path, overrides: Sequence[str] = ()) -> lis
         ]
     except HydraException as error:
         raise UsageError(f"An override cannot be read: {' '.join(str(error).split())}") from error
+    for key, choice in zip(by_key, choices, strict=True):
+        _check_choices(key, [value for _, value in choice])
     found = []
+    names = list(vars(cfg))
     for combination in itertools.product(*choices):
         values: Any = OmegaConf.create(plain)
         for key, value in combination:
             OmegaConf.update(values, key, value, force_add=True)
         plain_values: Any = OmegaConf.to_container(values, resolve=True)
+        _check_types({name: plain_values[name] for name in names})
         found.append(make_cell(plain_values, folder))
     return found
+
+
+def _check_choices(key: str, values: Sequence[Any]) -> None:
+    """Raise if an override names no field of a study, or gives a list where a cell has one value.
+
+    Raises:
+        UsageError: With what to write instead.
+    """
+    fields = vars(StudyCfg())
+    if key.partition(".")[0] not in fields:
+        raise UsageError(f"A study has no field '{key}'. {did_you_mean(key, fields)}")
+    for value in values:
+        if key in AXES and isinstance(value, (list, tuple, Mapping)):
+            several = f"{key}={','.join(str(one) for one in value)}"
+            raise UsageError(f"The override {key} is {value}, expected one value, or several as {several}.")
+
+
+def _check_types(values: dict[str, Any]) -> None:
+    """Raise if a field of a study has a value of another type, or one out of its range.
+
+    Raises:
+        UsageError: The field's name and what was expected.
+    """
+    checked = StudyCfg()
+    try:
+        from_dict(checked, values)
+        validate(checked, "study")
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"An override does not fit: {error}") from error
 
 
 def check_cells(cells: Sequence[Cell]) -> None:
@@ -135,12 +170,22 @@ def check_cells(cells: Sequence[Cell]) -> None:
     for cell in cells:
         if cell.task not in tasks:
             raise UsageError(f"The study has the task '{cell.task}'. {did_you_mean(cell.task, tasks)}")
+        _check_agent(cell)
         if names.count(cell.name) > 1:
             raise UsageError(f"The study has the cell '{cell.name}' {names.count(cell.name)} times, expected once.")
         teacher = cell.teacher()
         if teacher is not None and teacher.name not in names:
             raise UsageError(f"The cell '{cell.name}' comes after '{teacher.name}', which the grid does not have.")
         _check_settings(cell)
+
+
+def _check_agent(cell: Cell) -> None:
+    """Raise if the cell's task has no such agent; ``sac`` stands for ``rsl_rl_sac_cfg_entry_point``."""
+    given = cell.like or cell.algorithm
+    keys = [key for key in gymnasium.registry[cell.task].kwargs if key.endswith(CFG_SUFFIX) and key[:4] != "env_"]
+    names = {key.removesuffix(CFG_SUFFIX).removeprefix("rsl_rl").lstrip("_") or "ppo" for key in keys}
+    if given not in names | set(keys):
+        raise UsageError(f"The study has the algorithm '{given}'. {did_you_mean(given, names)}")
 
 
 def _check_settings(cell: Cell) -> None:
