@@ -1,19 +1,19 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""When loops of a pushed scope are straightened: two worlds with a slack of 10 cm."""
+"""When loops of a pushed scope are straightened: two worlds with a slack of 10 cm, whose tips may slip by 2 and 5 cm."""
 
 from __future__ import annotations
 
 import pytest
 import torch
 
-from arcgym.experts.loops import LONGEST, SLIPS, Loops
+from arcgym.experts.loops import AGAIN, LONGEST, Loops
 
 
 @pytest.fixture
 def loops() -> Loops:
     """Both worlds have had 0.38 m of scope inside where the tip was at 0.40 m."""
-    loops = Loops(2, "cpu", torch.full((2,), 0.1))
+    loops = Loops(2, "cpu", torch.full((2,), 0.1), torch.tensor([0.02, 0.05]))
     assert look(loops, [0.40, 0.40], [0.38, 0.38]) == ([False, False], [False, False])
     return loops
 
@@ -35,7 +35,8 @@ def test_it_ends_when_three_quarters_are_straight(loops: Loops) -> None:
 
 def test_it_ends_when_the_tip_slips(loops: Loops) -> None:
     look(loops, [0.42, 0.42], [0.51, 0.51])
-    assert look(loops, [0.419, 0.42 - SLIPS - 0.001], [0.49, 0.48])[0] == [True, False]
+    assert look(loops, [0.39, 0.39], [0.47, 0.47])[0] == [False, True]
+    assert look(loops, [0.36, 0.36], [0.44, 0.44])[0] == [False, False]
 
 
 def test_it_ends_after_a_while_and_waits_for_progress(loops: Loops) -> None:
@@ -45,8 +46,16 @@ def test_it_ends_after_a_while_and_waits_for_progress(loops: Loops) -> None:
     assert look(loops, [0.44, 0.48], [0.60, 0.64]) == ([False, True], [False, True])  # 2 and 6 cm farther
 
 
+def test_it_is_done_again_where_the_tip_does_not_get_on(loops: Loops) -> None:
+    for _ in range(LONGEST):
+        look(loops, [0.42, 0.42], [0.55, 0.55])
+    for _ in range(AGAIN + 1):
+        assert look(loops, [0.42, 0.42], [0.55, 0.45]) == ([False, False], [False, False])
+    assert look(loops, [0.42, 0.42], [0.55, 0.45]) == ([True, False], [True, False])  # 15 and 5 cm in loops
+
+
 def test_it_does_nothing_in_the_rectum() -> None:
-    loops = Loops(1, "cpu", torch.full((1,), 0.1))
+    loops = Loops(1, "cpu", torch.full((1,), 0.1), torch.full((1,), 0.02))
     for inserted in (0.0, 0.2, 0.5):
         assert look(loops, [0.1], [inserted]) == ([False], [False])
 

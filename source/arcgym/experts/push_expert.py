@@ -44,6 +44,7 @@ class PushExpert(ExpertBase):
         "least_pace": (0.15, 0.8),
         "patience": (25.0, 120.0),
         "slack": (0.04, 0.4),
+        "slips": (0.02, 0.1),
     }
 
     PERIOD = 40
@@ -60,6 +61,7 @@ class PushExpert(ExpertBase):
         least_pace: float = 0.4,
         patience: float = 60.0,
         slack: float = math.inf,
+        slips: float = 0.025,
     ):
         """Keep the settings; each may be one number or one a world.
 
@@ -75,18 +77,20 @@ class PushExpert(ExpertBase):
             patience: Control steps without progress after which it withdraws: until then the push grows.
             slack: Length of scope that may go into loops, beyond where it lay straightest, before it is pulled back to
                 straighten them [m]; infinite for never.
+            slips: Way that the tip may slip back while loops are straightened [m].
         """
         super().__init__(scene, speed)
         self.look, self.gain, self.largest = self.each(look), self.each(gain), self.each(largest)
         self.jiggle, self.twist = self.each(jiggle), self.each(twist)
         self.least_pace, self.patience, self.slack = self.each(least_pace), self.each(patience), self.each(slack)
+        self.slips = self.each(slips)
         self.bending = torch.zeros(scene.num_envs, 2, device=scene.device)
         """Commanded pitch and yaw [rad], shape (N, 2)."""
         self.velocity = torch.zeros(scene.num_envs, device=scene.device)
         """Commanded insertion [m/s], shape (N,)."""
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=self.patience, first=10, longest=60)
-        self._loops = Loops(scene.num_envs, scene.device, self.slack)
+        self._loops = Loops(scene.num_envs, scene.device, self.slack, self.slips)
         self._turn = torch.zeros_like(self.velocity)
         self._steps = torch.zeros_like(self.velocity)
 
