@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measure how well the surfaces of the shipped colons follow the lumens that they were made of, and print a table.
 
-A generated lumen is made again from its patient's spec. That of a colon from CT is the scanned surface, which is given with
-the scan's own centerline [mm], for the canal that is drawn anew leaves another course than the scan's; or, with --widened,
-the lumen that the importer made of it: canal drawn, narrow places widened, walls put between loops.
+A generated lumen is made again from its patient's spec. That of a colon from CT is the scanned surface, which is given
+with the scan's own centerline [mm], for the canal that is drawn anew has another course than the scan's; or, with
+--widened, the lumen that the importer made of it: canal drawn, narrow places widened, walls put between loops.
 
 python scripts/tools/surface_fit.py colon_1 colon_2 colon_3 colon_4 colon_5
 python scripts/tools/surface_fit.py ct_1=EdinGCA_3D_00020_large_intestine_mm.ply,EdinGCA_3D_00020_centerline_mm.csv

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""When loops of a pushed scope are straightened: two worlds with a slack of 10 cm, whose tips may slip by 2 and 5 cm."""
+"""When loops of a pushed scope are straightened: two worlds, a slack of 10 cm, tips that may slip by 2 and 5 cm."""
 
 from __future__ import annotations
 
