@@ -87,3 +87,10 @@ def test_bad_override_says_what_was_meant(override, hint):
     assert result.returncode == 2
     assert hint in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_a_command_ends_without_a_last_search_for_garbage() -> None:
+    look = "import atexit, gc, sys; atexit.register(lambda: print('kept:', gc.get_freeze_count()))"
+    code = f"{look}; sys.argv = ['arcgym', '--version']; from arcgym.cli.main import main; main()"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True).stdout
+    assert int(said.rpartition("kept:")[2]) > 1000  # what was registered first is called last

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import importlib
 import sys
 from collections.abc import Sequence
@@ -60,6 +62,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Raises:
         SystemExit: With status 2 after a mistake in the arguments.
     """
+    if argv is None:
+        _end_quickly()
     words = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(words[:2]) if " ".join(words[:2]) in COMMANDS else "".join(words[:1])
     if name in COMMANDS:
@@ -101,7 +105,16 @@ def run_command(name: str, argv: Sequence[str] | None = None, prog: str | None =
 
 def run_script(name: str) -> int:
     """Run a subcommand as the script that the process was started with, such as ``train.py``."""
+    _end_quickly()
     return run_command(name, prog=Path(sys.argv[0]).name)
+
+
+def _end_quickly() -> None:
+    """Let the process end without a last search for garbage among the objects of all libraries.
+
+    That search took 1.7 of the 1.8 s that ``import torch, newton, arcgym.envs`` needed to end, on an AMD EPYC.
+    """
+    atexit.register(gc.freeze)
 
 
 def _overview(names: Sequence[str] | None = None) -> str:

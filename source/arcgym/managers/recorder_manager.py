@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ import torch
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.recorder_buffer import EpisodeBuffer, Values
 from arcgym.managers.recorder_cfg import RecorderManagerBaseCfg, RecorderTermCfg
+from arcgym.managers.recorder_chunks import pack_together
 from arcgym.managers.recorder_files import next_path
 from arcgym.managers.recorder_term import RecorderTerm
 from arcgym.managers.recorder_writer import EpisodeWriter, allow_files
@@ -112,9 +113,7 @@ class RecorderManager(ManagerBase):
             self._buffer.end_step()
             for world in self._ignored:
                 self._buffer.take(self._place[world])
-            for world in self._worlds:
-                if self._buffer.length(self._place[world]) >= self._chunk:
-                    self._write(world)
+            self._write([world for world in self._worlds if self._buffer.length(self._place[world]) >= self._chunk])
 
     def record_pre_reset(self, env_ids: torch.Tensor) -> None:
         """End the episodes of the worlds ``env_ids``, int64, shape (n,), and write them."""
@@ -174,22 +173,32 @@ class RecorderManager(ManagerBase):
                 self._buffer.add_once([self._place[w] for w in worlds], _to_host(_flatten(*ask(term, ids))))
         return worlds
 
-    def _write(self, world: int) -> None:
-        """Hand the steps that wait over to the file; the first ones make it."""
-        steps = self._buffer.take(self._place[world])
+    def _write(self, worlds: Sequence[int]) -> None:
+        """Hand the steps that wait over to the files; the first ones make them."""
+        handed = [self._buffer.take(self._place[world]) for world in worlds]
+        chunks = pack_together(
+            [steps if self._begins_chunk(world) else {} for world, steps in zip(worlds, handed, strict=True)],
+            self._chunk,
+        )
+        for world, steps, packed in zip(worlds, handed, chunks, strict=True):
+            once = {} if world in self._writers else self._buffer.take_once(self._place[world])
+            self._writer(world).append(steps, once, packed)
+
+    def _begins_chunk(self, world: int) -> bool:
+        return world not in self._writers or self._writers[world].begins_chunk
+
+    def _writer(self, world: int) -> EpisodeWriter:
+        """Return the writer of a world's episode; its file appears with the first steps."""
         if world not in self._writers:
             facts, settings = self._env.provenance(world)
             path = next_path(self._settings.dataset_export_dir_path, self._settings.dataset_filename)
             self._writers[world] = EpisodeWriter(path, facts | {"env_id": world}, settings, self._chunk)
-            self._writers[world].append(steps, self._buffer.take_once(self._place[world]))
-        else:
-            self._writers[world].append(steps, {})
+        return self._writers[world]
 
     def _export(self, worlds: list[int]) -> None:
         """Finish the episodes of some worlds; those without a step are dropped."""
+        self._write([world for world in worlds if self._buffer.length(self._place[world])])
         for world in worlds:
-            if self._buffer.length(self._place[world]):
-                self._write(world)
             once = self._buffer.take_once(self._place[world])
             writer = self._writers.pop(world, None)
             if writer is None:

@@ -9,11 +9,13 @@ import os
 import resource
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import h5py
 import numpy as np
 
+from arcgym.managers.recorder_chunks import LEVEL, write_chunk
 from arcgym.managers.recorder_files import FORMAT, PARTIAL, SUFFIX, Episode
 
 
@@ -37,12 +39,24 @@ class EpisodeWriter:
         self._provenance, self._settings, self._rows = provenance, settings, rows
         self._file: h5py.File | None = None
 
-    def append(self, steps: Mapping[str, np.ndarray], once: Mapping[str, np.ndarray]) -> None:
+    @property
+    def begins_chunk(self) -> bool:
+        """Whether the next step is the first of a chunk."""
+        return self.length % self._rows == 0
+
+    def append(
+        self,
+        steps: Mapping[str, np.ndarray],
+        once: Mapping[str, np.ndarray],
+        packed: Mapping[str, bytes] = MappingProxyType({}),
+    ) -> None:
         """Write steps, each of shape (T, ...).
 
         Args:
             steps: Values of the steps, the same names each time.
             once: Values of the episode so far; only those of the first call are written here.
+            packed: Chunks that hold some of the steps' values, see :func:`arcgym.managers.recorder_chunks.pack`;
+                only where :attr:`begins_chunk`.
         """
         count = len(next(iter(steps.values())))
         if self._file is None:
@@ -52,7 +66,10 @@ class EpisodeWriter:
         for name, value in steps.items():
             dataset = group[name]
             dataset.resize(self.length + count, axis=0)
-            dataset[self.length :] = value
+            if name in packed:
+                write_chunk(dataset, self.length, packed[name])
+            else:
+                dataset[self.length :] = value
         self._file.flush()
         self.length += count
 
@@ -115,7 +132,7 @@ class EpisodeWriter:
             chunks=(self._rows, *(max(size, 1) for size in shape)),
             dtype=value.dtype,
             compression="gzip",
-            compression_opts=1,
+            compression_opts=LEVEL,
             shuffle=value.dtype.itemsize > 1,
         )
 
@@ -159,7 +176,7 @@ def allow_files(count: int) -> None:
 
 
 def _once(group: h5py.Group, name: str, value: np.ndarray) -> None:
-    packed = {"compression": "gzip", "compression_opts": 1} if value.size > 64 else {}
+    packed = {"compression": "gzip", "compression_opts": LEVEL} if value.size > 64 else {}
     group.create_dataset(name, data=value, **packed)
 
 
