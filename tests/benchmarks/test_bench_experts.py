@@ -8,6 +8,7 @@ from pathlib import Path
 
 from arcgym.benchmarks.experts.measure import row_of
 from arcgym.benchmarks.experts.table import failures, read_rows, table
+from arcgym.cli.bench_experts import _missing
 from arcgym.start_states.route import Entry, Route
 
 
@@ -37,3 +38,13 @@ def test_a_line_that_was_cut_off_is_left_out(tmp_path: Path) -> None:
     path = tmp_path / "rows.jsonl"
     path.write_text('{"patient": "a"}\n{"patient": "b", "rob')
     assert read_rows(path) == [{"patient": "a"}]
+
+
+def test_scopes_of_another_length_have_rows_of_their_own() -> None:
+    route = Route({"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.4)}, arc=0.2)
+    shipped = {"patient": "a", "robot": "magnetic", "tissue": "paper", **row_of(route)}
+    lines = table([shipped, {**shipped, "scope_length": 2.2}]).splitlines()
+    assert [line.split(" | ")[0] for line in lines[2::7]] == ["| magnetic", "| magnetic of 2.2 m"]
+    stages = [Path("a/colon.usda"), Path("b/colon.usda")]
+    assert list(_missing([shipped], "magnetic", "paper", None, stages, 8)) == [stages[1:]]
+    assert list(_missing([shipped], "magnetic", "paper", 2.2, stages, 8)) == [stages]

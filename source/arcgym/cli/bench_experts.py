@@ -44,6 +44,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--patience", type=float, default=30.0, help="simulated time without progress after which it gives up [s] (30)"
     )
+    parser.add_argument(
+        "--length", type=float, help="length of the scopes with a shaft [m]; all but 0.2 m can be inserted (1.68)"
+    )
     parser.add_argument("--minutes", type=float, default=float("inf"), help="longest time in all (no limit)")
     parser.add_argument("--states", action="store_true", help="keep the start states in the cache folder")
     parser.add_argument("--seed", type=int, default=0, help="seed of the experts' settings (0)")
@@ -68,7 +71,7 @@ def run(args: argparse.Namespace) -> None:
     args.out.mkdir(parents=True, exist_ok=True)
     rows = args.out / "rows.jsonl"
     for robot, tissue in product(args.robots, args.tissues):
-        for batch in _missing(read_rows(rows), robot, tissue, stages, args.batch):
+        for batch in _missing(read_rows(rows), robot, tissue, args.length, stages, args.batch):
             if time.monotonic() - began < 60.0 * args.minutes:
                 _drive(args, robot, tissue, batch, rows, began + 60.0 * args.minutes)
     done = read_rows(rows)
@@ -78,10 +81,11 @@ def run(args: argparse.Namespace) -> None:
 
 
 def _missing(
-    rows: Sequence[dict[str, Any]], robot: str, tissue: str, stages: Sequence[Path], size: int
+    rows: Sequence[dict[str, Any]], robot: str, tissue: str, length: float | None, stages: Sequence[Path], size: int
 ) -> Iterator[list[Path]]:
     """Yield batches of the stages that have no row yet."""
-    there = {row["patient"] for row in rows if (row["robot"], row["tissue"]) == (robot, tissue)}
+    wanted = robot, tissue, length
+    there = {row["patient"] for row in rows if (row["robot"], row["tissue"], row.get("scope_length")) == wanted}
     left = [stage for stage in stages if stage.resolve().parent.name not in there]
     for first in range(0, len(left), size):
         yield left[first : first + size]
@@ -108,5 +112,6 @@ def _drive(
             flush=True,
         )
 
-    plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, args.states, args.patience)
+    how = {"keep_states": args.states, "patience": args.patience, "length": args.length}
+    plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, **how)
     attempt(plan, stages, done, lambda text: print(f"{robot}, {tissue}: {text}", flush=True))

@@ -19,6 +19,7 @@ from arcgym.start_states import Drive, store
 from arcgym.start_states.making import SPEED, key_of
 from arcgym.start_states.route import Route
 from arcgym.start_states.settling import CONTROL_STEP
+from arcgym.utils.configclass import replace
 
 ROBOTS = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
 """Robots by name."""
@@ -49,6 +50,8 @@ class Attempt:
     """Whether to keep the start states in the cache folder."""
     patience: float = 30.0
     """Simulated time without progress after which the drive gives up a patient [s]."""
+    length: float | None = None
+    """Length of a scope with a shaft [m]; None takes the shipped one's, and capsules have none."""
 
 
 def attempt(
@@ -67,7 +70,8 @@ def attempt(
     """
     colon = ColonCfg(usd_path=[str(stage) for stage in stages], material=plan.tissue)
     count = plan.worlds * len(stages)
-    cfg = InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=ROBOTS[plan.robot])
+    endoscope = replace(ROBOTS[plan.robot], length=None if plan.robot == "capsule" else plan.length)
+    cfg = InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=endoscope)
     scene = InteractiveScene(cfg, SimulationCfg(device=plan.device))
     drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
     began, written = time.monotonic(), set[int]()
@@ -79,6 +83,7 @@ def attempt(
             if not route.running and patient not in written:
                 written.add(patient)
                 about = {"robot": plan.robot, "tissue": plan.tissue, "worlds": plan.worlds, "seed": plan.seed}
+                about |= {} if plan.length is None else {"scope_length": plan.length}
                 spent = {"wall_time": round(time.monotonic() - began, 1)}
                 done({"patient": scene.colon.patients[patient].name, **about, **row_of(route), **spent})
 

@@ -31,19 +31,25 @@ def read_rows(path: Path) -> list[dict[str, Any]]:
 def table(rows: Sequence[dict[str, Any]]) -> str:
     """Return how many patients each robot gets how far in, in Markdown; figures are median (95th percentile)."""
     lines = [" | ".join(("", *COLUMNS, "")).strip(), "|---" * len(COLUMNS) + "|"]
-    for robot, tissue in dict.fromkeys((row["robot"], row["tissue"]) for row in rows):
-        own = [row for row in rows if (row["robot"], row["tissue"]) == (robot, tissue)]
+    for robot, tissue in dict.fromkeys((robot_of(row), row["tissue"]) for row in rows):
+        own = [row for row in rows if (robot_of(row), row["tissue"]) == (robot, tissue)]
         for segment in SEGMENTS[1:]:
             cells = (robot, tissue, segment, *_of_segment(own, segment))
             lines.append(" | ".join(("", *cells, "")).strip())
     return "\n".join(lines)
 
 
+def robot_of(row: dict[str, Any]) -> str:
+    """Return the robot of a row, with its length [m] where that is not the shipped one."""
+    length = row.get("scope_length")
+    return str(row["robot"]) if length is None else f"{row['robot']} of {length:g} m"
+
+
 def failures(rows: Sequence[dict[str, Any]]) -> str:
     """Return one line for each patient that was not passed, the shortest way first."""
     failed = sorted((row for row in rows if row["problem"]), key=lambda row: float(row["reached"]))
     return "\n".join(
-        f"- {row['patient']}, {row['robot']}, {row['tissue']}: {row['reached']:.2f} of {row['length']:.2f} m, in the "
+        f"- {row['patient']}, {robot_of(row)}, {row['tissue']}: {row['reached']:.2f} of {row['length']:.2f} m, in the "
         f"{list(row['segments'])[-1]}, {row['problem']}; {row['held_by']}"
         for row in failed
     )
