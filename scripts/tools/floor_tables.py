@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Make the tables of ``docs/evaluation.md`` from result folders, between its two marks.
 
-A task is shown of the agents that have run all of its trials: those that end early come first, so that a part would be
-another sample.
+A task is shown of the agents that have run all of its trials, or all of a share (each n-th, ``--share 1/n``): those
+that end early come first, so that another part would be another sample.
 
 python scripts/tools/floor_tables.py results --commit 1e655ad           # prints them
 python scripts/tools/floor_tables.py results --commit 1e655ad --write   # writes them into the page
@@ -13,7 +13,6 @@ python scripts/tools/floor_tables.py results --commit 1e655ad --write   # writes
 from __future__ import annotations
 
 import argparse
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -29,6 +28,9 @@ BEGIN, END = "<!-- floor -->", "<!-- end of floor -->"
 
 AGENTS = ("zero", "random", "expert")
 """Agents in the order of the rows."""
+
+LARGEST_SHARE = 10
+"""Shares of the trials that are shown: all of them to each tenth one."""
 
 COLUMNS = {
     "progress": ("progress", 2),
@@ -63,17 +65,20 @@ def tables(folders: Sequence[Path], commit: str | None) -> str:
     runs = [(run, rows) for run, rows in runs if run["agent"] in AGENTS and rows]
     parts = [f"{_origin([run for run, _ in runs], commit)}\n"]
     for name, suite in read_suites().items():
-        count = len(read_conditions(suite.conditions_path).trials)
-        rows = _whole([row for run, rows in runs if run["suite"] == name for row in rows], count)
+        numbers = [trial.trial for trial in read_conditions(suite.conditions_path).trials]
+        rows = _whole([row for run, rows in runs if run["suite"] == name for row in rows], numbers)
         if rows:
             parts.append(f"**`{name}`**\n\n{_table(rows)}")
     return "\n".join(parts)
 
 
-def _whole(rows: Sequence[dict[str, Any]], count: int) -> list[dict[str, Any]]:
-    """Return the rows of the agents and tasks that have ``count`` trials."""
-    numbers = Counter((row["task"], row["agent"]) for row in rows)
-    return [row for row in rows if numbers[row["task"], row["agent"]] == count]
+def _whole(rows: Sequence[dict[str, Any]], numbers: Sequence[int]) -> list[dict[str, Any]]:
+    """Return the rows of the agents and tasks that have all trials, or each n-th of them from the first on."""
+    shares = [set(numbers[::n]) for n in range(1, LARGEST_SHARE + 1)]
+    done: dict[tuple[str, str], set[int]] = {}
+    for row in rows:
+        done.setdefault((row["task"], row["agent"]), set()).add(row["trial"])
+    return [row for row in rows if done[row["task"], row["agent"]] in shares]
 
 
 def _origin(runs: Sequence[dict[str, Any]], commit: str | None) -> str:

@@ -77,6 +77,20 @@ def test_the_command_writes_the_table_of_the_folders_suite(tmp_path: Path, capsy
     assert text in capsys.readouterr().out
 
 
+def test_tasks_that_were_evaluated_one_by_one_share_a_table(tmp_path: Path, capsys) -> None:
+    for segment, s_c in (("Rectum", 0.25), ("Splenic", 0.75)):
+        folder = ResultFolder(tmp_path / segment, {"suite": "material"})
+        folder.add(trial(f"ARC-{segment}-Magnetic:soft_nu045", trial=0, seed=1, success=1, s_c=s_c))
+    folders = [str(tmp_path / "Rectum"), str(tmp_path / "Splenic")]
+    assert main(["results", "paper", *folders]) in (0, None)
+    text = (tmp_path / "Rectum" / "material.md").read_text()
+    assert "| s_c | 0.500 (" in text
+    ResultFolder(tmp_path / "other", {"suite": "anchors"})
+    with pytest.raises(SystemExit):
+        main(["results", "paper", *folders, str(tmp_path / "other")])
+    assert "give those of one suite" in capsys.readouterr().err
+
+
 def test_a_study_has_a_table_of_its_cells(tmp_path: Path) -> None:
     """Two cells of the ablation: constrained PPO with all of the reward has the paper's figure beside it."""
     from arcgym.rl.first_episodes import write_rows

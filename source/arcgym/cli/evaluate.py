@@ -112,9 +112,9 @@ def _evaluate_in_processes(args: EvaluateArguments, conditions: Conditions, num_
 def _write_reports(folder: ResultFolder) -> None:
     """Write summary and Parquet of a folder, and print the summary and where they are."""
     from arcgym.evaluation.parquet import write_parquet
-    from arcgym.evaluation.summary import summarize, to_markdown
+    from arcgym.evaluation.summary import report
 
-    table = to_markdown(summarize(folder.rows))
+    table = report(folder.rows)
     (folder.path / "summary.md").write_text(table)
     print(table)
     print(f"rows: {folder.path / 'trials.csv'}")

@@ -20,9 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(namespace: argparse.Namespace) -> None:
     """Write the folder and its summary."""
     from arcgym.evaluation.merge import merge
-    from arcgym.evaluation.summary import summarize, to_markdown
+    from arcgym.evaluation.summary import report
 
     folder = merge([Path(part) for part in namespace.parts], Path(namespace.out))
-    table = to_markdown(summarize(folder.rows))
+    table = report(folder.rows)
     (folder.path / "summary.md").write_text(table)
     print(table)

@@ -4,9 +4,11 @@
 
     arcgym results paper results/material            # the table of the folder's suite
     arcgym results paper results/mine --table forces
+    arcgym results paper results/rectum results/splenic    # tasks or policies that were evaluated one by one
     arcgym results paper logs/studies/reward_ablation
+    arcgym results paper logs/studies/paper --table algorithms
 
-Writes <table>.md into the folder.
+Writes <table>.md into the first folder.
 """
 
 from __future__ import annotations
@@ -15,26 +17,43 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.result_folder import read_run, read_trial_rows
+from arcgym.utils.errors import UsageError
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("folder", metavar="FOLDER", help="result folder")
-    parser.add_argument("--table", help="paper, material, anchors, cross_colon, rigid or forces (default: the suite's)")
+    parser.add_argument("folders", metavar="FOLDER", nargs="+", help="result folder, or folder of a study")
+    parser.add_argument("--table", help="name of the table, such as material or forces (default: the suite's)")
 
 
 def run(namespace: argparse.Namespace) -> None:
     """Print the table and write it."""
     from arcgym.evaluation.paper_tables import paper_table
-    from arcgym.evaluation.result_folder import read_run, read_trial_rows
 
-    folder = Path(namespace.folder)
-    is_study = (folder / "episodes.csv").is_file()
-    name = namespace.table or (folder.resolve().name if is_study else str(read_run(folder).get("suite")))
-    text = paper_table(study_rows(folder) if is_study else read_trial_rows(folder), name)
+    folders = [Path(folder) for folder in namespace.folders]
+    names = {namespace.table} if namespace.table else {_table_of(folder) for folder in folders}
+    if len(names) > 1:
+        raise UsageError(f"The folders are of {', '.join(sorted(names))}: give those of one suite, or --table.")
+    (name,) = names
+    text = paper_table([row for folder in folders for row in _rows(folder)], name)
     print(text)
-    path = folder / f"{name}.md"
+    path = folders[0] / f"{name}.md"
     path.write_text(text)
     print(f"table: {path}")
+
+
+def _is_study(folder: Path) -> bool:
+    return (folder / "episodes.csv").is_file()
+
+
+def _table_of(folder: Path) -> str:
+    """Return the table of a folder: its suite, or the study's name."""
+    return folder.resolve().name if _is_study(folder) else str(read_run(folder).get("suite"))
+
+
+def _rows(folder: Path) -> list[dict[str, Any]]:
+    return study_rows(folder) if _is_study(folder) else read_trial_rows(folder)
 
 
 def study_rows(folder: Path) -> list[dict[str, Any]]:

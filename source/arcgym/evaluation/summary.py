@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.evaluation.statistics import Interval, bootstrap, training_runs, wilson
+from arcgym.evaluation.strengths import strengths_table
 from arcgym.utils.errors import UsageError
 
 KEY_METRICS = (
@@ -46,6 +47,15 @@ def summarize(rows: Sequence[dict[str, Any]]) -> dict[str, Summary]:
         raise UsageError("No trial was finished, so there is nothing to report: see the log of the run.")
     tasks = sorted({row["task"] for row in rows})
     return {task: _summary([row for row in rows if row["task"] == task]) for task in tasks}
+
+
+def report(rows: Sequence[dict[str, Any]]) -> str:
+    """Return the figures of each task, and below them what robustness variants change, in Markdown.
+
+    Raises:
+        UsageError: There is no row.
+    """
+    return "\n".join(filter(None, [to_markdown(summarize(rows)), strengths_table(rows)]))
 
 
 def to_markdown(summaries: dict[str, Summary]) -> str:
