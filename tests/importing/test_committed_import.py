@@ -54,7 +54,7 @@ def offset(stage: ColonStage) -> np.ndarray:
 
 
 def test_length(pair: tuple[ColonStage, ColonStage]) -> None:
-    """The importer smooths its centreline over two thirds of the radius, which cuts bends as tight as the lumen."""
+    """The importer's smoothing takes about 2.5 % off bends as tight as the lumen; the bound is what is reached."""
     truth, imported = pair
     assert 0.94 < imported.length / truth.length < 1.01
 
