@@ -15,8 +15,17 @@ from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
 from arcgym.benchmarks.fidelity.brute_force import sample_contacts, segment_triangle
 from arcgym.benchmarks.fidelity.checks.commands import Watched
+from arcgym.benchmarks.fidelity.checks.sensitivity import standard_error
 from arcgym.benchmarks.fidelity.indenter import Curve, join_curves
-from arcgym.benchmarks.fidelity.insertions import cut, figures_of, halved, longest_halt
+from arcgym.benchmarks.fidelity.insertions import (
+    Insertion,
+    cut,
+    figures_of,
+    figures_to_ends,
+    halved,
+    longest_halt,
+    numbers_on,
+)
 from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.placement import follow
 from arcgym.benchmarks.fidelity.processes import in_processes
@@ -142,7 +151,29 @@ def test_a_halt_is_the_longest_time_without_two_millimetres() -> None:
 def test_an_insertion_is_cut_where_the_tip_first_comes_through() -> None:
     series = np.zeros((4, 4))
     series[:, 3] = -0.1, 0.0, -0.1, 0.1
-    assert len(cut(series)) == 2 and len(cut(series[:1])) == 1
+    assert len(cut(series)) == 2 and len(cut(series[:1])) == 1 and len(cut(series, 0.05)) == 4
+
+
+def test_figures_of_the_whole_way_have_names_of_their_own() -> None:
+    samples = np.array([[1.0, 2.0, 3.0, -0.01], [1.0, 6.0, 5.0, 0.001], [1.0, 7.0, 5.0, 0.3]])
+    figures = figures_to_ends(Insertion("proximal", "in_situ"), samples)
+    assert figures["peak_window_force"] == 6.0 and figures["far_peak_window_force"] == 7.0
+    assert "far_time" not in figures_to_ends(Insertion("proximal", "paper"), samples)
+
+
+def test_a_cpu_makes_every_fourth_insertion_from_the_slowest_to_the_fastest() -> None:
+    assert (
+        list(numbers_on("cpu", "proximal"))
+        == [0, 4, 8, 12, 16, 20, 24, 28]
+        == list(numbers_on("cuda:0", "proximal"))[::4]
+    )
+    assert list(numbers_on("cpu", "magnetic")) == [0, 4, 8, 12]
+
+
+def test_standard_error_of_a_change_is_that_of_the_pairs() -> None:
+    old, new = ([{"mean_base_force": f} for f in of] for of in ((1.0, 2.0, 3.0), (1.1, 2.3, 3.2)))
+    # changes of 0.1, 0.3 and 0.2 N have a standard deviation of 0.1 N; the mean before is 2 N
+    assert standard_error(old, new, "mean_base_force") == pytest.approx(0.1 / 3**0.5 / 2.0)
 
 
 def test_curves_of_places_that_end_at_other_loads_are_joined() -> None:

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scripted insertions through the sigmoid of colon 1, shipped and with one numerical setting changed.
 
-Each insertion runs in a process of its own, as many at a time as there are cores.
+On a GPU all insertions of a case run at once, a world each. On a CPU every fourth of them runs, in a process of its
+own, as many at a time as there are cores.
 """
 
 from __future__ import annotations
@@ -22,16 +23,24 @@ from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 
 SPEED = {"magnetic": 0.04, "proximal": 0.04}
 """Speed of the experts [m/s]."""
-WORLDS = {"magnetic": 4, "proximal": 8}
-"""Insertions over which the figures of one case are means: single ones differ by which fold the tip slips past when."""
+INSERTIONS = {"magnetic": 13, "proximal": 29}
+"""Insertions over which the figures of one case are means on a GPU: single ones differ by which fold the tip slips past
+when."""
+CPU_STRIDE = 4
+"""A CPU makes every so many of them: 4 and 8, of the same speeds as the whole set's."""
 SPREAD = 0.1
 """Share by which the slowest and the fastest of them are off the speed."""
 CONTROL_STEP = 0.1
 """Time between two decisions of the expert, over which forces are averaged [s]."""
-PAST = 0.05
-"""Way beyond the sigmoid's end at which an insertion ends [m]: its last bend is then behind the tip."""
-MARGIN = 0.15
-"""Length of colon beyond the sigmoid that moves [m]; the rest would only cost time."""
+END = ("sigmoid", 0.05)
+"""Segment of the colon, and the way beyond its end at which an insertion ends [m]: its last bend is behind the tip."""
+FAR_ENDS = {("proximal", "in_situ"): ("splenic", 0.0)}
+"""Robots and tissues whose insertions go on, and to where: 5 N is passed for a second only before :data:`END`. Figures
+of the whole way have names with ``far_``; no row judges them."""
+FAR = "far_"
+"""Begin of their names."""
+MARGIN = 0.1
+"""Length of colon beyond an insertion's end that moves [m]; the rest would only cost time."""
 FINE_SWEEPS = 2
 """Sweeps a step of the finer wall. With one, as shipped, it trembles in ``paper`` by 0.04 m/s with no scope near; the
 shipped wall is calm."""
@@ -76,27 +85,31 @@ class Insertion:
     """One of :data:`SETTINGS`; empty for the shipped ones."""
 
 
-def insert_all(run: Run, cases: list[Insertion]) -> list[dict[str, float]]:
-    """Return the figures of cases, each the mean of its insertions; those that the run has are not made again.
+def numbers_on(device: str, robot: str) -> range:
+    """Return which insertions of a robot are made on a device: all on a GPU, every fourth on a CPU."""
+    return range(0, INSERTIONS[robot], 1 if device.startswith("cuda") else CPU_STRIDE)
+
+
+def insert_all(run: Run, cases: list[Insertion]) -> list[list[dict[str, float]]]:
+    """Return the figures of every insertion of cases; those that the run has are not made again.
 
     Args:
         run: Device, folder and results.
         cases: The cases.
     """
-    missing = [
-        (case, k) for case in cases for k in range(WORLDS[case.robot]) if ("insertion", case, k) not in run.shared
-    ]
+    wanted = [(case, k) for case in cases for k in numbers_on(run.device, case.robot)]
+    missing = [(case, k) for case, k in wanted if ("insertion", case, k) not in run.shared]
     if any(case.setting == "wall_half" for case, _ in missing):
         write_smooth(run.folder, refine=2)
     if run.device.startswith("cuda"):
         for case in dict.fromkeys(case for case, _ in missing):
-            numbers = range(WORLDS[case.robot])
+            numbers = numbers_on(run.device, case.robot)
             keep_figures(run, case, numbers, insert(case, numbers, run.device, run.folder))
     else:
         tasks = [(case, (k,), run.device, run.folder) for case, k in missing]
         for (case, k), figures in zip(missing, in_processes(insert, tasks), strict=True):
             keep_figures(run, case, (k,), figures)
-    return [mean_figures([run.shared["insertion", case, k] for k in range(WORLDS[case.robot])]) for case in cases]
+    return [[run.shared["insertion", case, k] for k in numbers_on(run.device, case.robot)] for case in cases]
 
 
 def keep_figures(run: Run, case: Insertion, numbers: Sequence[int], figures: list[dict[str, float]]) -> None:
@@ -119,11 +132,11 @@ def insert(case: Insertion, numbers: Sequence[int], device: str, folder: Path) -
         device: Device of the simulation.
         folder: Folder for the stages.
     """
-    return [figures_of(samples) for samples in drive(case, numbers, device, folder)]
+    return [figures_to_ends(case, samples) for samples in drive(case, numbers, device, folder)]
 
 
 def drive(case: Insertion, numbers: Sequence[int], device: str, folder: Path) -> list[np.ndarray]:
-    """Make insertions, one a world, and return what was measured until each came through or time was up.
+    """Make insertions, one a world, and return what was measured until each was at its last end or time was up.
 
     Returns:
         For every insertion, by control step: force on the tip, largest force on a window, force of the drive [N], arc
@@ -137,9 +150,9 @@ def drive(case: Insertion, numbers: Sequence[int], device: str, folder: Path) ->
     torch.manual_seed(0)
     scene = build_scene(case, device, folder, num_envs=len(numbers))
     pace = SPEED[case.robot] * (1.0025 if case.setting == "noise" else 1.0)
-    paces = pace * np.linspace(1.0 - SPREAD, 1.0 + SPREAD, WORLDS[case.robot])[list(numbers)]
+    paces = pace * np.linspace(1.0 - SPREAD, 1.0 + SPREAD, INSERTIONS[case.robot])[list(numbers)]
     expert = make_expert(scene, speed=torch.tensor(paces), **STEERING[case.robot])
-    _, end = scene.colon.stage.segment_bounds()["sigmoid"]
+    end, last = ends_of(case, scene.colon.stage)
     steps = round(CONTROL_STEP / scene.sim.physics_dt)
     samples = list[np.ndarray]()
     through = np.zeros(len(numbers), bool)
@@ -147,16 +160,24 @@ def drive(case: Insertion, numbers: Sequence[int], device: str, folder: Path) ->
         while not through.all() and len(samples) * CONTROL_STEP < LONGEST:
             expert.act()
             scene.sim.step(steps)
-            left = scene.endoscope.data.tip_arc_length.cpu().numpy().astype(float) - (end + PAST)
+            left = scene.endoscope.data.tip_arc_length.cpu().numpy().astype(float) - end
             samples.append(np.column_stack([read_forces(scene.sim, case.robot), left]))
-            through |= left >= 0.0
-    return [cut(series) for series in np.array(samples).swapaxes(0, 1)]
+            through |= left >= last - end
+    return [cut(series, last - end) for series in np.array(samples).swapaxes(0, 1)]
 
 
-def cut(series: np.ndarray) -> np.ndarray:
-    """Return what was measured until the tip first was at the end of the insertion, shape (T, 4)."""
-    there = np.flatnonzero(series[:, 3] >= 0.0)
+def cut(series: np.ndarray, end: float = 0.0) -> np.ndarray:
+    """Return what was measured until the tip first was so far beyond the end of the insertion [m], shape (T, 4)."""
+    there = np.flatnonzero(series[:, 3] >= end)
     return series[: there[0] + 1] if len(there) else series
+
+
+def figures_to_ends(case: Insertion, samples: np.ndarray) -> dict[str, float]:
+    """Return the figures of an insertion to its end, and of the whole way if it goes on."""
+    figures = figures_of(cut(samples))
+    if (case.robot, case.material) in FAR_ENDS:
+        figures |= {FAR + name: value for name, value in figures_of(samples).items()}
+    return figures
 
 
 def figures_of(samples: np.ndarray) -> dict[str, float]:
@@ -195,6 +216,13 @@ def read_forces(sim: Any, robot: str) -> np.ndarray:
     return torch.stack([data.tip_force, data.window_force_norm.amax(dim=1), drive], dim=1).cpu().numpy().astype(float)
 
 
+def ends_of(case: Insertion, colon: Any) -> tuple[float, float]:
+    """Return the tip's arc lengths at the end of an insertion in a colon, and at the end of the whole way [m]."""
+    ends = (END, FAR_ENDS.get((case.robot, case.material), END))
+    end, last = (float(colon.segment_bounds()[segment][1]) + past for segment, past in ends)
+    return end, last
+
+
 def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | None = None, num_envs: int = 1) -> Any:
     """Return worlds with the robot at the anus, in colon 1 or in the colon of another stage."""
     from arcgym import assets
@@ -214,8 +242,7 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
     path = write_endoscope(spec, folder / f"{case.robot}_{setting or 'shipped'}_{os.getpid()}.usda")
     colon = assets.ColonCfg(material=case.material)
     colon.usd_path = colon_path or colon.usd_path
-    _, end = read_colon(find_stages(colon.usd_path)[0]).segment_bounds()["sigmoid"]
-    colon.mobile_until = end + MARGIN
+    colon.mobile_until = ends_of(case, read_colon(find_stages(colon.usd_path)[0]))[1] + MARGIN
     sim = SimulationCfg(device=device)
     if setting == "wall_half":
         colon.usd_path = str(write_smooth(folder, refine=2))

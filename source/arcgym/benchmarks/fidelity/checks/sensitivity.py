@@ -6,7 +6,17 @@ from __future__ import annotations
 
 import itertools
 
-from arcgym.benchmarks.fidelity.insertions import METRICS, SETTINGS, SPECS, Insertion, insert_all
+import numpy as np
+
+from arcgym.benchmarks.fidelity.insertions import (
+    FAR,
+    METRICS,
+    SETTINGS,
+    SPECS,
+    Insertion,
+    insert_all,
+    mean_figures,
+)
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run
 
 TIMES = ("time_above_5N",)
@@ -26,16 +36,21 @@ def sensitivity(run: Run, setting: str) -> list[Row]:
     """Change one setting in all insertions; the rows are the largest change of any force, and of the time above 5 N."""
     cases = [Insertion(robot, material) for robot in SPECS for material in MATERIALS]
     changed = [Insertion(case.robot, case.material, setting) for case in cases]
-    figures = insert_all(run, cases + changed)
+    found = insert_all(run, cases + changed)
     scenes = [f"{case.robot}, {case.material}" for case in cases]
-    before, after = (dict(zip(scenes, part, strict=True)) for part in (figures[: len(cases)], figures[len(cases) :]))
-    table = {scene: {name: change(before[scene], after[scene], name) for name in METRICS} for scene in scenes}
+    old, new = (dict(zip(scenes, part, strict=True)) for part in (found[: len(cases)], found[len(cases) :]))
+    before, after = ({scene: mean_figures(of[scene]) for scene in scenes} for of in (old, new))
+    compared = {scene: [*METRICS, *(FAR + name for name in METRICS if FAR + name in before[scene])] for scene in scenes}
+    table = {scene: {name: change(before[scene], after[scene], name) for name in compared[scene]} for scene in scenes}
+    errors = {s: {name: standard_error(old[s], new[s], name) for name in compared[s]} for s in scenes}
     keep(run, setting, table, before)
+    run.tables.setdefault("sensitivity_standard_error", {})[setting] = errors
     rows = []
     for row, names in ((f"sensitivity_{setting}", FORCES), (f"sensitivity_{setting}_time", TIMES)):
         scene, name = max(itertools.product(scenes, names), key=lambda at: abs(table[at[0]][at[1]]))
-        largest = "; ".join(f"{of}: {max(abs(table[of][name]) for name in names):.0%}" for of in scenes)
-        note = f"{SETTINGS[setting]}: {name} of {scene}; largest change of {largest}"
+        worst = {of: max((abs(table[of][at]), at) for at in names)[1] for of in scenes}
+        largest = "; ".join(f"{of}: {table[of][at]:+.0%} ± {errors[of][at]:.0%}" for of, at in worst.items())
+        note = f"{SETTINGS[setting]}: {name} of {scene}; largest change, ± standard error, of {largest}"
         unit = "s" if name in TIMES else "N"
         rows.append(Row(row, after[scene][name], before[scene][name], table[scene][name], 0.1, unit, note))
     return rows
@@ -43,7 +58,18 @@ def sensitivity(run: Run, setting: str) -> list[Row]:
 
 def change(old: dict[str, float], new: dict[str, float], name: str) -> float:
     """Return the relative change of a figure."""
-    return (new[name] - old[name]) / max(old[name], LEAST.get(name, LEAST_FORCE))
+    return (new[name] - old[name]) / scale(old, name)
+
+
+def scale(old: dict[str, float], name: str) -> float:
+    """Return what a figure's change is divided by: the figure before, but no less than is worth comparing [N or s]."""
+    return max(old[name], LEAST.get(name.removeprefix(FAR), LEAST_FORCE))
+
+
+def standard_error(old: list[dict[str, float]], new: list[dict[str, float]], name: str) -> float:
+    """Return the standard error of a figure's relative change, from pairs of insertions at the same speed."""
+    by = [b[name] - a[name] for a, b in zip(old, new, strict=True)]
+    return float(np.std(by, ddof=1) / np.sqrt(len(by))) / scale(mean_figures(old), name)
 
 
 def keep(run: Run, setting: str, table: dict[str, dict[str, float]], shipped: dict[str, dict[str, float]]) -> None:
@@ -58,5 +84,6 @@ def keep(run: Run, setting: str, table: dict[str, dict[str, float]], shipped: di
     done = [name for name in SETTINGS if name in known]
     places = [list(SETTINGS).index(name) for name in done]
     plot.points = [
-        (scene, places, [100.0 * max(known[name][scene].values(), key=abs) for name in done]) for scene in table
+        (scene, places, [100.0 * max((known[name][scene][at] for at in METRICS), key=abs) for name in done])
+        for scene in table
     ]
