@@ -15,7 +15,7 @@ import pytest
 import torch
 import warp as wp
 
-from arcgym.benchmarks.lumen import LumenCheck
+from arcgym.benchmarks.lumen import LumenCheck, below_opening
 from arcgym.benchmarks.soak.adversaries import KINDS, OVERDRIVE, Adversaries
 from arcgym.benchmarks.soak.isolation import ResetGuard, different
 from arcgym.benchmarks.soak.journal import Journal, Tally
@@ -140,10 +140,20 @@ def test_link_with_any_part_outside_a_box_is_found(half_length, radius, first):
         data=SimpleNamespace(body_pos_w=links, body_quat_w=upright),
     )
     rings = {"link_ring": torch.tensor([[10, 10, 0]])}
-    sim = SimpleNamespace(device="cpu", num_envs=1, colon=colon, endoscope=scope, world_arrays=lambda: rings)
+    upwards = wp.array(np.array([[(0.0, 0.0, -2.0 + 0.1 * ring) for ring in range(20)]], np.float32), dtype=wp.vec3)
+    contact = SimpleNamespace(centers=upwards)  # the first ring examined lies at -1.6 m, below all links
+    sim = SimpleNamespace(
+        device="cpu", num_envs=1, colon=colon, endoscope=scope, contact=contact, world_arrays=lambda: rings
+    )
     outside, examined = LumenCheck(sim).outside()
     assert outside.tolist() == [[first, True, False]]
     assert examined.tolist() == [[True, True, False]]
+
+
+def test_links_before_the_open_end_are_told_from_those_beside_it() -> None:
+    first, last = torch.tensor([[0.0, 0.0, 0.0]]), torch.tensor([[0.0, 0.0, 0.04]])
+    places = torch.tensor([[[0.0, 0.02, 0.03], [0.0, 0.02, 0.05], [0.0, 0.05, 0.03]]])  # below, above, too far aside
+    assert below_opening(places, first, last).tolist() == [[True, False, False]]
 
 
 def test_findings_of_all_sessions_add_up(tmp_path):

@@ -16,6 +16,9 @@ from arcgym.utils.math import quat_apply
 
 MARGIN = 4
 """Rings at either end of the colon whose links are left out: there the surface is open, or the scope outside it."""
+OPENING = 0.04
+"""Distance from the axis of the anus within which a link below these rings is beyond the open end, whatever ring it is
+held to be in [m]: a link that is pulled out of tissue in which it was bent may keep a ring of the sigmoid."""
 CORE = 0.5
 """Share of its radius by which a link must be inside: its surface dents into the wall where the two touch."""
 ALONG = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -49,9 +52,28 @@ class LumenCheck:
         inputs = [wall, self._triangles, points]
         wp.launch(winding_number, self._winding.shape, inputs, [self._winding], device=self._sim.device)
         ring = self._sim.world_arrays()["link_ring"]
-        examined = (ring >= MARGIN) & (ring < colon.num_rings - MARGIN)
+        examined = (ring >= MARGIN) & (ring < colon.num_rings - MARGIN) & ~self._at_opening(data.body_pos_w)
         inside = wp.to_torch(self._winding).view(*ring.shape, -1).abs() >= 0.5
         return examined & ~inside.all(dim=2), examined
+
+    def _at_opening(self, places: torch.Tensor) -> torch.Tensor:
+        """Return which places, shape (N, L, 3), are below the rings left out at the anus and near its axis, (N, L)."""
+        centers = wp.to_torch(self._sim.contact.centers)
+        return below_opening(places, centers[:, 0], centers[:, MARGIN])
+
+
+def below_opening(places: torch.Tensor, first: torch.Tensor, last: torch.Tensor) -> torch.Tensor:
+    """Return which places lie before the last of the rings left out, and near the line through it and the first.
+
+    Args:
+        places: Centers of links [m], shape (N, L, 3).
+        first: Center of the colon's first ring [m], shape (N, 3).
+        last: Center of the first ring whose links are examined [m], shape (N, 3).
+    """
+    axis = torch.nn.functional.normalize(last - first, dim=1)[:, None]
+    along = ((places - last[:, None]) * axis).sum(dim=2)
+    across = places - last[:, None] - along[:, :, None] * axis
+    return (along < 0.0) & (across.norm(dim=2) < OPENING)
 
 
 def core_points(half_length: np.ndarray, radius: np.ndarray) -> np.ndarray:
