@@ -12,6 +12,7 @@ from arcgym.experts import make_expert
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import Snapshot, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
+from arcgym.start_states.leaps import Leaps
 from arcgym.start_states.population import Population
 from arcgym.start_states.route import Peaks, Route, what_holds
 from arcgym.start_states.settling import CONTROL_STEP, settle
@@ -25,8 +26,9 @@ class Drive:
     """Drives all worlds of a scene; in each patient the first world that enters a segment gives its start state.
 
     The first segment starts from the rest pose. With several worlds a patient they differ in their settings, and every
-    few seconds those that fall behind go on from where the foremost are. Worlds whose scope has got behind the wall do
-    not count. The states are kept once their forces have settled without commands, with velocities of zero.
+    few seconds those that fall behind go on from where the foremost are. Worlds whose scope is behind the wall, or got
+    through it into another loop, do not count. The states are kept once their forces have settled without commands,
+    with velocities of zero.
     """
 
     def __init__(
@@ -57,6 +59,7 @@ class Drive:
         self.expert = make_expert(scene, speed=speed)
         self.population = Population(scene, self.expert, seed)
         self._peaks = Peaks(scene)
+        self._leaps = Leaps(scene["endoscope"].data.tip_arc_length)
         self._steps = round(CONTROL_STEP / scene.sim.physics_dt)
         self._count = 0
         self._settled: set[tuple[int, str]] = set()
@@ -116,7 +119,7 @@ class Drive:
         self._count += 1
         self.time = self._count * CONTROL_STEP
         self._peaks.update()
-        arcs = torch.where(self._misplaced(), OUT_OF_PLACE, self.scene["endoscope"].data.tip_arc_length)
+        arcs = self._arcs()
         front = arcs.view(self.population.each, -1).max(dim=0)
         broken = self.scene.sim.non_finite.view(self.population.each, -1).all(dim=0)
         places = zip(self.routes, front.values.tolist(), front.indices.tolist(), broken.tolist(), strict=True)
@@ -126,7 +129,14 @@ class Drive:
                 self._follow(route, arc, row * len(self.routes) + patient)
         if self.population.each > 1 and self._count % self.expert.PERIOD == 0:
             merit = torch.where(arcs == OUT_OF_PLACE, OUT_OF_PLACE, self.expert.merit())
-            self._peaks.take_over(*self.population.exchange(merit))
+            moved, sources = self.population.exchange(merit)
+            self._peaks.take_over(moved, sources)
+            self._leaps.take_over(moved, sources)
+
+    def _arcs(self) -> torch.Tensor:
+        """Return the arc lengths of the tips of worlds that count [m], shape (N,)."""
+        arc, misplaced = self.scene["endoscope"].data.tip_arc_length, self._misplaced()
+        return torch.where(misplaced | self._leaps.update(arc, ~misplaced), OUT_OF_PLACE, arc)
 
     def _misplaced(self) -> torch.Tensor:
         """Return the worlds that do not count, shape (N,), bool."""
