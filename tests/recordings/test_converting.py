@@ -5,6 +5,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import h5py
@@ -118,16 +121,64 @@ def test_statistics_of_parts_are_those_of_the_whole() -> None:
         np.testing.assert_allclose(getattr(merged(parts)["x"], name), getattr(whole, name))
 
 
+LEROBOT = """
+import json, sys
+try:
+    from lerobot.datasets.lerobot_dataset import LeRobotDataset
+except ImportError:
+    sys.exit(SKIPS)
+loaded = LeRobotDataset("local/set", root=sys.argv[1], video_backend="pyav")
+print(json.dumps({
+    "shape": [loaded.num_episodes, loaded.num_frames, loaded.fps],
+    "file": loaded.meta.get_video_file_path(1, IMAGE).name,
+    "task": loaded[5]["task"], "most": loaded.meta.stats["action"]["max"].tolist(),
+    "action": loaded[5]["action"].tolist(), "time": float(loaded[5]["timestamp"]),
+    "brightness": 255.0 * float(loaded[5][IMAGE].mean()), "picture": list(loaded[5][IMAGE].shape),
+}))
+"""
+ROBOMIMIC = """
+import json, sys
+try:
+    from robomimic.utils.dataset import SequenceDataset
+except ImportError:
+    sys.exit(SKIPS)
+keys = {"obs_keys": ("state", "endoscope_image"), "dataset_keys": ("actions", "rewards", "dones")}
+parts = {"seq_length": 2, "frame_stack": 1, "filter_by_attribute": "train"}
+loaded = SequenceDataset(sys.argv[1], hdf5_use_swmr=False, **parts, **keys)
+item = loaded[0]
+print(json.dumps({
+    "count": len(loaded), "actions": item["actions"].tolist(), "state": item["obs"]["state"].tolist(),
+    "picture": list(item["obs"]["endoscope_image"].shape), "rewards": item["rewards"].tolist(),
+}))
+"""
+SKIPS = 77
+
+
+def loaded_by(library: str, code: str, path: Path) -> dict:
+    """Return what a program says that loads a data set; ``ARCGYM_LEROBOT_PYTHON`` and such name another Python."""
+    python = os.environ.get(f"ARCGYM_{library.upper()}_PYTHON", sys.executable)
+    head = f"SKIPS, IMAGE = {SKIPS}, 'observation.images.endoscope'\n"
+    done = subprocess.run([python, "-c", head + code, str(path)], capture_output=True, text=True, timeout=300)
+    if done.returncode == SKIPS:
+        pytest.skip(f"{python} has no {library}")
+    assert not done.returncode, done.stderr[-2000:]
+    return json.loads(done.stdout.strip().splitlines()[-1])
+
+
 def test_lerobot_itself_loads_it(lerobot_folder) -> None:
-    dataset = pytest.importorskip("lerobot.datasets.lerobot_dataset")
-    loaded = dataset.LeRobotDataset("local/set", root=lerobot_folder)
-    assert (loaded.num_episodes, loaded.num_frames, loaded.fps) == (3, 9, 10)
-    frame = loaded.hf_dataset[5]
-    np.testing.assert_array_equal(frame["action"], [2.0, 1.0])
-    assert float(frame["timestamp"]) == pytest.approx(0.1) and int(frame["episode_index"]) == 1
-    assert loaded.meta.tasks.iloc[int(frame["task_index"])].name == "ARC-Made-Up"
-    assert loaded.meta.get_video_file_path(1, "observation.images.endoscope").name == "file-001.mp4"
-    assert loaded.meta.stats["action"]["max"].tolist() == [4.0, 2.0]
+    said = loaded_by("lerobot", LEROBOT, lerobot_folder)
+    assert (said["shape"], said["task"], said["file"]) == ([3, 9, 10], "ARC-Made-Up", "file-001.mp4")
+    assert (said["action"], said["most"], said["picture"]) == ([2.0, 1.0], [4.0, 2.0], [3, 16, 32])
+    # The second sample of the second episode: its picture is that after step 1, of brightness 20.
+    assert said["time"] == pytest.approx(0.1) and said["brightness"] == pytest.approx(20.0, abs=3.0)
+
+
+def test_robomimic_itself_loads_it(source, tmp_path) -> None:
+    said = loaded_by("robomimic", ROBOMIMIC, convert(source, tmp_path / "demos.hdf5", "--to", "robomimic"))
+    # Episodes 0 and 1 have 4 and 3 samples; a sequence is two of them.
+    assert said["count"] == 7 and said["actions"] == [[1.0, 0.0], [2.0, 0.0]]
+    assert said["state"] == [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]] and said["picture"] == [2, 16, 32, 3]
+    assert said["rewards"] == pytest.approx([0.1, 0.2])
 
 
 def test_mistakes_are_named_before_anything_is_written(source, tmp_path, capsys) -> None:
