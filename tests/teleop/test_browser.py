@@ -94,6 +94,25 @@ def click(browser: Any, text: str) -> None:
     until(lambda: browser.execute_script(script, text), FAR)
 
 
+def choose(browser: Any, label: str, option: str) -> None:
+    """Choose an option of the list with a label, as a person does: open it, then press the option."""
+    opens = """const label = [...document.querySelectorAll('label')].find((l) => l.innerText.trim() === arguments[0]);
+        const list = label && document.getElementById(label.htmlFor);
+        if (!list) return false; list.scrollIntoView(); list.click(); return true;"""
+    takes = """const all = [...document.querySelectorAll('[role=option]')].filter((o) => o.offsetParent);
+        const one = all.find((o) => o.innerText.trim() === arguments[0]);
+        if (!one) return false; one.click(); return true;"""
+    until(lambda: browser.execute_script(opens, label), FAR)
+    until(lambda: browser.execute_script(takes, option), FAR)
+
+
+def shown(browser: Any, label: str) -> str:
+    """Return what the list with a label shows."""
+    script = """const label = [...document.querySelectorAll('label')].find((l) => l.innerText.trim() === arguments[0]);
+        return label ? document.getElementById(label.htmlFor).value : ''"""
+    return browser.execute_script(script, label)
+
+
 def shot(browser: Any, name: str, folder: Path) -> np.ndarray:
     path = Path(os.environ.get("ARCGYM_SHOTS", folder)) / f"{name}.png"
     browser.save_screenshot(str(path))
@@ -216,3 +235,72 @@ def test_latency_is_measured(tab, page) -> None:
     until(lambda: state(tab).get("latency") is not None, FAR)
     assert 0.0 < float(np.median([state(tab)["latency"] for _ in range(5)])) < 1.0
     print(f"\nlatency of the hand's messages: {1000 * page.hand_server.latency:.1f} ms")
+
+
+def test_a_policy_drives_a_key_takes_over_and_that_is_recorded(tab, page) -> None:
+    session = page.session
+    choose(tab, "driver", "expert")
+    until(lambda: session.status.driver == "expert", FAR)
+    click(tab, "Go")
+    until(lambda: session.status.steps >= 4, FAR)
+    key(tab, "keydown", "KeyS")
+    until(lambda: session.status.driver == "hand" and session.status.interventions == 1, FAR)
+    steps = session.status.steps
+    until(lambda: session.status.steps >= steps + 3 and shown(tab, "driver") == "hand", FAR)
+    key(tab, "keyup", "KeyS")
+    click(tab, "Pause")
+    until(lambda: session.status.state == "paused", FAR)
+    path = session.save().result()
+    episode = Episode.load(path)
+    leads = episode.data["hand/leads"].tolist()
+    first = leads.index(1)
+    assert first >= 4 and leads == [0] * first + [1] * (len(leads) - first)
+    assert episode.info["interventions"] == 1 and episode.data["actions"][first, 0] < 0.0
+    assert main(["replay", str(path), "--device", "cpu"]) == 0
+
+
+def test_single_steps_and_slow_motion(tab, page) -> None:
+    from selenium.webdriver.common.by import By
+
+    session = page.session
+    click(tab, "Step")
+    until(lambda: session.status.steps == 1, FAR)
+    key(tab, "keydown", "Period")
+    until(lambda: session.status.steps == 2 and session.status.state == "paused", FAR)
+    thumbs = tab.find_elements(By.CSS_SELECTOR, "[role=slider]")
+    pace = next(thumb for thumb in thumbs if thumb.get_attribute("aria-valuemax") == "2")
+    for _ in range(16):
+        pace.send_keys("\ue012")  # to the left: 16 times 0.05 below 1
+    until(lambda: session.speed == pytest.approx(0.2), FAR)
+    click(tab, "Go")
+    until(lambda: session.status.steps >= 4, FAR)
+    before, start = session.status.steps, time.monotonic()
+    until(lambda: session.status.steps >= before + 3, FAR)
+    assert time.monotonic() - start > 1.0  # three steps of 0.1 s, five times as slowly
+    session.pause(True).result()
+    session.speed = 1.0
+
+
+def test_the_colon_is_seen_from_another_side(tab, page, tmp_path) -> None:
+    (client,) = page._viser.get_clients().values()
+    front = np.array(client.camera.position)
+    click(tab, "left")
+    until(lambda: np.linalg.norm(np.array(client.camera.position) - front) > 0.3, FAR)
+    assert client.camera.position[0] < page._middle[0] - 0.3
+    until(lambda: shot(tab, "left", tmp_path).std() > 1.0, FAR)
+
+
+def test_another_robot_is_loaded_and_steered_by_its_own_keys(tab, page, tmp_path) -> None:
+    session = page.session
+    choose(tab, "task and robot", "ARC-Splenic-Capsule")
+    click(tab, "Load")
+    until(lambda: session.status.choice.task == "ARC-Splenic-Capsule" and session.status.state == "paused", FAR)
+    until(lambda: state(tab).get("axes") == list(session.hand.axes), FAR)
+    assert len(session.hand.axes) == 6  # of the tip
+    click(tab, "Go")
+    key(tab, "keydown", "KeyR")
+    up = session.hand.axes.index("up")
+    until(lambda: session.hand.value()[up] > 0.5 and session.status.steps >= 3, FAR)
+    key(tab, "keyup", "KeyR")
+    shot(tab, "capsule", tmp_path)
+    session.pause(True).result()
