@@ -115,13 +115,24 @@ def page(scenes: list[Scene]) -> str:
     return head + "".join(entry(scene) for scene in scenes)
 
 
+def outcome(figures: dict[str, Any]) -> str:
+    """Return how the first episode of a film ended, as a sentence after a space; nothing where it goes on."""
+    if figures.get("success_rate") is None:
+        return ""
+    metrics = {name.rpartition("/")[2]: value for name, value in figures["metrics"].items()}
+    if figures["success_rate"] == 1.0:
+        return f" Success after {metrics['time_to_success']:.1f} s."
+    return f" The first episode ends without success, at {metrics['progress']:.0%} of the way."
+
+
 def entry(scene: Scene) -> str:
     """Return one scene's part of the page."""
     made = json.loads(video_of(scene).with_suffix(".json").read_text())
     said = " ".join(["arcgym", *command(scene, made["device"])[3:]])
     file = f"_static/videos/{scene['name']}.mp4"
     tag = f'<video controls loop muted preload="metadata" width="100%" src="{file}"></video>'
-    when = f"Filmed on {made['day']}, commit {made['versions'].get('arcgym commit', 'unknown')[:7]}."
+    commit = made["versions"].get("arcgym commit", "unknown")[:7]
+    when = f"Filmed on {made['day']}, commit {commit}.{outcome(made['figures'])}"
     shown = f"```{{raw}} html\n{tag}\n```\n\n{when} [{scene['name']}.mp4]({file})"
     first = f"{scene['before']}\n" if "before" in scene else ""
     return f"\n## {scene['title']}\n\n{shown}\n\n```bash\n{first}{said}\n```\n"
