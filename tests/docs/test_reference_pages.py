@@ -73,8 +73,8 @@ def test_every_term_of_the_tasks_is_listed(pages: dict[str, str], manager: str) 
 
 def test_weights_are_those_of_the_configuration(pages: dict[str, str]) -> None:
     found = section(pages["tasks"], "Rewards")
-    assert cfg_of().rewards.progress.weight == 100.0
-    assert re.search(r"^\| `progress` \| `progress` \|  \| `weight=100` \|", found, re.MULTILINE)
+    assert cfg_of().rewards.progress.weight == 300.0
+    assert re.search(r"^\| `progress` \| `progress` \|  \| `weight=300` \|", found, re.MULTILINE)
 
 
 def test_axes_stand_in_the_order_of_the_action(pages: dict[str, str]) -> None:

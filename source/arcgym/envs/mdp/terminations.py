@@ -107,8 +107,8 @@ class lumen_not_visible(ManagerTermBase):
 class stuck(ManagerTermBase):
     """Whether the tip has hardly advanced over the last seconds, bool, shape (N,).
 
-    A pull-back to straighten the shaft also looks like this while it lasts, so the window must leave time for one. Use
-    as a truncation (``time_out=True``): it saves time and says nothing about the state's value.
+    A pull-back to straighten the shaft also looks like this while it lasts, so the window must leave time for one. As a
+    truncation (``time_out=True``) it lets a policy take the view's reward to go on for ever, and wait.
     """
 
     def __init__(self, cfg: TerminationTermCfg, env: ManagerBasedRLEnv) -> None:
