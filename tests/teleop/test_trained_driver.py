@@ -4,7 +4,13 @@
 
 from __future__ import annotations
 
+import json
+import signal
+import subprocess
+import sys
+import urllib.request
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,6 +55,35 @@ def test_a_trained_policy_drives_until_a_hand_takes_over(checkpoint, tiny_colon_
     assert episode.data["hand/leads"].tolist() == [0] * 4 + [1] * 3
     np.testing.assert_allclose(episode.data["actions"][4:], [[-0.5, 0.0, 0.0, 0.0]] * 3)
     assert np.abs(episode.data["actions"][:4]).max(axis=1).min() > 0.0  # the network's, which are never quite zero
+
+
+@pytest.mark.slow
+def test_a_run_is_looked_at_in_the_browser_and_cannot_be_steered(checkpoint, tmp_path) -> None:
+    pytest.importorskip("viser")
+    from websockets.sync.client import connect
+
+    command = [sys.executable, "-u", "-m", "arcgym", "view", str(checkpoint.parent), "--port", "0", "--size", "64"]
+    with subprocess.Popen(
+        [*command, "--device", "cpu"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as shown:
+        try:
+            address = next(line for line in shown.stdout if line.startswith("page: ")).split()[1]
+            assert b"<title>ARCGym</title>" in urllib.request.urlopen(address, timeout=30).read()
+            with connect(address.replace("http", "ws").rstrip("/") + "/hand") as page:
+                until(lambda: ask(page, keys=["KeyS"])["steps"] >= 3, 120.0)
+        finally:
+            shown.send_signal(signal.SIGINT)
+            said = shown.stdout.read()
+    assert shown.returncode == 0 and "closing" in said
+    (path,) = (tmp_path / "logs" / "view").glob("teleop_*.hdf5")
+    leads = Episode.load(path).data["hand/leads"]
+    assert len(leads) >= 3 and not leads.any()  # the policy led, whatever key was held
+
+
+def ask(page: Any, **said: Any) -> dict[str, Any]:
+    """Send a page's message and return the answer."""
+    page.send(json.dumps({"n": 1, **said}))
+    return json.loads(page.recv(timeout=30.0))
 
 
 def step(session: Session, count: int) -> None:
