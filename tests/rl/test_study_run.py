@@ -16,6 +16,7 @@ from arcgym.rl.studies.cell import Cell, read_cells
 from arcgym.rl.studies.launch import LaunchOptions, all_cells, launch
 from arcgym.rl.studies.run_cell import run_cell
 from arcgym.rl.studies.study_cfg import StudyCfg
+from arcgym.rl.studies.table import cell_rows
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 
@@ -80,6 +81,13 @@ def test_the_table_is_of_first_episodes(tmp_path):
     }
     assert {name: row[name] for name in expected} == expected
     assert [row["cell"] for row in read_rows(tmp_path / "episodes.csv")] == ["rectum-magnetic_ppo_seed1"] * 2
+
+
+def test_what_was_varied_is_shown_beside_a_figure_of_the_same_name(tmp_path):
+    """The ablation varies env.reward, and the episodes of the table have a mean reward."""
+    cell = Cell(tmp_path, TASK, "ppo", 1, {"env.reward": "s_1", "env.lumen": "paper"})
+    (row,) = cell_rows(cell)
+    assert row["env.reward"] == "s_1" and row["lumen"] == "paper" and "reward" in row
 
 
 def test_the_table_keeps_the_cells_of_an_earlier_call(tmp_path):

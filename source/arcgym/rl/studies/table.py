@@ -34,7 +34,7 @@ def cell_rows(cell: Cell) -> list[dict[str, Any]]:
     curves = read_curves(cell)
     last = curves[-1] if curves else {}
     base: dict[str, Any] = {"task": cell.task, "algorithm": cell.algorithm, "seed": cell.seed}
-    base |= {name.rpartition(".")[2]: value for name, value in cell.axes.items()}
+    base |= {_heading(name): value for name, value in cell.axes.items()}
     base |= {"state": cell.read_state()["state"], "iterations": len(curves)}
     base |= {"transitions": last.get("transitions", ""), "minutes": _minutes(last.get("seconds"))}
     rows = []
@@ -44,6 +44,12 @@ def cell_rows(cell: Cell) -> list[dict[str, Any]]:
             label = f"{cell.algorithm}, rules off" if prefix else cell.algorithm
             rows.append({**base, "algorithm": label, **summary(read_rows(path) if path else [])})
     return rows
+
+
+def _heading(axis: str) -> str:
+    """Return the last part of an axis' path, or all of it where a figure has that name, such as ``env.reward``."""
+    short = axis.rpartition(".")[2]
+    return axis if short in MEANS else short
 
 
 def summary(episodes: Sequence[dict[str, Any]]) -> dict[str, Any]:
