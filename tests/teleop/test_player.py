@@ -48,6 +48,8 @@ def test_recording_shows_what_the_session_showed(recorded, player) -> None:
     np.testing.assert_allclose(now.camera_pose, then.camera_pose, atol=2e-5)
     assert now.info.time == pytest.approx(then.info.time) and now.info.segment == then.info.segment
     assert now.progress == pytest.approx(then.progress) and now.tier == then.tier
+    assert now.wall_strain == pytest.approx(then.wall_strain) and then.wall_strain > 0.0
+    assert now.anchor_tension == pytest.approx(then.anchor_tension)
 
 
 def test_playing_ends_with_the_last_frame_and_begins_again(player) -> None:
@@ -86,6 +88,7 @@ def test_links_are_closed_and_look_outwards() -> None:
 def test_numbers_name_force_and_tier(player) -> None:
     text = readouts(player.frame, player.status, FORCE_TIERS, 0.0123, 9.0)
     assert "force on tip" in text and player.frame.tier in text and "12 ms" in text
+    assert f"{100 * player.frame.wall_strain:.1f} %" in text and f"{player.frame.anchor_tension:.2f} N" in text
     assert "&lt;b&gt;" in readouts(None, SimpleNamespace(state="x", driver="<b>", message=""), FORCE_TIERS, 0.0, 0.0)
 
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,6 +43,10 @@ class Frame:
     """Push on the base [N]."""
     tier: str
     """Name of the tier of the force on the tip."""
+    wall_strain: float = math.nan
+    """Largest principal strain of a ring of the wall; NaN where it was not recorded."""
+    anchor_tension: float = math.nan
+    """Largest pull of a ring on its anchors [N]; NaN where it was not recorded."""
 
 
 def read_frame(env: Any, env_id: int, number: int) -> Frame:
@@ -63,6 +68,8 @@ def read_frame(env: Any, env_id: int, number: int) -> Frame:
         float(metrics["looping_ratio"][env_id]) if "looping_ratio" in metrics else float("nan"),
         float(data.base_force[env_id]),
         force_tier(info.tip_force, tiers).label,
+        float(colon.data.wall_strain[env_id].max()),
+        float(colon.data.anchor_tension[env_id].max()),
     )
 
 

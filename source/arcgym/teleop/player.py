@@ -101,6 +101,9 @@ def recorded_frames(env: Any, episode: Episode) -> Callable[[int], Frame]:
     def value(name: str, step: int, default: float = float("nan")) -> float:
         return float(data[name][step]) if name in data else default
 
+    def largest(name: str, step: int) -> float:
+        return float(data[name][step].max()) if name in data else float("nan")
+
     def make(step: int) -> Frame:
         link_pos, link_quat = data["poses/body_pos_w"][step], data["poses/body_quat_w"][step]
         window = np.linalg.norm(data["forces/window"][step], axis=-1)
@@ -127,6 +130,8 @@ def recorded_frames(env: Any, episode: Episode) -> Callable[[int], Frame]:
             value("metrics/looping_ratio", step),
             value("forces/base", step, 0.0),
             force_tier(tip_force, tiers).label,
+            largest("wall/strain", step),
+            largest("wall/anchor_tension", step),
         )
 
     return make
