@@ -205,11 +205,12 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert line.startswith(f"| `{TASKS[0]}` | Mine | A. Author | 100 (89–100) | 1.00 (1.00–1.00) |")
     assert "| 2e+06 | 1.5 | abc | ? | reproduced: B. Other 2026-12 |" in text and "| abc | ? | self-reported |" in text
     (result(tmp_path / "all" / "wrong", seed=5) / "entry.yaml").write_text(ENTRY)
-    result(tmp_path / "all" / "nameless")
+    result(tmp_path / "all" / "nameless", progress=0.5)
     (tmp_path / "all" / "nameless" / "entry.yaml").write_text("name: Mine\ncost: 3\n")
     assert main(["results", "leaderboard", str(tmp_path / "all"), "--page", str(page)]) == 1
     out = capsys.readouterr().out
     assert "wrong: trial 0 of ARC-Rectum-Magnetic has another patient, seed or group" in out
+    assert "nameless: trial 0 of ARC-Rectum-Magnetic succeeded with a progress of 0.5" in out
     assert "lacks by, sees, trained_on, transitions, gpu_hours and has the unknown cost" in out
     assert page.read_text() == text
 

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from arcgym.evaluation.strengths import strengths_table
+from arcgym.evaluation.strengths import strengths_tables
 from arcgym.evaluation.summary import report
 
 
@@ -18,18 +18,19 @@ def test_each_kind_is_a_line_with_what_each_strength_changes_in_the_same_trials(
     """Two trials: blur of strength 3 takes 0.5 of the progress of each, strength 1 nothing; 2 has not been run."""
     rows = [trial("none", 0, 1.0), trial("none", 1, 0.75)]
     rows += [trial("blur_1", 0, 1.0), trial("blur_1", 1, 0.75), trial("blur_3", 0, 0.5), trial("blur_3", 1, 0.25)]
-    lines = strengths_table(rows).splitlines()
-    assert lines[0].endswith("Success [%] in 2 trials as they are: 50 (9–91).")
-    changes = "+0.00 (+0.00 to +0.00) |  | -0.50 (-0.50 to -0.50) |"
-    assert lines[4] == f"| blur | 50 (9–91) | no trial | 0 (0–66) | {changes}"
+    (table,) = strengths_tables(rows)
+    assert table.title == "ARC-LeftColon-Magnetic, a: success 50 (9–91) % in 2 trials without trouble"
+    changes = ["+0.00 (+0.00 to +0.00)", "", "-0.50 (-0.50 to -0.50)"]
+    assert table.lines == [["blur", "50 (9–91)", "no trial", "0 (0–66)", *changes]]
+    assert report(rows).endswith(f"| {' | '.join(table.lines[0])} |\n")
 
 
 def test_a_trial_without_its_unspoiled_twin_does_not_count_as_a_change() -> None:
-    rows = [trial("none", 0, 0.5), trial("soft_2", 0, 0.25), trial("soft_2", 7, 1.0)]
-    assert strengths_table(rows).splitlines()[4].endswith("|  | -0.25 (-0.25 to -0.25) |  |")
+    (table,) = strengths_tables([trial("none", 0, 0.5), trial("soft_2", 0, 0.25), trial("soft_2", 7, 1.0)])
+    assert table.lines[0][-3:] == ["", "-0.25 (-0.25 to -0.25)", ""]
 
 
 def test_other_suites_have_no_such_table() -> None:
     rows = [trial("", 0, 1.0), trial("none", 0, 1.0), trial("stiff_nu045", 0, 1.0)]
-    assert strengths_table(rows) == ""
+    assert strengths_tables(rows) == []
     assert report(rows).count("| task |") == 1 and "kind" not in report(rows)

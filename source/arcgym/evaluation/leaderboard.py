@@ -84,14 +84,23 @@ def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:
     for path in sorted(file.parent for file in folder.rglob(RUN_FILE)):
         try:
             found = problems(path)
-            read_entry(path)
         except UsageError as error:
             found = [str(error)]
+        found += _entry_problems(path)
         if found:
             refused[path] = found
         else:
             good.append(path)
     return good, refused
+
+
+def _entry_problems(folder: Path) -> list[str]:
+    """Return what is wrong with what a submission says of itself, none or one line."""
+    try:
+        read_entry(folder)
+    except UsageError as error:
+        return [str(error)]
+    return []
 
 
 def entries_table(folders: Sequence[Path]) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
+from arcgym.evaluation.strengths import strengths_tables
 from arcgym.evaluation.summary import KEY_METRICS, summarize
 from arcgym.evaluation.video_choice import chosen_rows, video_path
 
@@ -57,6 +58,7 @@ def write_page(folder: Path) -> Path:
             [_summary_row(task, of, names) for task, of in summaries.items()],
         ),
         _picture(_success_figure(summaries)),
+        *_strengths(rows),
         "<h2>Trials</h2>",
         _picture(_distribution_figure(rows)),
         _films(folder, rows),
@@ -69,6 +71,11 @@ def write_page(folder: Path) -> Path:
     path = folder / "page.html"
     path.write_text(page + "\n".join(body) + "</html>\n")
     return path
+
+
+def _strengths(rows: Sequence[Row]) -> list[str]:
+    """Return what robustness variants change, a table a task and agent."""
+    return [f"<h2>{html.escape(of.title)}</h2>" + _table(of.head, of.lines) for of in strengths_tables(rows)]
 
 
 def _films(folder: Path, rows: Sequence[Row]) -> str:

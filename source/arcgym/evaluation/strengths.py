@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,40 +17,56 @@ from arcgym.evaluation.suites import split_task
 STRENGTHS = ("1", "2", "3")
 UNSPOILED = "none"
 """Variant that the others are compared with."""
+Cells = dict[tuple[str, str], list[dict[str, Any]]]
+"""Rows of trials by kind and strength."""
 
 
-def strengths_table(rows: Sequence[dict[str, Any]]) -> str:
-    """Return success [%] and change of the mean progress by kind and strength, in Markdown; empty without variants.
+@dataclass(frozen=True)
+class StrengthsTable:
+    """Success and change of the mean progress of one agent in one task, by kind and strength."""
+
+    title: str
+    """Task and agent, and the success without trouble."""
+
+    head: list[str]
+    """Headings of the columns."""
+
+    lines: list[list[str]]
+    """A line a kind."""
+
+    def to_markdown(self) -> str:
+        """Return the table with its title above it."""
+        rows = [self.head, ["---"] * len(self.head), *self.lines]
+        return f"**{self.title}**\n\n" + "".join(f"| {' | '.join(row)} |\n" for row in rows)
+
+
+def strengths_tables(rows: Sequence[dict[str, Any]]) -> list[StrengthsTable]:
+    """Return success [%] and change of the mean progress by kind and strength, a table a task and agent.
 
     Changes are mean differences to the same trials of the variant ``none``, with 95 % bootstrap intervals.
 
     Args:
         rows: Rows of trials; those of tasks such as ``ARC-LeftColon-Magnetic:blur_2`` are shown.
     """
-    cells: dict[tuple[str, str], dict[tuple[str, str], list[dict[str, Any]]]] = {}
+    cells: dict[tuple[str, str], Cells] = {}
     for row in rows:
         task, variant = split_task(row["task"])
         match = re.fullmatch(r"([a-z]+)_([123])", variant or "")
         if match or variant == UNSPOILED:
             place = (match[1], match[2]) if match else (UNSPOILED, "")
             cells.setdefault((task, str(row["agent"])), {}).setdefault(place, []).append(row)
-    return "\n".join(_table(task, agent, of) for (task, agent), of in cells.items() if set(of) - {(UNSPOILED, "")})
+    return [_table(task, agent, of) for (task, agent), of in cells.items() if set(of) - {(UNSPOILED, "")}]
 
 
-def _table(task: str, agent: str, of: dict[tuple[str, str], list[dict[str, Any]]]) -> str:
+def _table(task: str, agent: str, of: Cells) -> StrengthsTable:
     plain = {row["trial"]: row for row in of.get((UNSPOILED, ""), [])}
-    head = [
-        f"**`{task}`, {agent}.** Success [%] in {len(plain)} trials as they are: {_success(list(plain.values()))}.",
-        "",
-    ]
+    title = f"{task}, {agent}: success {_success(list(plain.values()))} % in {len(plain)} trials without trouble"
     columns = [f"success [%], {s}" for s in STRENGTHS] + [f"progress, {s} less none" for s in STRENGTHS]
-    head += [f"| kind | {' | '.join(columns)} |", f"|{'---|' * (len(columns) + 1)}"]
     lines = []
     for kind in dict.fromkeys(kind for kind, _ in of if kind != UNSPOILED):
         found = [of.get((kind, strength), []) for strength in STRENGTHS]
-        cells = [*map(_success, found), *(_change(rows, plain) for rows in found)]
-        lines.append(f"| {kind} | {' | '.join(cells)} |")
-    return "\n".join([*head, *lines]) + "\n"
+        lines.append([kind, *map(_success, found), *(_change(some, plain) for some in found)])
+    return StrengthsTable(title, ["kind", *columns], lines)
 
 
 def _success(rows: Sequence[dict[str, Any]]) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.evaluation.statistics import Interval, bootstrap, training_runs, wilson
-from arcgym.evaluation.strengths import strengths_table
+from arcgym.evaluation.strengths import strengths_tables
 from arcgym.utils.errors import UsageError
 
 KEY_METRICS = (
@@ -55,7 +55,7 @@ def report(rows: Sequence[dict[str, Any]]) -> str:
     Raises:
         UsageError: There is no row.
     """
-    return "\n".join(filter(None, [to_markdown(summarize(rows)), strengths_table(rows)]))
+    return "\n".join([to_markdown(summarize(rows)), *(table.to_markdown() for table in strengths_tables(rows))])
 
 
 def to_markdown(summaries: dict[str, Summary]) -> str:
