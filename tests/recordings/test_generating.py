@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -110,6 +113,27 @@ def test_incomplete_episodes_are_made_again(data, tmp_path) -> None:
         episode = Episode({"actions": np.zeros((2, 6))}, {"length": 2, "complete": complete})
         save_episode(episode, tmp_path / f"episode_{number:06d}.hdf5")
     assert clean(tmp_path) == 1 and [path.name for path in tmp_path.iterdir()] == ["episode_000000.hdf5"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGKILL])
+def test_a_run_that_was_stopped_from_outside_goes_on(stop, colons, tmp_path) -> None:
+    words = [*OPTIONS, "--images", "--patients", str(colons[0]), "--out", str(tmp_path)]
+    command = [sys.executable, "-u", "-m", "arcgym", "record", *words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
+        next(line for line in run.stdout if "2 of 3 episodes" in line)  # the first of two rounds is over
+        run.send_signal(stop)
+        said = run.stdout.read()
+    assert (run.returncode, "the same command goes on" in said) == (
+        (143, True) if stop == signal.SIGTERM else (-9, False)
+    )
+    whole = {path.name: path.read_bytes() for path in episode_paths(tmp_path / "straight")[:2]}
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True)
+    assert "recorded: 1 episodes of" in done.stdout and "2 were there" in done.stdout
+    episodes = list(load_episodes(tmp_path / "straight"))
+    assert [episode.info["complete"] for episode in episodes] == [True] * 3
+    assert all((tmp_path / "straight" / name).read_bytes() == content for name, content in whole.items())
+    assert not list(tmp_path.rglob("*.partial.hdf5")) and "| straight | 3 |" in (tmp_path / "README.md").read_text()
 
 
 def test_patients_in_one_batch(colons, tmp_path, capsys) -> None:

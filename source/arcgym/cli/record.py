@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.stopping import stopped_cleanly
 from arcgym.cli.task import load_cfgs, load_run_cfgs
 from arcgym.utils.errors import UsageError
 
@@ -115,7 +116,8 @@ def _record(
         args.task, episodes, out, groups, args.agent, images if args.images else None, args.observations
     )
     load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint)
-    report = generate(plan, env_cfg, agent_cfg, load)
+    with stopped_cleanly(f"{out} holds what was done; the same command goes on"):
+        report = generate(plan, env_cfg, agent_cfg, load)
     print(f"recorded: {report}")
     for line in report.skipped:
         print(f"left out: {line}")
