@@ -63,7 +63,7 @@ def film(scene: Scene, device: str) -> str | None:
         if result.returncode or not videos:
             print(f"{scene['name']}: {(result.stdout + result.stderr).strip()[-600:]}", flush=True)
             return str(scene["name"])
-        shrink(videos[0], video_of(scene))
+        shrink(videos[0], video_of(scene), 1 if "recording" in scene else scene.get("every", 1))
         video_of(scene).with_suffix(".json").write_text(json.dumps(record(result.stdout, device), indent=1) + "\n")
     print(f"{scene['name']}: {video_of(scene).stat().st_size / 1e6:.1f} MB", flush=True)
     return None
@@ -91,12 +91,13 @@ def record(output: str, device: str) -> dict[str, Any]:
     return {"figures": figures, "device": device, "day": str(date.today())} | {"versions": versions()}
 
 
-def shrink(source: Path, target: Path) -> None:
-    """Write a video at half its size, whole or not at all."""
+def shrink(source: Path, target: Path, every: int) -> None:
+    """Write one of so many frames of a video at half its size, whole or not at all."""
     import imageio_ffmpeg
 
     temporary = target.with_name(f".{target.name}.tmp.mp4")
-    filters = ["-vf", "scale=trunc(iw/4)*2:trunc(ih/4)*2", "-crf", str(QUALITY), "-preset", "slow", "-an"]
+    chosen = f"framestep={every},setpts=PTS/{every},scale=trunc(iw/4)*2:trunc(ih/4)*2"
+    filters = ["-vf", chosen, "-r", "10", "-crf", str(QUALITY), "-preset", "slow", "-an"]
     tool = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-i", str(source)]
     subprocess.run([*tool, *filters, "-movflags", "+faststart", str(temporary)], check=True)
     temporary.replace(target)
