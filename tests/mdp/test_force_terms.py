@@ -102,9 +102,18 @@ def test_percentile_over_the_episode(env) -> None:
     for force in range(1, 21):
         env.scope.tip_force_w[0, 2] = force
         value = term(env, "tip_force")
-    # 19 of 20 steps, 95 %, are at most 19 N; bins are 5 % wide.
-    assert 19.0 <= float(value[0]) <= 19.0 * 1.05
+    # 19 of 20 steps, 95 %, are at most 19 N, the only one in its bin of 5 %.
+    assert float(value[0]) == 19.0
     assert float(value[1]) == 0.0
+
+
+@pytest.mark.parametrize("force", [0.003, 4.26, 250.0])
+def test_a_steady_load_is_its_own_percentile(env, force: float) -> None:
+    """Also below the first bin and above the last one, and never above the largest load."""
+    term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
+    env.scope.tip_force_w[0, 2] = force
+    values = [float(term(env, "tip_force")[0]) for _ in range(3)]
+    assert values == pytest.approx([force] * 3)
 
 
 def test_percentile_forgets_at_reset(env) -> None:
