@@ -59,7 +59,8 @@ def film(scene: Scene, device: str) -> str | None:
     """Film a scene; return its name if that failed."""
     with tempfile.TemporaryDirectory() as folder:
         result = subprocess.run(command(scene, device, ROOT), cwd=folder, capture_output=True, text=True)
-        videos = sorted(Path(folder).rglob("*.mp4"))
+        said = [line.removeprefix("video: ") for line in result.stdout.splitlines() if line.startswith("video: ")]
+        videos = [Path(folder) / name for name in said] or sorted(Path(folder).rglob("*.mp4"))  # beside a checkpoint
         if result.returncode or not videos:
             print(f"{scene['name']}: {(result.stdout + result.stderr).strip()[-600:]}", flush=True)
             return str(scene["name"])
