@@ -79,6 +79,7 @@ class ContactSearch:
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
         self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
+        self._ring_before = wp.clone(self.ring)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         self.bounds = lumen_kernels.Bounds()
         self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
@@ -186,10 +187,12 @@ class ContactSearch:
             body_q: Link poses, shape (W*L,), transform.
             world_mask: Worlds to look at, shape (W,), bool; None for all.
         """
+        wp.copy(self._ring_before, self.ring)
+        worlds = self._all_worlds if world_mask is None else world_mask
         wp.launch(
             lumen_kernels.track_rings,
             (self.num_envs, self.link_count),
-            inputs=[self.centers, body_q, MAX_RING_SHIFT, self._all_worlds if world_mask is None else world_mask],
+            inputs=[self.centers, body_q, MAX_RING_SHIFT, worlds, self._ring_before],
             outputs=[self.ring, self.ring_distance],
             device=self.device,
         )

@@ -65,12 +65,16 @@ def track_rings(
     body_q: wp.array[wp.transform],
     max_shift: int,
     world_mask: wp.array[wp.bool],
+    before: wp.array2d[int],
     ring: wp.array2d[int],
     ring_distance: wp.array2d[float],
 ):
     """Find the ring nearest to each link, and its distance [m]. Launch (W, L).
 
-    Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1.
+    Searches ``max_shift`` rings on either side of the last one, and all of them where it is -1. Where the next link
+    towards the base was farther off than that, the rings around it are searched as well: the nearest ring within reach
+    may be no nearer than the last one, though the link has long gone on through a bend, and a link would then be held
+    to be there for good.
 
     A link whose center is outside the anus, before the first ring, is at distance FAR: the wall has no outer surface.
 
@@ -79,14 +83,15 @@ def track_rings(
         body_q: Link poses, shape (W*L,).
         max_shift: Rings that a link may cross since the last call.
         world_mask: Worlds to look at, shape (W,).
-        ring: Ring of each link or -1, shape (W, L); updated.
+        before: Ring of each link at the last call or -1, shape (W, L).
+        ring: Ring of each link, shape (W, L); written.
         ring_distance: Distance from its center [m], shape (W, L); written.
     """
     w, link = wp.tid()
     if not world_mask[w]:
         return
     p = wp.transform_get_translation(body_q[w * ring.shape[1] + link])
-    last = ring[w, link]
+    last = before[w, link]
     lo = int(0)
     hi = centers.shape[1]
     if last >= 0:
@@ -99,6 +104,13 @@ def track_rings(
         if d < best:
             best = d
             found = r
+    neighbor = before[w, wp.max(link - 1, 0)]
+    if last >= 0 and neighbor >= 0 and wp.abs(neighbor - last) > max_shift:
+        for r in range(wp.max(0, neighbor - max_shift), wp.min(centers.shape[1], neighbor + max_shift + 1)):
+            d = wp.length_sq(p - centers[w, r])
+            if d < best:
+                best = d
+                found = r
     ring[w, link] = found
     ring_distance[w, link] = wp.sqrt(best)
     if found == 0 and wp.dot(p - centers[w, 0], centers[w, 1] - centers[w, 0]) < 0.0:
