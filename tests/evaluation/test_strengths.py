@@ -4,7 +4,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
+from arcgym.evaluation.page import write_page
+from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.strengths import strengths_tables
+from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import report
 
 
@@ -34,3 +41,13 @@ def test_other_suites_have_no_such_table() -> None:
     rows = [trial("", 0, 1.0), trial("none", 0, 1.0), trial("stiff_nu045", 0, 1.0)]
     assert strengths_tables(rows) == []
     assert report(rows).count("| task |") == 1 and "kind" not in report(rows)
+
+
+@pytest.mark.filterwarnings("error::UserWarning")
+def test_the_page_has_room_for_all_variants(tmp_path: Path) -> None:
+    """Forty tasks: a figure with a line each, and no legend that leaves no room for its axes."""
+    folder = ResultFolder(tmp_path, {"suite": "robustness", "agent": "expert"})
+    for variant in read_suites()["robustness"].variants:
+        folder.add({**trial(variant, 0, 0.5), "end": "stuck", "reward": 1.0, "seconds": 5.0, "p95_tip_force": 1.0})
+    text = write_page(tmp_path).read_text()
+    assert "<th>progress, 3 less none</th>" in text and "<td>collapsed</td>" in text

@@ -28,6 +28,9 @@ overflow-wrap:anywhere}.run td:first-child{overflow-wrap:normal}img{max-width:10
 DISTRIBUTIONS = ("progress", "seconds", "p95_tip_force", "p95_shaft_force")
 """Figures whose distribution over the trials is drawn, if the rows have them."""
 
+FEW = 8
+"""Tasks up to which figures have a legend and tall lines; of more, such as robustness variants, lines are gray."""
+
 EMBEDDED = 6_000_000
 """Size up to which a film is put into the page [bytes]."""
 
@@ -133,7 +136,8 @@ def _ends(rows: Sequence[dict[str, Any]]) -> list[list[str]]:
 def _success_figure(summaries: dict[str, dict[str, Any]]) -> Any:
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 0.5 * len(summaries) + 1.2), layout="constrained")
+    height = 0.5 if len(summaries) <= FEW else 0.22
+    figure = Figure(figsize=(7.0, height * len(summaries) + 1.2), layout="constrained")
     axes = figure.subplots()
     for place, of in enumerate(summaries.values()):
         rate = of["success"]
@@ -154,15 +158,18 @@ def _distribution_figure(rows: Sequence[dict[str, Any]]) -> Any:
     from matplotlib.figure import Figure
 
     names = [name for name in DISTRIBUTIONS if name in rows[0]]
+    tasks = sorted({row["task"] for row in rows})
+    style: dict[str, Any] = {} if len(tasks) <= FEW else {"color": "0.6", "linewidth": 0.7}
     figure = Figure(figsize=(3.2 * len(names), 3.0), layout="constrained")
     for axes, name in zip(np.atleast_1d(figure.subplots(1, len(names), sharey=True)), names, strict=True):
-        for task in sorted({row["task"] for row in rows}):
+        for task in tasks:
             values = np.sort([row[name] for row in rows if row["task"] == task])
-            axes.step(values, 100.0 * np.arange(1, len(values) + 1) / len(values), where="post", label=task)
+            axes.step(values, 100.0 * np.arange(1, len(values) + 1) / len(values), where="post", label=task, **style)
         axes.set(xlabel=LABELS.get(name, name), ylim=(0, 105))
         axes.locator_params(axis="x", nbins=4)
     figure.axes[0].set_ylabel("trials at or below [%]")
-    figure.axes[0].legend(fontsize="x-small")
+    if len(tasks) <= FEW:
+        figure.axes[0].legend(fontsize="x-small")
     return figure
 
 
