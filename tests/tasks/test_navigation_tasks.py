@@ -275,3 +275,12 @@ def test_a_part_of_the_papers_reward_may_stand_alone(part: str) -> None:
     cfg.resolve()
     terms = {name: term for name, term in vars(cfg.rewards).items() if term is not None}
     assert list(terms) == ["lumen"] and terms["lumen"].params == {"part": part}
+
+
+def test_a_step_forward_earns_more_than_the_best_view_and_waiting_ends_in_failure():
+    """At 40 mm/s a step of 0.1 s earns 300 x 0.004 x 0.1 = 0.12; the lumen reward is at most 1 and earns 0.1."""
+    cfg = load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point")
+    step = cfg.decimation * cfg.sim.dt
+    best_view = cfg.rewards.lumen.weight * (mdp.PAPER.weight_centering + mdp.PAPER.weight_visibility) * step
+    assert cfg.rewards.progress.weight * 0.04 * step * step > best_view
+    assert not cfg.terminations.stuck.time_out
