@@ -167,15 +167,25 @@ def test_an_expert_that_never_succeeds_is_named():
         ask_expert(env, ["policy"], "cpu", 8, expert=lambda obs: torch.zeros(2, 2))
 
 
-def test_asking_counts_among_the_transitions(monkeypatch):
-    """One round of 8 steps in 4 worlds, then one iteration of 4 steps: 48 transitions."""
+def asked_runner(monkeypatch, **settings) -> BehaviorCloningRunner:
+    """A runner that asks an expert for one round of 8 steps in 4 worlds."""
     torch.manual_seed(0)
     algorithm = RslRlBehaviorCloningAlgorithmCfg(demonstrations="expert", expert_steps=8, steps_per_update=1)
-    cfg = RslRlBehaviorCloningRunnerCfg(actor=actor_cfg(), algorithm=algorithm)
-    env = Shown(4)
+    cfg = RslRlBehaviorCloningRunnerCfg(actor=actor_cfg(), algorithm=algorithm, **settings)
     monkeypatch.setattr(
         "arcgym.rl.expert_demonstrations.ExpertPolicy", lambda env: lambda obs: (-4.0 * env.offset).clamp(-1.0, 1.0)
     )
-    runner = BehaviorCloningRunner(env, cfg.to_dict(), log_dir=None, device="cpu")
+    return BehaviorCloningRunner(Shown(4), cfg.to_dict(), log_dir=None, device="cpu")
+
+
+def test_asking_counts_among_the_transitions(monkeypatch):
+    """One round of 8 steps in 4 worlds, then one iteration of 4 steps: 48 transitions."""
+    runner = asked_runner(monkeypatch)
     runner.learn(1)
     assert runner.clock.transitions == 48
+
+
+def test_a_policy_that_was_left_no_time_to_learn_is_refused(monkeypatch):
+    runner = asked_runner(monkeypatch, max_minutes=1e-6)
+    with pytest.raises(UsageError, match="Asking the expert took .* nothing was learnt"):
+        runner.learn(1)

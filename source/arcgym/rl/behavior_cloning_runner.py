@@ -11,6 +11,7 @@ from rsl_rl.env import VecEnv
 
 from arcgym.rl.expert_demonstrations import ask_expert
 from arcgym.rl.runner import OnPolicyRunner
+from arcgym.utils.errors import UsageError
 
 EXPERT = "expert"
 """Demonstrations that mean the robot's scripted expert."""
@@ -35,7 +36,11 @@ class BehaviorCloningRunner(OnPolicyRunner):
             self._describe()
 
     def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
-        """Ask the expert where the configuration says so, and learn; see :class:`OnPolicyRunner`."""
+        """Ask the expert where the configuration says so, and learn; see :class:`OnPolicyRunner`.
+
+        Raises:
+            UsageError: Asking the expert took all the minutes; the checkpoint would have learnt nothing.
+        """
         if self._asks_expert and not self.clock.is_over:
             self._ask_expert()
         super().learn(num_learning_iterations, init_at_random_ep_len)
@@ -56,6 +61,11 @@ class BehaviorCloningRunner(OnPolicyRunner):
         steps = self.env.unwrapped.common_step_counter - steps_before  # type: ignore[attr-defined]
         self.clock.add(time.perf_counter() - start, steps * self.env.num_envs * self.gpu_world_size)
         self._describe()
+        if self.clock.is_over:
+            raise UsageError(
+                f"Asking the expert took {self.clock.seconds / 60.0:.1f} minutes, all of agent.max_minutes, and "
+                "nothing was learnt: give more minutes, or fewer agent.algorithm.expert_steps."
+            )
 
     def _describe(self) -> None:
         demonstrations = self.alg.read_demonstrations()  # type: ignore[attr-defined]
