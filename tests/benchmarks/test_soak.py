@@ -152,8 +152,9 @@ def test_link_with_any_part_outside_a_box_is_found(half_length, radius, first):
 
 def test_links_before_the_open_end_are_told_from_those_beside_it() -> None:
     first, last = torch.tensor([[0.0, 0.0, 0.0]]), torch.tensor([[0.0, 0.0, 0.04]])
-    places = torch.tensor([[[0.0, 0.02, 0.03], [0.0, 0.02, 0.05], [0.0, 0.05, 0.03]]])  # below, above, too far aside
-    assert below_opening(places, first, last).tolist() == [[True, False, False]]
+    places = torch.tensor([[[0.0, 0.02, 0.03], [0.0, 0.02, 0.05], [0.0, 0.06, 0.03], [0.0, 0.06, -0.03]]])
+    # 10 mm below, above, 10 mm below but too far aside, 70 mm below, where the cone is wider
+    assert below_opening(places, first, last).tolist() == [[True, False, False, True]]
 
 
 def test_findings_of_all_sessions_add_up(tmp_path):

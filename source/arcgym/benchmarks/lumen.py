@@ -18,7 +18,8 @@ MARGIN = 4
 """Rings at either end of the colon whose links are left out: there the surface is open, or the scope outside it."""
 OPENING = 0.04
 """Distance from the axis of the anus within which a link below these rings is beyond the open end, whatever ring it is
-held to be in [m]: a link that is pulled out of tissue in which it was bent may keep a ring of the sigmoid."""
+held to be in, and more by as much as it is lower [m]: a link that is pulled out of tissue in which it was bent may keep
+a ring of the sigmoid."""
 CORE = 0.5
 """Share of its radius by which a link must be inside: its surface dents into the wall where the two touch."""
 ALONG = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -63,7 +64,7 @@ class LumenCheck:
 
 
 def below_opening(places: torch.Tensor, first: torch.Tensor, last: torch.Tensor) -> torch.Tensor:
-    """Return which places lie before the last of the rings left out, and near the line through it and the first.
+    """Return which places lie before the last of the rings left out, in a cone about the line from it to the first.
 
     Args:
         places: Centers of links [m], shape (N, L, 3).
@@ -73,7 +74,7 @@ def below_opening(places: torch.Tensor, first: torch.Tensor, last: torch.Tensor)
     axis = torch.nn.functional.normalize(last - first, dim=1)[:, None]
     along = ((places - last[:, None]) * axis).sum(dim=2)
     across = places - last[:, None] - along[:, :, None] * axis
-    return (along < 0.0) & (across.norm(dim=2) < OPENING)
+    return across.norm(dim=2) < torch.where(along < 0.0, OPENING - along, 0.0)
 
 
 def core_points(half_length: np.ndarray, radius: np.ndarray) -> np.ndarray:
