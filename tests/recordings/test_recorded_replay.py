@@ -39,6 +39,11 @@ def test_recording_holds_what_the_schema_says(episode) -> None:
     assert set(episode.provenance["stages"]) == {"colon", "endoscope"}
 
 
+def test_recording_does_not_say_which_folder_it_was_written_to(episode, recorded) -> None:
+    assert episode.settings["recorders"]["dataset_export_dir_path"] == recorded.name
+    assert str(recorded) not in str(episode.settings)
+
+
 def test_replay_is_the_same_bit_for_bit(episode, again) -> None:
     result = replay(again, episode)
     assert result.is_exact and result.steps == 14 and result.has_end, str(result)

@@ -35,7 +35,7 @@ def provenance(env: ManagerBasedEnv, world: int = 0) -> tuple[dict[str, Any], di
         Facts (``task``, ``seed``, ``device``, ``device_name``, ``num_envs``, ``step_dt`` [s], ``versions``, ``stages``
         and ``settings``, the hash of the second), and the configuration as plain values.
     """
-    settings = to_plain(env.cfg)
+    settings = _without_folders(to_plain(env.cfg))
     stages = {name: getattr(env.scene[name], "path", None) for name in env.scene.keys()}  # noqa: SIM118
     patient = _patient(env, world)
     if patient is not None:
@@ -56,6 +56,16 @@ def provenance(env: ManagerBasedEnv, world: int = 0) -> tuple[dict[str, Any], di
         "settings": settings_hash(settings),
     }
     return facts, settings
+
+
+def _without_folders(settings: dict[str, Any]) -> dict[str, Any]:
+    """Return a configuration in which of the folders that a machine writes to only the names are left."""
+    if settings.get("log_dir"):
+        settings["log_dir"] = Path(settings["log_dir"]).name
+    recorders = settings.get("recorders")
+    if recorders and recorders.get("dataset_export_dir_path"):
+        recorders["dataset_export_dir_path"] = Path(recorders["dataset_export_dir_path"]).name
+    return settings
 
 
 def episode_facts(env: ManagerBasedEnv, world: int) -> dict[str, Any]:
