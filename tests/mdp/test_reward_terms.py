@@ -8,6 +8,7 @@ from __future__ import annotations
 import pytest
 import torch
 
+from arcgym.anatomy.segments import SEGMENTS
 from arcgym.envs import mdp
 from arcgym.managers import CostTermCfg, RewardTermCfg
 
@@ -42,6 +43,24 @@ def test_a_withdrawal_goes_from_the_start_of_the_segment_back_to_the_rectum(env)
     assert mdp.success(env).tolist() == [False, True]
     env.episode_length_buf[:] = 10
     torch.testing.assert_close(mdp.mean_speed(env), torch.tensor([0.02, 0.05]))
+
+
+def test_the_cecum_is_reached_halfway_from_its_valve_to_its_blind_end(env, monkeypatch) -> None:
+    """A cecum from 44 to 50 cm is reached at 47 cm, 94 % of the way from the anus; progress counts on to its end."""
+    monkeypatch.setattr(env.scene["colon"], "require_segment", lambda name: None)
+    spans = env.scene["colon"].data.segment_spans.clone()
+    spans[:, SEGMENTS.index("cecum")] = torch.tensor([0.44, 0.50])
+    env.scene["colon"].data.segment_spans = spans
+    env.cfg.segment = "cecum"
+    for env.cfg.start in ("rest", "segment"):
+        env.scope.tip_arc_length[:] = torch.tensor([0.469, 0.471])
+        assert mdp.success(env).tolist() == [False, True]
+        assert mdp.success(env, segment="cecum").tolist() == [False, True]
+    env.cfg.start = "rest"
+    torch.testing.assert_close(mdp.segment_progress(env), torch.tensor([0.938, 0.942]))
+    env.cfg.direction = "withdrawal"
+    env.scope.tip_arc_length[:] = torch.tensor([0.471, 0.05])
+    assert mdp.success(env).tolist() == [False, True]
 
 
 def test_unknown_segment_lists_the_known(env) -> None:

@@ -12,13 +12,15 @@ import numpy as np
 import pytest
 
 from arcgym.anatomy import read_colon
+from arcgym.envs import mdp
 from arcgym.managers import Episode
-from arcgym.recordings.pieces import mark_steps, replay_pieces
+from arcgym.recordings.pieces import SETTINGS, STATE, mark_steps, replay_pieces
 from arcgym.recordings.replay import replay
-from arcgym.recordings.restoring import mismatches, restored_cfg
+from arcgym.recordings.restoring import mismatches, put_in_state, restored_cfg
 from arcgym.utils.paths import assets_dir
 
 FILE = assets_dir() / "colon_1" / "insertions" / "proximal.hdf5"
+END = "final_state/"
 NEAR = 0.01
 """How far from the recorded place the tip may end after a piece on another processor [m]; the lumen is 40 mm wide."""
 
@@ -54,6 +56,20 @@ def test_it_goes_from_the_anus_into_the_cecum_at_bearable_forces(insertion) -> N
     # below what perforates, and the drive's limit
     assert insertion.data["forces/tip_peak"].max() < 14.1 and np.abs(insertion.data["forces/base"]).max() <= 43.0
     assert insertion.info["undone"] > 0 and FILE.stat().st_size < 3e6
+
+
+def test_it_ends_in_success(insertion, env) -> None:
+    """At the last mark, eleven steps before the end, the tip is short of the middle of the cecum."""
+    settings = {
+        name.removeprefix(SETTINGS): value for name, value in insertion.data.items() if name.startswith(SETTINGS)
+    }
+    mark = {name.removeprefix(STATE): value[-1] for name, value in insertion.data.items() if name.startswith(STATE)}
+    end = {name.removeprefix(END): value for name, value in insertion.data.items() if name.startswith(END)}
+    reached = []
+    for state in (mark, end):
+        put_in_state(env, state, settings)
+        reached.append(mdp.success(env).tolist())
+    assert reached == [[False], [True]] and mark_steps(insertion)[-1] == insertion.info["length"] - 11
 
 
 def test_it_is_of_the_stages_that_ship(insertion) -> None:

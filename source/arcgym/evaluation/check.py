@@ -129,10 +129,15 @@ def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
             found.append(f"{label} says success {row['success']} and end '{row['end']}'")
         if row.get("progress") is not None and not 0.0 <= row["progress"] <= 1.0:
             found.append(f"{label} has a progress of {row['progress']}, expected 0 to 1")
-        if row["success"] == 1 and row.get("progress", 1.0) < 0.999:
+        if row["success"] == 1 and row.get("progress", 1.0) < _least_progress(row["task"]):
             found.append(f"{label} succeeded with a progress of {row['progress']}")
         found += [f"{label} has {name} = {value}, {why}" for name, value, why in _impossible(row)]
     return found
+
+
+def _least_progress(task: str) -> float:
+    """Return the least progress with which a task succeeds: the cecum is reached halfway from its valve to its end."""
+    return 0.95 if "-Cecum-" in task else 0.999
 
 
 def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:

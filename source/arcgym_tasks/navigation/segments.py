@@ -42,9 +42,9 @@ JOURNEYS: dict[str, dict[str, Any]] = {
     },
 }
 """Tasks of one continuous way: name in the task, and the fields of its configuration. ``LeftColon`` goes from the anus
-past the splenic flexure, ``Cecum`` to the end of the colon, ``Withdrawal`` from the entrance of the cecum back to the
-rectum, in the eight minutes on average that guidelines ask examiners for at least (Rex et al., Am. J. Gastroenterol.
-119:1754, 2024; six before). A line here makes a task for every robot."""
+past the splenic flexure, ``Cecum`` into the cecum, ``Withdrawal`` from the entrance of the cecum back to the rectum, in
+the eight minutes on average that guidelines ask examiners for at least (Rex et al., Am. J. Gastroenterol. 119:1754,
+2024; six before). A line here makes a task for every robot."""
 
 
 def time_limit_s(segment: str, start: Start = "segment") -> float:

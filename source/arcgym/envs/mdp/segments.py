@@ -22,6 +22,17 @@ WITHDRAWN_ARC = 0.05
 """Arc length at which a withdrawal is complete [m]: the tip is in the lower rectum, above the anal canal."""
 
 
+CECUM_REACHED = 0.5
+"""Share of the cecum that lies behind the tip when it counts as reached: half of the way from the ileocecal valve,
+where the segment begins, to the blind end.
+
+Cecal intubation is the "passage of the colonoscope tip to a point proximal to the ileocecal valve, so that the entire
+cecal caput", with the wall between valve and appendix, "is visible" (Rex et al., Gastrointest. Endosc. 81:31, 2015).
+The valve lies about 6 cm before the blind end (Gray's Anatomy), so this is 3 cm past the valve. The depth is our
+choice: a tip that has a size cannot reach the end of the centerline.
+"""
+
+
 def is_withdrawal(env: ManagerBasedEnv) -> bool:
     """Return whether the task's goal is the anus (``env.cfg.direction`` is ``withdrawal``)."""
     return getattr(env.cfg, "direction", "insertion") == "withdrawal"
@@ -68,11 +79,17 @@ def segment_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.
 def success(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
     """Whether the tip has reached the end of the segment, by arc length along the lumen, bool, shape (N,).
 
-    A withdrawal ends below :data:`WITHDRAWN_ARC`.
+    The cecum is reached at :data:`CECUM_REACHED` of its length; :func:`segment_progress` counts on to the blind end. A
+    withdrawal ends below :data:`WITHDRAWN_ARC`.
 
     Args:
         segment: Name of the segment; None takes the task's, ``env.cfg.segment``.
     """
     _, end = segment_span(env, segment)
     arc = env.scene["endoscope"].data.tip_arc_length
-    return arc <= end if segment is None and is_withdrawal(env) else arc >= end
+    if segment is None and is_withdrawal(env):
+        return arc <= end
+    if task_setting(env, "segment", segment) == "cecum":
+        valve = env.scene["colon"].data.segment_spans[:, SEGMENTS.index("cecum"), 0]
+        end = torch.lerp(valve, end, CECUM_REACHED)
+    return arc >= end
