@@ -83,6 +83,8 @@ class Insertion:
     """Tissue preset."""
     setting: str = ""
     """One of :data:`SETTINGS`; empty for the shipped ones."""
+    colon: str | None = None
+    """Stage of the colon; colon 1 if None."""
 
 
 def numbers_on(device: str, robot: str) -> range:
@@ -99,8 +101,8 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[list[dict[str, float]]]
     """
     wanted = [(case, k) for case in cases for k in numbers_on(run.device, case.robot)]
     missing = [(case, k) for case, k in wanted if ("insertion", case, k) not in run.shared]
-    if any(case.setting == "wall_half" for case, _ in missing):
-        write_smooth(run.folder, refine=2)
+    for colon in {case.colon for case, _ in missing if case.setting == "wall_half"}:
+        write_smooth(run.folder, refine=2, colon=colon)
     if run.device.startswith("cuda"):
         for case in dict.fromkeys(case for case, _ in missing):
             numbers = numbers_on(run.device, case.robot)
@@ -223,8 +225,8 @@ def ends_of(case: Insertion, colon: Any) -> tuple[float, float]:
     return end, last
 
 
-def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | None = None, num_envs: int = 1) -> Any:
-    """Return worlds with the robot at the anus, in colon 1 or in the colon of another stage."""
+def build_scene(case: Insertion, device: str, folder: Path, num_envs: int = 1) -> Any:
+    """Return worlds with the robot at the anus of the case's colon."""
     from arcgym import assets
     from arcgym.anatomy import read_colon
     from arcgym.assets.endoscope_stage import write_endoscope
@@ -241,11 +243,11 @@ def build_scene(case: Insertion, device: str, folder: Path, colon_path: str | No
         spec = replace(spec, damping_time=0.2 * spec.damping_time, armature_time=spec.armature_time / 0.2)
     path = write_endoscope(spec, folder / f"{case.robot}_{setting or 'shipped'}_{os.getpid()}.usda")
     colon = assets.ColonCfg(material=case.material)
-    colon.usd_path = colon_path or colon.usd_path
+    colon.usd_path = case.colon or colon.usd_path
     colon.mobile_until = ends_of(case, read_colon(find_stages(colon.usd_path)[0]))[1] + MARGIN
     sim = SimulationCfg(device=device)
     if setting == "wall_half":
-        colon.usd_path = str(write_smooth(folder, refine=2))
+        colon.usd_path = str(write_smooth(folder, refine=2, colon=case.colon))
         sim.wall = replace(sim.wall, iterations=FINE_SWEEPS)
     sim.dt *= 0.5 if setting == "dt_half" else 1.0
     factor = {"contact_double": 2.0, "contact_half": 0.5}.get(setting, 1.0)

@@ -91,9 +91,9 @@ class WallMeasures:
 
 
 @cache
-def shipped_stage() -> ColonStage:
-    """Return the colon that ships with ARCGym."""
-    return read_colon(find_stages(ColonCfg().usd_path)[0])
+def shipped_stage(colon: str | None = None) -> ColonStage:
+    """Return a colon that ships with ARCGym, by its stage; the default one if None."""
+    return read_colon(find_stages(colon or ColonCfg().usd_path)[0])
 
 
 @cache
