@@ -104,6 +104,18 @@ def test_a_wrong_submission_is_refused_with_the_reason(tmp_path: Path, capsys, c
     assert message in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(("progress", "refused"), [(0.98, False), (0.9, True)])
+def test_the_cecum_is_reached_before_the_way_ends(tmp_path: Path, progress: float, refused: bool) -> None:
+    """Its middle lies 3 cm before the end of a colon that is at least 1 m long."""
+    suite = read_suites()["cecum"]
+    conditions = read_conditions(suite.conditions_path)
+    folder = ResultFolder(tmp_path / "a", {**RUN, "suite": "cecum", "conditions_sha256": conditions.sha256})
+    row = {"task": suite.tasks("Magnetic")[0], "agent": "a", **vars(conditions.trials[0]), "success": 1}
+    folder.add({**row, "end": "success", "reward": 1.0, "seconds": 60.0, "progress": progress})
+    found = [line for line in problems(folder.path) if "succeeded with a progress" in line]
+    assert bool(found) == refused
+
+
 @pytest.mark.parametrize(
     ("run", "message"),
     [
