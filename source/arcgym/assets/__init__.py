@@ -14,6 +14,7 @@ from arcgym.assets.endoscope_cfg import (
     IntroducerCfg,
 )
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
+from arcgym.assets.gas_cfg import GasCfg
 from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ __all__ = [
     "EndoscopeData",
     "FORCE_TIERS",
     "ForceTiersCfg",
+    "GasCfg",
     "IntroducerCfg",
     "MAGNETIC_CFG",
     "PROXIMAL_CFG",

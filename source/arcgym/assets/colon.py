@@ -229,6 +229,43 @@ class Colon:
         self._sim.require_two_level("has one mobility of the wall for all worlds")
         self._sim.rigid[self._worlds(env_ids)] = rigid.to(self._sim.rigid)
 
+    def write_gas_to_sim(
+        self,
+        abdominal_pressure: torch.Tensor | None = None,
+        start_pressure: torch.Tensor | None = None,
+        leak_conductance: torch.Tensor | None = None,
+        env_ids: Sequence[int] | torch.Tensor | None = None,
+    ) -> None:
+        """Set values of the gas, see :class:`arcgym.assets.GasCfg`, of the worlds ``env_ids`` (all by default).
+
+        Args:
+            abdominal_pressure: Pressure around the colon [Pa], shape (n,); None leaves it as it is.
+            start_pressure: Pressure at which the lumen is filled when the state is written next [Pa], shape (n,).
+            leak_conductance: Of the anus [m^3/(s Pa)], shape (n,).
+            env_ids: The worlds.
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
+        given = {"abdominal": abdominal_pressure, "start": start_pressure, "leak": leak_conductance}
+        for name, value in given.items():
+            if value is not None:
+                array = self.data._of_gas(name)
+                array[self._worlds(env_ids)] = value.to(array)
+
+    def set_gas_flow(self, flow: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+        """Command a flow of gas into the lumen, or out of it if negative, until the next command or write of state.
+
+        Args:
+            flow: At ambient pressure [m^3/s], shape (n,).
+            env_ids: The worlds, all by default.
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
+        array = self.data._of_gas("flow")
+        array[self._worlds(env_ids)] = flow.to(array)
+
     def write_patient_to_sim(self, patient: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Give the worlds ``env_ids`` (all by default) other patients, indices into :attr:`patients`, shape (n,).
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.assets.gas_cfg import GasCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.string import did_you_mean
 from arcgym.utils.validation import FieldError, Range, require, require_at_least, require_non_negative, require_positive
@@ -56,6 +57,8 @@ class ColonCfg:
     anchors: Literal["sparse", "default", "dense"] = "default"
     """Factor on all anchor springs: 0.5, 1 or 1.75. Change it, or randomise it with the event
     :func:`arcgym.envs.mdp.randomize_anchors`, to see how much a policy depends on how firmly the colon is held."""
+    gas: GasCfg = GasCfg()
+    """Gas in the lumen: pressure, insufflation and collapse; off by default."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""
 
@@ -75,6 +78,8 @@ class ColonCfg:
         require_positive(self, "density", unit="kg/m^3")
         require_non_negative(self, "anchor_stiffness", unit="N/m^2")
         require_non_negative(self, "anchor_slack", unit="m")
+        if self.gas.enabled and self.wall_model != "shell":
+            raise FieldError(self, "wall_model", "is 'solid', expected 'shell' with gas.enabled=true: switch one off.")
         for field in ("anchor_stiffness", "anchor_slack"):
             for segment in getattr(self, field):
                 if segment not in SEGMENTS:

@@ -42,6 +42,7 @@ class ColonData:
         self.segment_spans: torch.Tensor = self._spans[self.patient]
         """Arc length at start and end of each of :data:`arcgym.anatomy.segments.SEGMENTS` [m], shape (N, S, 2). One
         that a patient does not have begins and ends where the one before it ends."""
+        self._gas = sim.gas
         readout = sim.wall_readout
         self.wall_strain: torch.Tensor = wp.to_torch(readout.strain).transpose(0, 1)
         """Largest principal strain (stretch - 1) of each ring's lumen faces, mean over the control step, (N, R)."""
@@ -51,6 +52,38 @@ class ColonData:
         """Net pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
         self.anchor_tension_peak: torch.Tensor = wp.to_torch(readout.tension_peak).transpose(0, 1)
         """The same, largest physics step of the control step [N], shape (N, R)."""
+
+    @property
+    def lumen_pressure(self) -> torch.Tensor:
+        """Pressure of the gas in the lumen above the surrounding air's [Pa], shape (N,).
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
+        return self._of_gas("pressure")
+
+    @property
+    def lumen_pressure_peak(self) -> torch.Tensor:
+        """The same, highest of the control step [Pa], shape (N,).
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
+        return self._of_gas("peak")
+
+    @property
+    def lumen_volume(self) -> torch.Tensor:
+        """Volume inside the wall's middle surface, without the scope's taken off [m^3], shape (N,).
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
+        return self._of_gas("volume")
+
+    def _of_gas(self, name: str) -> torch.Tensor:
+        if self._gas is None:
+            raise ValueError("No gas is simulated in the colon: set env.scene.colon.gas.enabled=true.")
+        return wp.to_torch(getattr(self._gas.state, name))
 
     @property
     def default_nodal_state_w(self) -> torch.Tensor:

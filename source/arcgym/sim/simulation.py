@@ -27,6 +27,8 @@ from arcgym.sim.scope.scope_readout import ScopeReadout
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet
 from arcgym.sim.snapshot_library import SnapshotLibrary
+from arcgym.sim.wall.lumen_gas import GAS, LumenGas
+from arcgym.sim.wall.wall_parameters import WallParameters
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.sim.wall.wall_topology import LumenTopology
@@ -111,11 +113,21 @@ class Simulation:
             self._carried_surface(rest, lumen),
         )
         slots = len(self.contact.records.face)
-        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device)
+        self.gas = self._lumen_gas(walls, lumen)
+        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, self.gas)
         if isinstance(colon.wall, ShellMesh):
             self.contact.soften(self.wall.tissue.moduli, cfg.contact.tissue_share)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
         self.wall_readout = WallReadout(lumen, rest, colon.wall.ring, anchors, scale, self.patient, self.device)
+
+    def _lumen_gas(self, walls: list[WallParameters], lumen: LumenTopology) -> LumenGas | None:
+        """Return the gas in the lumen, if there is any."""
+        gas, wall = self.colon.cfg.gas, self.colon.wall
+        if not gas.enabled:
+            return None
+        self.require_two_level("has no gas in the lumen", "set env.scene.colon.gas.enabled=false")
+        assert isinstance(wall, ShellMesh)  # as ColonCfg checks
+        return LumenGas(gas, lumen, walls, wall.triangles, self.patient, self.cfg.dt, self.device)
 
     def _carried_surface(self, rest: list[np.ndarray], lumen: LumenTopology) -> CarriedSurface | None:
         """Return the fine surface that the links touch, or None if they touch the wall's own faces."""
@@ -192,6 +204,8 @@ class Simulation:
             array.zero_()
         self.scope_readout.clear()
         self.wall_readout.clear()
+        if self.gas is not None:
+            self.gas.clear()
         for _ in range(n):
             self._step_once()
         for array in averages:
@@ -228,6 +242,8 @@ class Simulation:
         """
         mask = self._all_worlds if env_mask is None else wp.from_torch(env_mask.contiguous(), dtype=wp.bool)
         self.coupling.forward(mask)
+        if self.gas is not None:
+            self.gas.fill(self.nodal_pos)
         self._read_out(mask)
 
     def _read_out(self, world_mask: wp.array) -> None:
@@ -246,6 +262,7 @@ class Simulation:
             **self.actuation.memory,
         }
         views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()} | self.contact.memory
+        views |= {} if self.gas is None else self.gas.memory
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
     def world_settings(self) -> dict[str, torch.Tensor]:
@@ -259,6 +276,7 @@ class Simulation:
             "anchor_scale": self.anchor_scale,
             "rigid": self.rigid,
             "patient": self.colon.data.patient,
+            **({} if self.gas is None else self.gas.settings),
         }
 
     def write_state(
@@ -305,9 +323,11 @@ class Simulation:
         self._library.load(sets)
 
     def _rests(self) -> list[Snapshot]:
-        """Return the rest pose in each patient: that of the scope is the same, and its links look for their rings."""
+        """Return the rest pose in each patient: that of the scope is the same, its links look for their rings, and the
+        lumen is to be filled."""
         now = self.read_snapshot(0).arrays
         now["link_ring"] = np.full_like(now["link_ring"], -1)
+        now |= {name: np.zeros_like(now[name]) for name in now if name.startswith(GAS)}
         walls = [patient.wall.points.astype(np.float32) for patient in self.colon.patients]
         return [Snapshot({**now, "nodal_pos": points}) for points in walls]
 
@@ -346,3 +366,5 @@ class Simulation:
         self.scope_readout.reset(ids)
         self.wall_readout.reset(ids)
         self.actuation.reset(ids)
+        if self.gas is not None:
+            self.gas.reset(ids)

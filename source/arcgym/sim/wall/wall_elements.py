@@ -12,8 +12,9 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.patient_arrays import patient_array
-from arcgym.sim.wall import shell_kernels, solid_kernels
+from arcgym.sim.wall import gas_shell_kernels, shell_kernels, solid_kernels
 from arcgym.sim.wall.band_kernels import band_kernel
+from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
@@ -41,9 +42,20 @@ class WallElements(Protocol):
         """Measure the elements at positions ``x`` [m], shape (V, W), before a residual or a sweep."""
 
 
-def wall_elements(walls: Sequence[WallParameters], patient: wp.array, device: str) -> WallElements:
-    """Return elements of the walls' kind; ``patient`` is that of each world, shape (W,), int32."""
+def wall_elements(
+    walls: Sequence[WallParameters], patient: wp.array, device: str, gas: GasLoads | None = None
+) -> WallElements:
+    """Return elements of the walls' kind.
+
+    Args:
+        walls: Wall of each patient.
+        patient: Patient of each world, shape (W,), int32.
+        device: Warp device.
+        gas: What gas does to the walls, which are shells then; None for none.
+    """
     shells = [wall.elements.geometry for wall in walls if isinstance(wall.elements, ShellParameters)]
+    if shells and gas is not None:
+        return GasShell(shells, len(walls[0].points), patient, device, gas)
     if shells:
         return Shell(shells, len(walls[0].points), patient, device)
     tets = next(wall.elements.tets for wall in walls if isinstance(wall.elements, SolidParameters))
@@ -145,3 +157,29 @@ class Shell:
         wp.launch(shell_kernels.measure_moments, shape, inputs=[tissue], outputs=[data], device=self.device)
         shape = data.scaled_normal.shape
         wp.launch(shell_kernels.measure_triangles, shape, inputs=[x, tissue], outputs=[data], device=self.device)
+
+
+class GasShell:
+    """Triangles and hinges with gas inside, measured once a step."""
+
+    size = Shell.size
+    sweep_color, residual = sweep_kernels(
+        gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_elements, gas_shell_kernels.add_gas_forces
+    )
+    measure_bands = band_kernel(gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_band_triangle)
+
+    def __init__(
+        self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str, gas: GasLoads
+    ):
+        """Build the shell, see :class:`Shell`; ``gas`` is read in every step."""
+        self._shell = Shell(geometries, vertices, patient, device)
+        self.corners = self._shell.corners
+        self.data = gas_shell_kernels.GasShellElements()
+        self.data.shell, self.data.gas = self._shell.data, gas
+
+    def measure(self, x: wp.array, tissue: Tissue) -> None:
+        """Measure the shell, and add the gas to its corner forces."""
+        shell = self._shell
+        shell.measure(x, tissue)
+        shape = shell.data.scaled_normal.shape
+        wp.launch(gas_shell_kernels.add_gas, shape, inputs=[x, self.data], device=shell.device)

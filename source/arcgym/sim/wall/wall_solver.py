@@ -19,6 +19,7 @@ from arcgym.sim.wall import coarse_kernels, wall_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
+from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
@@ -69,6 +70,7 @@ class WallSolver:
         patient: wp.array,
         contact_slots: int,
         device: str,
+        gas: LumenGas | None = None,
     ):
         """Allocate the solver.
 
@@ -80,6 +82,7 @@ class WallSolver:
             patient: Patient of each world, shape (W,), int32, read in every step.
             contact_slots: Number of contact records of all worlds.
             device: Warp device.
+            gas: Gas in the lumen, if there is any; advanced in every step.
         """
         num_envs, first = len(patient), walls[0]
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
@@ -87,7 +90,8 @@ class WallSolver:
         mobile = np.any([wall.mobile for wall in walls], axis=0)
         self.moves = bool(mobile.any())
         self.nodes = wall_nodes(walls, patient, device)
-        self.elements = wall_elements(walls, patient, device)
+        self.gas = gas
+        self.elements = wall_elements(walls, patient, device, None if gas is None else gas.loads)
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
@@ -145,12 +149,16 @@ class WallSolver:
             v: Wall velocities [m/s], shape (V, W), vec3.
         """
         if not self.moves:
+            if self.gas is not None:
+                self.gas.advance(x, self.tissue.rigid, moves=False)
             return
         decay = math.exp(-self.cfg.drag * self.dt)
         inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
         shape, outputs = (self.vertex_count, self.num_envs), [self.x_prev, self.inertial]
         self._launch(wall_kernels.predict, shape, inputs, outputs)
         self.self_contact.measure(x)
+        if self.gas is not None:
+            self.gas.advance(self.inertial, self.tissue.rigid, moves=True)
         self._measure(self.inertial)
         self._prepared = True
 
