@@ -136,12 +136,13 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         return infos
 
     def _start_from(self, path: str) -> None:
-        """Take the policy, and nothing else, from another run's checkpoint."""
+        """Take the policy, and the critics if ``init_critic`` says so, from another run's checkpoint."""
+        with_critic = bool(self.cfg.get("init_critic"))
         try:
-            self.alg.load(read_checkpoint(path, self.device), {"actor": True}, strict=True)
+            self.alg.load(read_checkpoint(path, self.device), {"actor": True, "critic": with_critic}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error
-        print(f"policy: starts from {path}")
+        print(f"policy{' and critics' if with_critic else ''}: from {path}")
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():

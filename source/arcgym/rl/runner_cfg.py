@@ -329,6 +329,10 @@ class RslRlOnPolicyRunnerCfg:
     init_policy: str | None = None
     """Checkpoint whose policy a new run starts from, such as one of behaviour cloning; None starts from scratch."""
 
+    init_critic: bool = False
+    """Whether ``init_policy`` brings its critics too. Set it where that run had the same reward: a critic that starts
+    afresh moves a good policy at random in the first updates."""
+
     resume: bool = False
     """Whether to go on from ``load_run``/``load_checkpoint``; set by ``--resume``."""
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import fcntl
 import re
-import subprocess
 import time
 import traceback
 from collections.abc import Iterator
@@ -19,6 +18,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from arcgym.rl.studies.cell import LOG_FILE, Cell
 from arcgym.rl.studies.grid import make_cell
+from arcgym.rl.studies.job_signals import start_child
 from arcgym.rl.studies.stopping import was_stopped
 
 TAIL = 15
@@ -77,8 +77,7 @@ def _wait(cell: Cell, device: str | None, stop_at: float | None) -> tuple[int, b
     stopped, reported = False, time.monotonic()
     with (cell.folder / LOG_FILE).open("a") as log:
         print("$", *command[1:], file=log, flush=True)
-        process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
-        try:
+        with start_child(command, log) as process:
             while process.poll() is None:
                 time.sleep(POLL_S)
                 if not stopped and _is_time(stop_at):
@@ -87,8 +86,6 @@ def _wait(cell: Cell, device: str | None, stop_at: float | None) -> tuple[int, b
                 if time.monotonic() - reported > REPORT_S:
                     reported = time.monotonic()
                     print(f"{cell.name}: {describe_progress(cell)}", flush=True)
-        finally:
-            process.terminate()
     return process.returncode, stopped
 
 

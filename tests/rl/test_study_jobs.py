@@ -1,0 +1,63 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a cell's process does when a cluster is about to end its job. The processes here train nothing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+
+import pytest
+
+from arcgym.rl.studies.job_signals import start_child
+
+CHILD = """
+import pathlib, signal, sys, time
+def leave(number, frame):
+    pathlib.Path(sys.argv[1]).write_text("checkpoint")
+    sys.exit(143)
+signal.signal(signal.SIGTERM, leave)
+print("ready", flush=True)
+time.sleep(60)
+"""
+
+
+def wait_for(path, text):
+    while text not in path.read_text():
+        time.sleep(0.02)
+
+
+def test_the_checkpoint_comes_before_the_queue(tmp_path):
+    """Slurm sends the signal to both processes; the handler, which would end all, finds the checkpoint."""
+    checkpoint, printed, found = tmp_path / "model.pt", tmp_path / "log.txt", []
+
+    def queue_again(number, frame):
+        found.append(checkpoint.is_file())
+        sys.exit(-1)
+
+    previous = signal.signal(signal.SIGUSR2, queue_again)
+    try:
+        with (
+            pytest.raises(SystemExit),
+            printed.open("w") as log,
+            start_child([sys.executable, "-c", CHILD, str(checkpoint)], log) as process,
+        ):
+            wait_for(printed, "ready")
+            process.send_signal(signal.SIGUSR2)
+            threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGUSR2)).start()
+            process.wait(20)
+            time.sleep(1.0)
+        assert found == [True]
+        assert process.returncode == 143
+        assert signal.getsignal(signal.SIGUSR2) is queue_again
+    finally:
+        signal.signal(signal.SIGUSR2, previous)
+
+
+def test_without_a_handler_nothing_is_touched(tmp_path):
+    with (tmp_path / "log.txt").open("w") as log, start_child([sys.executable, "-c", "pass"], log) as process:
+        assert signal.getsignal(signal.SIGUSR2) is signal.SIG_DFL
+        assert process.wait(20) == 0
