@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +17,11 @@ from arcgym.assets.endoscope_spec import EndoscopeSpec, magnetic_spec, proximal_
 from arcgym.benchmarks.fidelity.beams import clamped_pinned_load, elastica_deflection, small_deflection
 from arcgym.benchmarks.fidelity.brute_force import sample_contacts, segment_triangle
 from arcgym.benchmarks.fidelity.checks.commands import Watched
-from arcgym.benchmarks.fidelity.checks.sensitivity import standard_error
+from arcgym.benchmarks.fidelity.checks.sensitivity import is_timed, sensitivity, standard_error
 from arcgym.benchmarks.fidelity.indenter import Curve, join_curves
 from arcgym.benchmarks.fidelity.insertions import (
+    METRICS,
+    SCENES,
     Insertion,
     cut,
     figures_of,
@@ -156,7 +160,7 @@ def test_an_insertion_is_cut_where_the_tip_first_comes_through() -> None:
 
 def test_figures_of_the_whole_way_have_names_of_their_own() -> None:
     samples = np.array([[1.0, 2.0, 3.0, -0.01], [1.0, 6.0, 5.0, 0.001], [1.0, 7.0, 5.0, 0.3]])
-    figures = figures_to_ends(Insertion("proximal", "in_situ"), samples)
+    figures = figures_to_ends(Insertion("proximal", "in_situ", far=True), samples)
     assert figures["peak_window_force"] == 6.0 and figures["far_peak_window_force"] == 7.0
     assert "far_time" not in figures_to_ends(Insertion("proximal", "paper"), samples)
 
@@ -174,6 +178,25 @@ def test_standard_error_of_a_change_is_that_of_the_pairs() -> None:
     old, new = ([{"mean_base_force": f} for f in of] for of in ((1.0, 2.0, 3.0), (1.1, 2.3, 3.2)))
     # changes of 0.1, 0.3 and 0.2 N have a standard deviation of 0.1 N; the mean before is 2 N
     assert standard_error(old, new, "mean_base_force") == pytest.approx(0.1 / 3**0.5 / 2.0)
+
+
+def test_a_time_is_judged_from_a_tenth_of_the_insertion_on() -> None:
+    assert is_timed({"time_above_5N": 2.0, "time": 20.0}) and not is_timed({"time_above_5N": 1.9, "time": 20.0})
+
+
+def test_rows_of_a_setting_are_the_largest_changes_of_what_is_judged(tmp_path: Path) -> None:
+    # Of 20 s, 5 s are above 5 N with a friction of 0.2, 1 s else: twice that is not judged, 5.2 s for 5 s are.
+    run = Run("cpu", tmp_path)
+    short, long = (dict.fromkeys(METRICS, 1.0) | {"time": 20.0, "time_above_5N": above} for above in (1.0, 5.0))
+    for case in SCENES:
+        for number in numbers_on(run.device, case.robot):
+            before = long if case.friction else short
+            after = {"time_above_5N": 5.2, "p95_tip_force": 0.93} if case.friction else {"time_above_5N": 2.0}
+            run.shared["insertion", case, number] = before
+            run.shared["insertion", replace(case, setting="noise"), number] = before | after
+    forces, time = sensitivity(run, "noise")
+    assert forces.error == pytest.approx(-0.07) and "p95_tip_force of proximal, in_situ, friction 0.2" in forces.note
+    assert time.error == pytest.approx(0.04) and time.reference == pytest.approx(5.0)
 
 
 def test_curves_of_places_that_end_at_other_loads_are_joined() -> None:

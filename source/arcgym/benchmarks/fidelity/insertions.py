@@ -34,9 +34,8 @@ CONTROL_STEP = 0.1
 """Time between two decisions of the expert, over which forces are averaged [s]."""
 END = ("sigmoid", 0.05)
 """Segment of the colon, and the way beyond its end at which an insertion ends [m]: its last bend is behind the tip."""
-FAR_ENDS = {("proximal", "in_situ"): ("splenic", 0.0)}
-"""Robots and tissues whose insertions go on, and to where: 5 N is passed for a second only before :data:`END`. Figures
-of the whole way have names with ``far_``; no row judges them."""
+FAR_END = ("splenic", 0.0)
+"""The same of insertions that go on. Figures of the whole way have names with ``far_``; no row judges them."""
 FAR = "far_"
 """Begin of their names."""
 MARGIN = 0.1
@@ -85,6 +84,27 @@ class Insertion:
     """One of :data:`SETTINGS`; empty for the shipped ones."""
     colon: str | None = None
     """Stage of the colon; colon 1 if None."""
+    far: bool = False
+    """Whether it goes on to :data:`FAR_END`."""
+    friction: float | None = None
+    """Coulomb coefficient; the shipped one if None."""
+
+    @property
+    def scene(self) -> str:
+        """Name of what is compared with the same scene under other settings."""
+        colon = [] if self.colon is None else [Path(self.colon).parent.name]
+        friction = [] if self.friction is None else [f"friction {self.friction:g}"]
+        return ", ".join([self.robot, self.material, *colon, *friction])
+
+
+SCENES = (
+    Insertion("proximal", "paper"),
+    Insertion("proximal", "in_situ", far=True),
+    Insertion("proximal", "in_situ", friction=0.2),
+    Insertion("magnetic", "paper"),
+    Insertion("magnetic", "in_situ"),
+)
+"""Insertions with the shipped settings. The third is there for its time above 5 N, see docs/what_a_force_means.md."""
 
 
 def numbers_on(device: str, robot: str) -> range:
@@ -177,7 +197,7 @@ def cut(series: np.ndarray, end: float = 0.0) -> np.ndarray:
 def figures_to_ends(case: Insertion, samples: np.ndarray) -> dict[str, float]:
     """Return the figures of an insertion to its end, and of the whole way if it goes on."""
     figures = figures_of(cut(samples))
-    if (case.robot, case.material) in FAR_ENDS:
+    if case.far:
         figures |= {FAR + name: value for name, value in figures_of(samples).items()}
     return figures
 
@@ -220,7 +240,7 @@ def read_forces(sim: Any, robot: str) -> np.ndarray:
 
 def ends_of(case: Insertion, colon: Any) -> tuple[float, float]:
     """Return the tip's arc lengths at the end of an insertion in a colon, and at the end of the whole way [m]."""
-    ends = (END, FAR_ENDS.get((case.robot, case.material), END))
+    ends = (END, FAR_END if case.far else END)
     end, last = (float(colon.segment_bounds()[segment][1]) + past for segment, past in ends)
     return end, last
 
@@ -251,8 +271,9 @@ def build_scene(case: Insertion, device: str, folder: Path, num_envs: int = 1) -
         sim.wall = replace(sim.wall, iterations=FINE_SWEEPS)
     sim.dt *= 0.5 if setting == "dt_half" else 1.0
     factor = {"contact_double": 2.0, "contact_half": 0.5}.get(setting, 1.0)
+    friction = sim.contact.friction if case.friction is None else case.friction
     stiffness, share = factor * sim.contact.stiffness, factor * sim.contact.tissue_share
-    sim.contact = replace(sim.contact, stiffness=stiffness, tissue_share=share)
+    sim.contact = replace(sim.contact, stiffness=stiffness, tissue_share=share, friction=friction)
     if setting in ("links_half", "wall_half"):
         sim.contact = replace(sim.contact, capacity=2 * sim.contact.capacity, patch_capacity=48)
     scene = InteractiveSceneCfg(num_envs=num_envs, colon=colon, endoscope=replace(endoscope, usd_path=str(path)))

@@ -64,7 +64,7 @@ def insert_and_compare(run: Run, colon: str | None) -> tuple[np.ndarray, int, fl
         smallest distance of five rings over that at rest; and whether it ended early because a link went through the
         wall.
     """
-    scene = build_scene(Insertion("proximal", "in_situ", colon=colon), run.device, run.folder)
+    scene = build_scene(Insertion("proximal", "in_situ", colon=colon, far=True), run.device, run.folder)
     sim = scene.sim
     rest = ring_spans(sim)
     samples, spans, pierced = list[tuple[int, int]](), [1.0], False
