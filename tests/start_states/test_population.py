@@ -41,11 +41,25 @@ def test_those_behind_go_on_from_the_foremost_of_their_patient(tmp_path: Path) -
         scene.sim.step(48)
     before, speed = scene["endoscope"].data.joint_pos.clone(), expert.speed.clone()
     arc = scene["endoscope"].data.tip_arc_length.clone()
-    moved, sources = population.exchange(arc)
+    moved, sources = population.exchange(arc, 10.0 * arc)
     assert sorted(zip(moved.tolist(), sources.tolist(), strict=True)) == [(0, 6), (1, 7), (2, 6), (3, 7)]
     now = scene["endoscope"].data.joint_pos
     assert torch.equal(now[:4], before[[6, 7, 6, 7]]) and torch.equal(now[4:], before[4:])
     assert torch.equal(scene["endoscope"].data.tip_arc_length[:4], arc[[6, 7, 6, 7]])
+    assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[:4], speed[:4]).any()
+
+
+def test_those_hardly_behind_keep_their_states_and_get_new_settings(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, 8)
+    expert = PullExpert(scene)
+    population = Population(scene, expert)
+    before, speed = scene["endoscope"].data.joint_pos.clone(), expert.speed.clone()
+    arc = torch.tensor([0.50, 0.50, 0.40, 0.50, 0.51, 0.51, 0.52, 0.52])
+    score = arc - torch.tensor([0.10, 0.10, 0.10, 0.10, 0.0, 0.0, 0.0, 0.0])
+    moved, sources = population.exchange(score, arc)  # world 2 alone is 12 cm behind; the others have more in loops
+    assert (moved.tolist(), sources.tolist()) == ([2], [6])
+    now = scene["endoscope"].data.joint_pos
+    assert torch.equal(now[[0, 1, 3]], before[[0, 1, 3]])
     assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[:4], speed[:4]).any()
 
 

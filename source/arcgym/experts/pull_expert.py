@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar
 
 import torch
@@ -13,6 +14,9 @@ from arcgym.experts.lumen_way import LumenWay, along
 from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.math import norm, normalize, quat_apply_inverse, row_sum
+
+ROLL_PERIOD = 20
+"""Control steps of one roll of the tip to and fro."""
 
 
 class PullExpert(ExpertBase):
@@ -26,6 +30,7 @@ class PullExpert(ExpertBase):
         "axis": (0.0, 0.8),
         "slide": (0.0, 1.0),
         "back": (0.0, 0.8),
+        "roll": (0.0, 12.0),
     }
 
     def __init__(
@@ -38,6 +43,7 @@ class PullExpert(ExpertBase):
         axis: float = 0.5,
         slide: float = 1.0,
         back: float = 0.5,
+        roll: float = 0.0,
     ):
         """Keep the settings; each may be one number or one a world.
 
@@ -51,13 +57,16 @@ class PullExpert(ExpertBase):
             axis: Share of the tip's own axis in the direction of the pull: a long head passes a bend lengthwise.
             slide: How much of the pull into what the tip touches is turned along it.
             back: How much the tip moves back along its axis while its front stands against a wall.
+            roll: Amplitude of rolling the tip to and fro [rad/s]: a tether that rolls has less friction along its way.
         """
         super().__init__(scene, speed)
         self.look, self.gaze, self.turn_gain = self.each(look), self.each(gaze), self.each(turn_gain)
         self.axis, self.slide, self.back = self.each(axis), self.each(slide), self.each(back)
+        self.roll = self.each(roll)
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=20, first=6, longest=40)
         self._side = torch.zeros(scene.num_envs, 3, device=scene.device)
+        self._steps = torch.zeros(scene.num_envs, device=scene.device)
         self._forward = torch.zeros(scene.num_envs, 3, device=scene.device)
         self._forward[:, 2] = 1.0
 
@@ -77,15 +86,19 @@ class PullExpert(ExpertBase):
         gaze = normalize(gaze + 0.5 * self.disturbance)
         turn = torch.linalg.cross(self._forward, gaze)
         turn = torch.where(gaze[:, 2:] < 0.0, normalize(turn), turn)
-        self.scene["endoscope"].set_tip_velocity_command(velocity, self.turn_gain[:, None] * turn)
+        turn = self.turn_gain[:, None] * turn
+        self._steps += 1.0
+        turn[:, 2] += self.roll * (2.0 * math.pi / ROLL_PERIOD * self._steps).sin()
+        self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
 
     def reset(self, env_ids: torch.Tensor) -> None:
         """Forget how far some worlds came."""
         self._retreat.reset(env_ids)
+        self._steps[env_ids] = 0.0
 
     def memory(self) -> list[torch.Tensor]:
         """Return how far each world came, and to which side it backs off."""
-        return [*self._retreat.memory, self._side]
+        return [*self._retreat.memory, self._side, self._steps]
 
     def _seen(self, way: torch.Tensor, length: torch.Tensor) -> torch.Tensor:
         """Return the unit vector from the tip to a point of the way, in the tip's frame, shape (N, 3)."""

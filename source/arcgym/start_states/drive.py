@@ -129,7 +129,7 @@ class Drive:
                 self._follow(route, arc, row * len(self.routes) + patient)
         if self.population.each > 1 and self._count % self.expert.PERIOD == 0:
             merit = torch.where(arcs == OUT_OF_PLACE, OUT_OF_PLACE, self.expert.merit())
-            moved, sources = self.population.exchange(merit)
+            moved, sources = self.population.exchange(merit, arcs)
             self._peaks.take_over(moved, sources)
             self._leaps.take_over(moved, sources)
 

@@ -16,7 +16,9 @@ DISTURBANCE = 0.25
 FRONT = 4
 """One of so many worlds of a patient is followed."""
 BEHIND = 2
-"""One of so many worlds of a patient is moved."""
+"""One of so many worlds of a patient is moved, if it is behind."""
+NEAR = 0.03
+"""Arc length by which a world may be behind the foremost and still go its own way, with new settings [m]."""
 
 
 class Population:
@@ -52,20 +54,29 @@ class Population:
         drift = MEMORY * self.expert.disturbance + DISTURBANCE * noise
         self.expert.disturbance.copy_(torch.where(self._plain[:, None], 0.0, drift))
 
-    def exchange(self, score: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    def exchange(self, score: torch.Tensor, arc: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         """Let the rear half of each patient's worlds take over the states of the foremost, with new settings.
 
+        Those whose tips are hardly behind keep their states: what gets a tip on may begin with a step back, or with
+        scope that goes into loops.
+
         Args:
-            score: Higher is farther, shape (N,).
+            score: Higher is better, shape (N,).
+            arc: Arc lengths of the tips [m], shape (N,).
 
         Returns:
             The worlds that were moved and those whose states they took, int64, shape (n,).
         """
-        order = score.view(self.each, self.patients).argsort(dim=0, descending=True)
+        of_patient = score.view(self.each, self.patients)
+        order = of_patient.argsort(dim=0, descending=True)
         front, rear = order[: max(1, self.each // FRONT)], order[self.each - self.each // BEHIND :]
         pick = torch.randint(len(front), rear.shape, generator=self.random, device=self.scene.device)
         number = torch.arange(self.patients, device=self.scene.device)
         moved, sources = ((rows * self.patients + number).flatten() for rows in (rear, front.gather(0, pick)))
+        farthest = arc.view(self.each, self.patients).amax(dim=0)
+        behind = arc[moved] < farthest[moved % self.patients] - NEAR
+        self._renew(moved[~behind])
+        moved, sources = moved[behind], sources[behind]
         if len(moved):
             self._move(moved, sources)
         return moved, sources
@@ -75,6 +86,10 @@ class Population:
         sim.write_state({name: array[sources] for name, array in sim.world_arrays().items()}, moved)
         sim.forward()
         self.expert.take_over(moved, sources)
-        self.expert.vary(moved, self.random)
-        self.expert.disturbance[moved] = 0.0
-        self._plain[moved] = False
+        self._renew(moved)
+
+    def _renew(self, worlds: torch.Tensor) -> None:
+        """Give worlds new settings."""
+        self.expert.vary(worlds, self.random)
+        self.expert.disturbance[worlds] = 0.0
+        self._plain[worlds] = False
