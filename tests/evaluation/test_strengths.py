@@ -32,6 +32,13 @@ def test_each_kind_is_a_line_with_what_each_strength_changes_in_the_same_trials(
     assert report(rows).endswith(f"| {' | '.join(table.lines[0])} |\n")
 
 
+def test_kinds_are_in_the_order_of_the_suite_and_a_checkpoint_is_named_in_short() -> None:
+    rows = [trial("soft_1", 0, 0.5), trial("dim_2", 0, 0.5), trial("fluid_3", 0, 0.5), trial("none", 0, 0.5)]
+    (table,) = strengths_tables([{**row, "agent": "/home/me/runs/a/model_9.pt"} for row in rows])
+    assert [line[0] for line in table.lines] == ["fluid", "dim", "soft"]
+    assert table.title.startswith("ARC-LeftColon-Magnetic, a/model_9.pt: success 0 (0–79) % in 1 trials")
+
+
 def test_a_trial_without_its_unspoiled_twin_does_not_count_as_a_change() -> None:
     (table,) = strengths_tables([trial("none", 0, 0.5), trial("soft_2", 0, 0.25), trial("soft_2", 7, 1.0)])
     assert table.lines[0][-3:] == ["", "-0.25 (-0.25 to -0.25)", ""]

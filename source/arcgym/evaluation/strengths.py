@@ -7,12 +7,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from arcgym.evaluation.statistics import paired_difference, training_runs, wilson
-from arcgym.evaluation.suites import split_task
+from arcgym.evaluation.suites import read_suites, split_task
 
 STRENGTHS = ("1", "2", "3")
 UNSPOILED = "none"
@@ -26,7 +27,7 @@ class StrengthsTable:
     """Success and change of the mean progress of one agent in one task, by kind and strength."""
 
     title: str
-    """Task and agent, and the success without trouble."""
+    """Task and agent, a checkpoint by its last two names, and the success without trouble."""
 
     head: list[str]
     """Headings of the columns."""
@@ -60,13 +61,20 @@ def strengths_tables(rows: Sequence[dict[str, Any]]) -> list[StrengthsTable]:
 
 def _table(task: str, agent: str, of: Cells) -> StrengthsTable:
     plain = {row["trial"]: row for row in of.get((UNSPOILED, ""), [])}
-    title = f"{task}, {agent}: success {_success(list(plain.values()))} % in {len(plain)} trials without trouble"
+    who = "/".join(Path(agent).parts[-2:])
+    title = f"{task}, {who}: success {_success(list(plain.values()))} % in {len(plain)} trials without trouble"
     columns = [f"success [%], {s}" for s in STRENGTHS] + [f"progress, {s} less none" for s in STRENGTHS]
     lines = []
-    for kind in dict.fromkeys(kind for kind, _ in of if kind != UNSPOILED):
+    for kind in _ordered({kind for kind, _ in of} - {UNSPOILED}):
         found = [of.get((kind, strength), []) for strength in STRENGTHS]
         lines.append([kind, *map(_success, found), *(_change(some, plain) for some in found)])
     return StrengthsTable(title, ["kind", *columns], lines)
+
+
+def _ordered(kinds: set[str]) -> list[str]:
+    """Return kinds in the order of the suite, whatever the order in which parts were merged."""
+    order = [variant.rpartition("_")[0] for variant in read_suites()["robustness"].variants]
+    return sorted(kinds, key=lambda kind: (order.index(kind) if kind in order else len(order), kind))
 
 
 def _success(rows: Sequence[dict[str, Any]]) -> str:
