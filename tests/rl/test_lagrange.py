@@ -8,7 +8,7 @@ import torch
 
 from arcgym.rl.cost_advantages import discounted_advantages
 from arcgym.rl.episode_costs import EpisodeCosts
-from arcgym.rl.lagrange import make_multiplier
+from arcgym.rl.lagrange import PidMultiplier, make_multiplier
 
 
 def test_ascent_moves_by_the_violation():
@@ -38,6 +38,16 @@ def test_pid_by_hand():
     assert multiplier.value == pytest.approx(2.0 + 0.2 + 30.0)
     multiplier.update(5.0)
     assert multiplier.value == pytest.approx(4.0 + 0.6 + 20.0)
+
+
+def test_a_long_violation_is_not_made_up_for():
+    """Ten violations of 1 would add up to 10; held at 2, one cost of 2 below the limit takes all of it."""
+    multiplier = PidMultiplier(limit=2.0, init=0.0, kp=0.0, ki=1.0, kd=0.0, maximum=2.0)
+    for _ in range(10):
+        multiplier.update(3.0)
+    assert multiplier.value == 2.0
+    multiplier.update(0.0)
+    assert multiplier.value == 0.0
 
 
 @pytest.mark.parametrize("kind", ["ascent", "pid"])

@@ -224,3 +224,8 @@ def test_models_that_share_images_agree_on_their_size():
     groups = {"actor": ["policy"], "critic": ["policy"]}
     with pytest.raises(UsageError, match="shrink is 2 and agent.critic.shrink 1"):
         make_runner(actor=actor, critic=critic, obs_groups=groups)
+
+
+def test_a_policy_cannot_wait_for_its_critics():
+    with pytest.raises(UsageError, match="critic_first is 3 for SAC, expected 0"):
+        make_runner(critic_first=3)

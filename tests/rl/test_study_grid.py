@@ -138,7 +138,7 @@ def test_an_algorithm_may_be_another_one_with_values_given_whole():
 
 
 def test_the_limits_study_fits_its_task():
-    """Limits and controls reach the configurations: 0.05, 0.2 and 1 s, a price of 1, and an early end after 0.2 s."""
+    """Limits and controls reach the configurations: 0.1, 0.3 and 1 s, a price of 1, and an early end after 0.3 s."""
     limits, prices, ends = [], [], []
     for cell in all_cells(read_study(find_study("limits", SHIPPED)), FOLDER):
         env_cfg = load_cfg_from_registry(cell.task, "env_cfg_entry_point")
@@ -148,9 +148,9 @@ def test_the_limits_study_fits_its_task():
         limits.append(getattr(algorithm, "limits", {}).get("tip_force"))
         prices.append(algorithm.multiplier.init if hasattr(algorithm, "multiplier") else None)
         ends.append(env_cfg.terminations.cost_limit and env_cfg.terminations.cost_limit.params["limit"])
-    assert limits == [None, 0.05, 0.2, 1.0, 0.0, None, None]
+    assert limits == [None, 0.1, 0.3, 1.0, 0.0, None, None]
     assert prices == [None, 0.001, 0.001, 0.001, 1.0, None, None]
-    assert ends == [None, None, None, None, None, 0.2, None]
+    assert ends == [None, None, None, None, None, 0.3, None]
 
 
 @pytest.mark.parametrize(

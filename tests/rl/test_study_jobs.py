@@ -12,7 +12,9 @@ import time
 
 import pytest
 
+from arcgym.rl.studies.cell import Cell
 from arcgym.rl.studies.job_signals import start_child
+from arcgym.rl.studies.run_cell import _run
 
 CHILD = """
 import pathlib, signal, sys, time
@@ -61,3 +63,29 @@ def test_without_a_handler_nothing_is_touched(tmp_path):
     with (tmp_path / "log.txt").open("w") as log, start_child([sys.executable, "-c", "pass"], log) as process:
         assert signal.getsignal(signal.SIGUSR2) is signal.SIG_DFL
         assert process.wait(20) == 0
+
+
+def test_a_job_that_may_not_be_queued_again_is_no_failure(tmp_path, monkeypatch):
+    """As submitit says after the last time-out: the cell goes on with the next call."""
+
+    def refuse(number, frame):
+        raise RuntimeError("timed-out too many times")
+
+    cell = Cell(tmp_path, "ARC-Rectum-Magnetic", "ppo", 1)
+    monkeypatch.setattr(Cell, "command", lambda self, device: [sys.executable, "-c", CHILD, str(tmp_path / "model.pt")])
+    cell.folder.mkdir()
+    log = cell.folder / "log.txt"
+    log.touch()
+
+    def signal_when_ready():
+        wait_for(log, "ready\n")
+        os.kill(os.getpid(), signal.SIGUSR2)
+
+    previous = signal.signal(signal.SIGUSR2, refuse)
+    try:
+        threading.Thread(target=signal_when_ready, daemon=True).start()
+        assert _run(cell, None, None) == "stopped"
+    finally:
+        signal.signal(signal.SIGUSR2, previous)
+    assert cell.read_state()["state"] == "stopped"
+    assert (tmp_path / "model.pt").is_file()

@@ -56,9 +56,10 @@ class PidMultiplier:
     With the violation ``e = cost - limit`` and running means ``m(x) <- smoothing m(x) + (1 - smoothing) x``::
 
         value = clamp(kp m(e) + I + kd max(0, m(cost) - m(cost) of delay updates ago), 0, maximum)
-        I     = max(0, I + ki e)
+        I     = clamp(I + ki e, 0, maximum)
 
     The derivative acts on rising cost only. The proportional part damps the swings of plain ascent, which integrates.
+    The integral has the bounds of the value, so that it has nothing to make up for when the cost falls.
     """
 
     def __init__(
@@ -83,7 +84,7 @@ class PidMultiplier:
     def update(self, cost: float) -> None:
         """Take in the mean episode cost."""
         error, old = cost - self.limit, self.smoothing
-        self._integral = max(0.0, self._integral + self.ki * error)
+        self._integral = _clamp(self._integral + self.ki * error, self.maximum)
         self._error = old * self._error + (1.0 - old) * error
         self._cost = old * self._cost + (1.0 - old) * cost
         rise = max(0.0, self._cost - self._past[0])

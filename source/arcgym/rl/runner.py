@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from rsl_rl.algorithms import PPO
 from rsl_rl.env import VecEnv
 from rsl_rl.runners import OnPolicyRunner as RslRlOnPolicyRunner
 from rsl_rl.utils.log_writer import LogWriter
@@ -47,10 +48,16 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 "agent.final_learning_rate is set and agent.algorithm.schedule is 'adaptive', expected 'fixed': "
                 "the two would set the learning rate in turns."
             )
+        if train_cfg.get("critic_first") and not isinstance(self.alg, PPO):
+            raise UsageError(
+                f"agent.critic_first is {train_cfg['critic_first']} for {type(self.alg).__name__}, expected 0: PPO "
+                "and its relatives alone can leave their policy as it is."
+            )
         self.completed_iterations = 0
         self.clock = RunClock(train_cfg.get("max_minutes"))
         self.best_reward = float("-inf")
         self.last_checkpoint: Path | None = None
+        self._policy_weights: list[torch.nn.Parameter] = []
         if not train_cfg.get("store_git_diff", False):
             self.logger.git_status_repos.clear()
 
@@ -136,17 +143,17 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         return infos
 
     def _start_from(self, path: str) -> None:
-        """Take the policy, and the critics if ``init_critic`` says so, from another run's checkpoint."""
-        with_critic = bool(self.cfg.get("init_critic"))
+        """Take the policy, and nothing else, from another run's checkpoint."""
         try:
-            self.alg.load(read_checkpoint(path, self.device), {"actor": True, "critic": with_critic}, strict=True)
+            self.alg.load(read_checkpoint(path, self.device), {"actor": True}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error
-        print(f"policy{' and critics' if with_critic else ''}: from {path}")
+        print(f"policy: starts from {path}")
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():
             self._decay()
+            self._hold_policy()
             losses: dict[str, float] = {}
             try:
                 losses = update()
@@ -163,6 +170,16 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             start = self.cfg["algorithm"]["learning_rate"]
             done = self.completed_iterations / max(self.cfg["max_iterations"] - 1, 1)
             set_learning_rate(self.alg, linear_rate(start, end, max(done, self.clock.fraction)))
+
+    def _hold_policy(self) -> None:
+        """Let the critics alone learn in the first ``critic_first`` updates of a policy that another run has learnt."""
+        if not self.cfg.get("init_policy") or not self.cfg.get("critic_first"):
+            return
+        self._policy_weights = self._policy_weights or [
+            w for w in self.alg.get_policy().parameters() if w.requires_grad
+        ]
+        for weight in self._policy_weights:
+            weight.requires_grad_(self.completed_iterations >= self.cfg["critic_first"])
 
     def _configure_multi_gpu(self) -> None:
         """Join the processes of ``torchrun``; rsl_rl knows GPUs alone."""

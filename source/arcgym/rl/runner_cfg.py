@@ -329,9 +329,9 @@ class RslRlOnPolicyRunnerCfg:
     init_policy: str | None = None
     """Checkpoint whose policy a new run starts from, such as one of behaviour cloning; None starts from scratch."""
 
-    init_critic: bool = False
-    """Whether ``init_policy`` brings its critics too. Set it where that run had the same reward: a critic that starts
-    afresh moves a good policy at random in the first updates."""
+    critic_first: int = 0
+    """Updates at the start of a run with ``init_policy`` in which the critics alone learn. A good policy gets worse
+    first where its critic knows nothing; ten updates show the critic what the policy earns. PPO and its relatives."""
 
     resume: bool = False
     """Whether to go on from ``load_run``/``load_checkpoint``; set by ``--resume``."""
@@ -353,6 +353,7 @@ class RslRlOnPolicyRunnerCfg:
         require(self, "logger", ("tensorboard", *LOG_WRITERS))
         require_positive(self, "clip_actions", "max_minutes")
         require_non_negative(self, "final_learning_rate")
+        require_at_least(self, 0, "critic_first")
         for name in ("experiment_name", "run_name"):
             value = getattr(self, name)
             if "/" in value or value.startswith("."):

@@ -21,6 +21,10 @@ CHECKPOINT_S = 60.0
 """Time that a cell's process has to leave its checkpoint; half of what submitit asks Slurm for."""
 
 
+class JobEndedError(Exception):
+    """The job is over and will not be put into the queue again; what it left goes on with the next call."""
+
+
 @contextmanager
 def start_child(command: Sequence[str], log: Any) -> Iterator[subprocess.Popen[bytes]]:
     """Run a command inside the block and end it after the block; a job's signal ends it before anything else.
@@ -31,6 +35,9 @@ def start_child(command: Sequence[str], log: Any) -> Iterator[subprocess.Popen[b
     Args:
         command: The program and its arguments.
         log: File that takes all it prints.
+
+    Raises:
+        JobEndedError: The handler has raised an error, as submitit's does where a job may not be queued again.
     """
     handlers = _handlers()
     for number in handlers:
@@ -42,7 +49,10 @@ def start_child(command: Sequence[str], log: Any) -> Iterator[subprocess.Popen[b
 
     def end_first(number: int, frame: FrameType | None) -> None:
         end(process)
-        handlers[number](number, frame)
+        try:
+            handlers[number](number, frame)
+        except Exception as error:
+            raise JobEndedError(str(error)) from error
 
     _install(dict.fromkeys(handlers, end_first))
     try:

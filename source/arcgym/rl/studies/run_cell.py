@@ -18,7 +18,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from arcgym.rl.studies.cell import LOG_FILE, Cell
 from arcgym.rl.studies.grid import make_cell
-from arcgym.rl.studies.job_signals import start_child
+from arcgym.rl.studies.job_signals import JobEndedError, start_child
 from arcgym.rl.studies.stopping import was_stopped
 
 TAIL = 15
@@ -62,7 +62,11 @@ def _run(cell: Cell, device: str | None, stop_at: float | None) -> str:
     cell.write_state("running", seconds=seconds)
     print(f"{cell.name}: {'goes on' if cell.checkpoint() else 'starts'}", flush=True)
     start = time.monotonic()
-    status, stopped = _wait(cell, device, stop_at)
+    try:
+        status, stopped = _wait(cell, device, stop_at)
+    except JobEndedError as error:
+        print(f"{cell.name}: {error}", flush=True)
+        status, stopped = 0, True
     seconds += time.monotonic() - start
     state = "stopped" if stopped or status > 128 or status < 0 else "failed" if status else "finished"
     tail = {"status": status, "log": read_tail(cell)} if state == "failed" else {}
