@@ -263,7 +263,7 @@ def test_groups_of_observations_are_added_where_they_are_asked_for() -> None:
     cfg.resolve()
     assert set(vars(cfg.observations)) == {"policy", "critic", "force", "shape"}
     apply_overrides({"env": cfg}, ["env.extra_observations=[smell]"])
-    with pytest.raises(ValueError, match="extra_observations.*'smell'.*force, insertion, shape"):
+    with pytest.raises(ValueError, match="extra_observations.*'smell'.*force, insertion, pressure, shape"):
         validate(cfg)
 
 

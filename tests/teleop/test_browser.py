@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import time
 from collections.abc import Iterator
@@ -52,7 +53,7 @@ def page(make_session) -> Iterator[Any]:
     pytest.importorskip("viser")
     from arcgym.teleop.page import Page
 
-    session = make_session()
+    session = make_session(gas=True)  # as the command starts one
     session.needs_page, session.speed = True, 1.0
     page = Page(session, "127.0.0.1", 0, TOKEN, size=96)
     page.session = session
@@ -92,6 +93,30 @@ def click(browser: Any, text: str) -> None:
         const one = all.reverse().find((b) => (b.innerText || '').trim() === arguments[0]);
         if (!one) return false; one.scrollIntoView(); one.click(); return true;"""
     until(lambda: browser.execute_script(script, text), FAR)
+
+
+def hold(browser: Any, text: str) -> None:
+    """Press the button with a text and keep it pressed."""
+    press = """const b = [...document.querySelectorAll('button')].find((b) => b.innerText.trim() === arguments[0]);
+        if (!b) return false; b.dispatchEvent(new PointerEvent('pointerdown', {bubbles: true, button: 0}));
+        b.dispatchEvent(new MouseEvent('mousedown', {bubbles: true, button: 0})); return true;"""
+    until(lambda: browser.execute_script(press, text), FAR)
+
+
+def let_go(browser: Any, text: str) -> None:
+    """Release a button that is held."""
+    script = """for (const kind of ['pointerup', 'mouseup'])
+        window.dispatchEvent(new MouseEvent(kind, {bubbles: true, button: 0}));
+        const b = [...document.querySelectorAll('button')].find((b) => b.innerText.trim() === arguments[0]);
+        for (const kind of ['pointerup', 'mouseup', 'mouseleave'])
+        b.dispatchEvent(new MouseEvent(kind, {bubbles: true, button: 0}));"""
+    browser.execute_script(script, text)
+
+
+def pressure(browser: Any) -> float:
+    """Return the pressure that the page shows [mmHg]; NaN without."""
+    found = re.search(r"pressure in lumen\s+(-?[\d.]+) mmHg", numbers(browser))
+    return float(found.group(1)) if found else float("nan")
 
 
 def choose(browser: Any, label: str, option: str) -> None:
@@ -162,22 +187,37 @@ def test_keys_move_the_scope_while_they_are_held(tab, page) -> None:
 def test_held_buttons_and_a_gamepad_command(tab, page) -> None:
     session = page.session
     click(tab, "Buttons to hold")
-    press = """const b = [...document.querySelectorAll('button')].find((b) => b.innerText.trim() === '+ insertion');
-        if (!b) return false; b.dispatchEvent(new PointerEvent('pointerdown', {bubbles: true, button: 0}));
-        b.dispatchEvent(new MouseEvent('mousedown', {bubbles: true, button: 0})); return true;"""
-    until(lambda: tab.execute_script(press), FAR)
+    hold(tab, "+ insertion")
     until(lambda: session.hand.value()[0] > 0.5, FAR)
-    tab.execute_script("""for (const kind of ['pointerup', 'mouseup'])
-        window.dispatchEvent(new MouseEvent(kind, {bubbles: true, button: 0}));
-        const b = [...document.querySelectorAll('button')].find((b) => b.innerText.trim() === '+ insertion');
-        for (const kind of ['pointerup', 'mouseup', 'mouseleave'])
-        b.dispatchEvent(new MouseEvent(kind, {bubbles: true, button: 0}));""")
+    let_go(tab, "+ insertion")
     until(lambda: not session.hand.value().any(), FAR)
     pad = "({connected: true, axes: [0, -0.8, 0, 0], buttons: []})"
     tab.execute_script(f"navigator.getGamepads = () => [{pad}]")
     until(lambda: session.hand.value()[0] == pytest.approx(0.8), FAR)
     tab.execute_script("navigator.getGamepads = () => []")
     until(lambda: not session.hand.value().any(), FAR)
+
+
+def test_the_pressure_rises_while_insufflation_is_held_and_falls_by_suction(tab, page, tmp_path) -> None:
+    session = page.session
+    until(lambda: pressure(tab) == 20.0, FAR)  # that of the imaged shape
+    click(tab, "Go")
+    click(tab, "Buttons to hold")
+    hold(tab, "+ insufflation")
+    until(lambda: pressure(tab) > 21.0, FAR)
+    let_go(tab, "+ insufflation")
+    until(lambda: not session.hand.value().any(), FAR)
+    assert session.frame.lumen_pressure > 21.0 * 133.3
+    high = pressure(tab)
+    shot(tab, "insufflated", tmp_path)
+    key(tab, "keydown", "KeyB")
+    until(lambda: pressure(tab) < high - 3.0, FAR)
+    key(tab, "keyup", "KeyB")
+    session.pause(True).result()
+    path = session.save().result()
+    shown_then = Episode.load(path).data["wall/lumen_pressure"]
+    assert shown_then.max() > 21.0 * 133.3 and shown_then[-1] < (high - 2.9) * 133.3
+    assert main(["replay", str(path), "--device", "cpu"]) == 0
 
 
 def test_a_second_tab_and_a_lost_connection_lose_nothing(tab, page) -> None:
@@ -296,7 +336,7 @@ def test_another_robot_is_loaded_and_steered_by_its_own_keys(tab, page, tmp_path
     click(tab, "Load")
     until(lambda: session.status.choice.task == "ARC-Splenic-Capsule" and session.status.state == "paused", FAR)
     until(lambda: state(tab).get("axes") == list(session.hand.axes), FAR)
-    assert len(session.hand.axes) == 6  # of the tip
+    assert len(session.hand.axes) == 7  # of the tip, and gas
     click(tab, "Go")
     key(tab, "keydown", "KeyR")
     up = session.hand.axes.index("up")

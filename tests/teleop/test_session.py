@@ -13,8 +13,10 @@ from small_session import until
 from arcgym.cli.main import main
 from arcgym.managers import Episode, episode_paths, save_episode
 from arcgym.recordings.pieces import mark_steps
+from arcgym.teleop.readouts import readouts
 from arcgym.teleop.session import HAND, Session
 from arcgym.utils.errors import UsageError
+from arcgym.viewers.palette import FORCE_TIERS
 
 
 def drive(session: Session, steps: int, *command: float) -> None:
@@ -199,3 +201,31 @@ def test_another_robot_can_be_loaded_and_what_was_recorded_is_saved(session, mak
     assert other.hand.axes == session.hand.axes and len(episode_paths(other.out)) == 1
     drive(other, 2, 1.0, 0.0, 0.0, 0.0)
     assert other.status.steps == 2
+
+
+def test_gas_is_felt_undone_and_replayed(make_session, capsys) -> None:
+    session = make_session(gas=True)
+    assert session.hand.axes[-1] == "insufflation"
+    drive(session, 4, 0.0, 0.0, 0.0, 0.0, 1.0)
+    session.mark().result()
+    high = session.frame.lumen_pressure
+    assert high > 21.0 * 133.3
+    drive(session, 4, 0.5, 0.0, 0.0, 0.0, -1.0)
+    assert session.frame.lumen_pressure < high - 300.0
+    session.undo().result()
+    assert session.frame.lumen_pressure == high
+    drive(session, 6, 1.0, 0.2, 0.0, 0.0, -0.5)
+    path = session.save().result()
+    episode = Episode.load(path)
+    assert episode.settings["gas"] == "commanded" and episode.data["actions"].shape == (10, 5)
+    assert episode.data["wall/lumen_pressure"][3] == np.float32(high)
+    assert main(["replay", str(path), "--device", "cpu"]) == 0
+    assert "the same, bit for bit" in capsys.readouterr().out
+    assert main(["replay", str(path), "--device", "cpu", "--pieces"]) == 0
+
+
+def test_without_gas_the_page_says_so(session) -> None:
+    assert np.isnan(session.frame.lumen_pressure)
+    assert "no gas" in readouts(session.frame, session.status, FORCE_TIERS, 0.0, 0.0)
+    blown = dataclasses.replace(session.frame, lumen_pressure=40.0 * 133.322)
+    assert "40.0 mmHg" in readouts(blown, session.status, FORCE_TIERS, 0.0, 0.0)

@@ -55,12 +55,21 @@ class ColonData:
 
     @property
     def lumen_pressure(self) -> torch.Tensor:
-        """Pressure of the gas in the lumen above the surrounding air's [Pa], shape (N,).
+        """Pressure of the gas in the lumen above the surrounding air's, at the end of the step [Pa], shape (N,).
 
         Raises:
             ValueError: If no gas is simulated.
         """
         return self._of_gas("pressure")
+
+    @property
+    def lumen_pressure_mean(self) -> torch.Tensor:
+        """The same, mean over the control step [Pa], shape (N,).
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
+        return self._of_gas("mean")
 
     @property
     def lumen_pressure_peak(self) -> torch.Tensor:

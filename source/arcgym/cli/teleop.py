@@ -38,6 +38,9 @@ class TeleopArguments(RunArguments):
     tissue: str | None = argument("preset of the tissue (default: the task's)", None)
     start: str | None = argument("where to begin (default: the task's)", None, choices=("segment", "rest"))
     out: str = argument("folder of the recordings (default: logs/teleop)", "logs/teleop")
+    no_gas: bool = argument(
+        "leave the gas in the lumen out: no pressure, no insufflation (so with a checkpoint, too)", False
+    )
     reduced: bool = argument(
         "faster: no observations, rewards and costs; a smaller view, a colon drawn once a second", False
     )
@@ -109,6 +112,7 @@ def serve(args: Any, steers: bool) -> None:
         args.task, patient, args.tissue, args.start, args.driver, choose_device(args.device), args.seed or 0,
         overrides=tuple(text for text in args.overrides if text.startswith("env.")), settings=settings,
         num_envs=args.num_envs or 1, reduced=getattr(args, "reduced", False),
+        gas=steers and not args.no_gas and "policy" not in drivers,
     )  # fmt: skip
     out = Path(args.out)
     check_environment(make_cfg(choice, out)[1], args.device, [out])

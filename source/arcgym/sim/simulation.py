@@ -212,6 +212,8 @@ class Simulation:
             wp.to_torch(array).mul_(1.0 / n)
         self.scope_readout.finish(n)
         self.wall_readout.finish(n)
+        if self.gas is not None:
+            self.gas.finish(n)
         self._read_out(self._all_worlds)
 
     def _step_once(self) -> None:

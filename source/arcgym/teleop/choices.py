@@ -54,6 +54,8 @@ class Choice:
     """Configuration that the task was trained with, as plain values, for the policy that was trained in it."""
     num_envs: int = 1
     """Number of worlds; the first is shown, steered and recorded."""
+    gas: bool = False
+    """Whether the lumen has gas, with insufflation and suction by hand; not for policies, which have no such action."""
     reduced: bool = False
     """Whether what only policies and their judges need is left out: observations, rewards, costs, most metrics."""
 
@@ -127,6 +129,8 @@ def _choose(cfg: Any, choice: Choice) -> None:
         cfg.scene.colon.material = choice.tissue
     if choice.start is not None:
         cfg.start = choice.start
+    if choice.gas and hasattr(cfg, "gas") and cfg.gas == "none":
+        cfg.gas = "commanded"
 
 
 def _reduce(cfg: Any) -> None:

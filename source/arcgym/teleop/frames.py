@@ -47,6 +47,8 @@ class Frame:
     """Largest principal strain of a ring of the wall; NaN where it was not recorded."""
     anchor_tension: float = math.nan
     """Largest pull of a ring on its anchors [N]; NaN where it was not recorded."""
+    lumen_pressure: float = math.nan
+    """Pressure of the gas in the lumen [Pa]; NaN where there is none."""
 
 
 def read_frame(env: Any, env_id: int, number: int) -> Frame:
@@ -70,6 +72,7 @@ def read_frame(env: Any, env_id: int, number: int) -> Frame:
         force_tier(info.tip_force, tiers).label,
         float(colon.data.wall_strain[env_id].max()),
         float(colon.data.anchor_tension[env_id].max()),
+        math.nan if env.sim.gas is None else float(colon.data.lumen_pressure[env_id]),
     )
 
 

@@ -24,6 +24,7 @@ KEYS: dict[str, tuple[str, str]] = {
     "pitch": ("KeyI", "KeyK"),
     "yaw": ("KeyJ", "KeyL"),
     "roll": ("KeyE", "KeyQ"),
+    "insufflation": ("KeyG", "KeyB"),
 }
 """Key that raises and key that lowers each axis, as browsers name them."""
 PAD: dict[str, tuple[int, float]] = {
@@ -119,6 +120,8 @@ class Hand:
                 values.append(triggers)
             elif axis == "roll" and "right" in self.axes:
                 values.append(bumpers)
+            elif axis == "insufflation":
+                values.append(_at(buttons, 0) - _at(buttons, 1))
             else:
                 index, sign = PAD.get(axis, (99, 0.0))
                 deflection = _at(sticks, index)

@@ -3,7 +3,7 @@
 // Tells the server which keys and sticks are held, ten times a second and at every change. Keys that steer are kept from
 // the 3D view; keys typed into a field are left alone.
 (() => {
-  const steering = new Set("KeyW KeyS KeyA KeyD KeyR KeyF KeyI KeyK KeyJ KeyL KeyQ KeyE ShiftLeft ShiftRight".split(" "));
+  const steering = new Set("KeyW KeyS KeyA KeyD KeyR KeyF KeyI KeyK KeyJ KeyL KeyQ KeyE KeyG KeyB ShiftLeft ShiftRight".split(" "));
   const once = new Set("Space Period KeyM KeyU".split(" "));
   const held = new Set();
   const sent = new Map();

@@ -132,6 +132,7 @@ def recorded_frames(env: Any, episode: Episode) -> Callable[[int], Frame]:
             force_tier(tip_force, tiers).label,
             largest("wall/strain", step),
             largest("wall/anchor_tension", step),
+            value("wall/lumen_pressure", step),
         )
 
     return make

@@ -8,9 +8,11 @@ from __future__ import annotations
 import math
 from html import escape
 
+from arcgym.assets.gas_cfg import MMHG
+from arcgym.envs.mdp.gas import RUPTURE_PRESSURE
 from arcgym.teleop.frames import Frame
 from arcgym.teleop.session import Status
-from arcgym.viewers.palette import Tiers, force_tier
+from arcgym.viewers.palette import FORCE_TIERS, Tiers, force_tier
 
 CELL = (
     "<div style='min-width:88px'><div style='font-size:11px;opacity:.65'>{label}</div>"
@@ -35,6 +37,7 @@ def readouts(frame: Frame | None, status: Status, tiers: Tiers, latency: float, 
         ("push on base", f"{frame.base_force:.1f} N", ""),
         ("wall strain", _number(100 * frame.wall_strain, "{:.1f} %"), ""),
         ("pull on anchors", _number(frame.anchor_tension, "{:.2f} N"), ""),
+        ("pressure in lumen", _number(frame.lumen_pressure / MMHG, "{:.1f} mmHg", "no gas"), _warning(frame)),
         ("progress", _number(100 * frame.progress, "{:.0f} %"), ""),
         ("looping ratio", _number(frame.looping, "{:.2f}"), ""),
         ("recorded", f"{status.steps} steps", ""),
@@ -51,5 +54,10 @@ def _color(force: float, tiers: Tiers) -> str:
     return "rgb({}, {}, {})".format(*force_tier(force, tiers).color)
 
 
-def _number(value: float, form: str) -> str:
-    return "–" if math.isnan(value) else form.format(value)
+def _warning(frame: Frame) -> str:
+    """Return the color of the pressure: that of the last tier where a cecum ruptures, else the text's."""
+    return "rgb({}, {}, {})".format(*FORCE_TIERS[-1].color) if frame.lumen_pressure > RUPTURE_PRESSURE else ""
+
+
+def _number(value: float, form: str, without: str = "–") -> str:
+    return without if math.isnan(value) else form.format(value)

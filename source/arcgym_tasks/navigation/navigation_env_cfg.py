@@ -8,7 +8,7 @@ A robot's configuration adds its endoscope and its actions (``config/<robot>.py`
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets import ColonCfg, EndoscopeCfg
@@ -91,6 +91,12 @@ class ObservationsCfg:
 
         depth = ObsTerm(func=mdp.insertion_depth)
 
+    @configclass
+    class PressureCfg(ObsGroup):
+        """Pressure in the lumen over 20 mmHg, as an insufflator's gauge gives it; shape (N, 1). Needs ``env.gas``."""
+
+        lumen = ObsTerm(func=mdp.lumen_pressure)
+
     policy: PolicyCfg = PolicyCfg()
     """Group of the actor."""
 
@@ -102,6 +108,7 @@ EXTRA_OBSERVATIONS = {
     "force": ObservationsCfg.ForceCfg,
     "shape": ObservationsCfg.ShapeCfg,
     "insertion": ObservationsCfg.InsertionCfg,
+    "pressure": ObservationsCfg.PressureCfg,
 }
 """Groups that ``env.extra_observations`` adds, by name."""
 
@@ -171,6 +178,8 @@ class CostsCfg:
 
     tip_force = CostTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "unsafe"})
     view_blocked = CostTerm(func=mdp.view_blocked)
+    lumen_pressure: CostTerm | None = None
+    """Off unless ``env.gas`` is on: whether the pressure is one at which a cecum ruptured."""
 
 
 @configclass
@@ -231,6 +240,10 @@ class MetricsCfg:
     reverse_alpha_rate = MetricsTerm(func=mdp.loop_rate, reduce="mean", params={"kind": "reverse_alpha"})
     paradoxical_motion = MetricsTerm(func=mdp.paradoxical_motion, reduce="sum")
     path_efficiency = MetricsTerm(func=mdp.path_efficiency, reduce="last")
+    mean_lumen_pressure: MetricsTerm | None = None
+    """Off unless ``env.gas`` is on [Pa]."""
+    max_lumen_pressure: MetricsTerm | None = None
+    """Off unless ``env.gas`` is on: the peak [Pa]."""
 
 
 @configclass
@@ -276,6 +289,11 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """Variant that the task is made harder by, such as ``blur_2``, a kind and one of three strengths; see
     :data:`arcgym_tasks.navigation.robustness.VARIANTS`. ``none`` for the task as it is."""
 
+    gas: Literal["none", "present", "commanded"] = "none"
+    """Gas in the lumen. ``none`` as in every benchmark; ``present``: it is simulated, with metrics and a cost of its
+    pressure (``env.scene.colon.gas`` holds its settings); ``commanded``: insufflation and suction are a further action,
+    which policies that were trained without it do not have."""
+
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
 
@@ -286,7 +304,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """Groups ``policy`` and ``critic``."""
 
     extra_observations: tuple[str, ...] = ()
-    """Further groups that some robots can sense, of ``force``, ``shape`` and ``insertion``:
+    """Further groups that some robots can sense, of ``force``, ``shape``, ``insertion`` and ``pressure``:
     ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``. ``policy`` stays the images alone."""
 
     rewards: RewardsCfg = RewardsCfg()
@@ -322,6 +340,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "reward", ("shaped", "paper", *ABLATED))
         require(self, "extra_observations", tuple(EXTRA_OBSERVATIONS))
         require(self, "robustness", (NONE, *VARIANTS))
+        require(self, "gas", ("none", "present", "commanded"))
+        if self.gas != "none" and self.scene.colon.wall_model != "shell":
+            raise FieldError(self, "gas", f"is '{self.gas}', which needs env.scene.colon.wall_model=shell.")
         require(self, "direction", ("insertion", "withdrawal"))
         if self.direction == "withdrawal" and self.start == "rest":
             raise FieldError(
@@ -346,6 +367,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     def resolve(self) -> None:
         """Make the task harder, add groups of observations, leave the paper's reward alone, where that is asked for."""
         make_harder(self, self.robustness)
+        if self.gas != "none":
+            self._add_gas()
         for name in self.extra_observations:
             setattr(self.observations, name, EXTRA_OBSERVATIONS[name]())
         if self.reward in ABLATED:
@@ -353,6 +376,21 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         if self.reward != "shaped":
             for name in vars(self.rewards):
                 setattr(self.rewards, name, self.rewards.lumen if name == "lumen" else None)
+
+    def _add_gas(self) -> None:
+        """Simulate the gas, with what measures it and, where that is asked for, commands it."""
+        self.scene.colon.gas.enabled = True
+        pressure = {"kind": "lumen_pressure"}
+        rupture = CostTerm(func=mdp.load_above, params={**pressure, "limit": mdp.RUPTURE_PRESSURE})
+        mean = MetricsTerm(func=mdp.load, reduce="mean", params=pressure)
+        peak = MetricsTerm(func=mdp.load, reduce="max", params={**pressure, "reduce": "peak"})
+        terms: list[tuple[Any, str, Any]] = [(self.costs, "lumen_pressure", rupture)]
+        terms += [(self.metrics, "mean_lumen_pressure", mean), (self.metrics, "max_lumen_pressure", peak)]
+        if self.gas == "commanded":
+            terms.append((self.actions, "gas", mdp.GasFlowActionCfg()))
+        for owner, name, term in terms:
+            if owner is not None and getattr(owner, name, None) is None:
+                setattr(owner, name, term)
 
     @property
     def max_episode_length_s(self) -> float:

@@ -8,6 +8,7 @@ from arcgym.envs.mdp.costs import *  # noqa: F403
 from arcgym.envs.mdp.coverage import *  # noqa: F403
 from arcgym.envs.mdp.curriculums import *  # noqa: F403
 from arcgym.envs.mdp.events import *  # noqa: F403
+from arcgym.envs.mdp.gas import *  # noqa: F403
 from arcgym.envs.mdp.image_faults import *  # noqa: F403
 from arcgym.envs.mdp.image_recorders import *  # noqa: F403
 from arcgym.envs.mdp.load_metrics import *  # noqa: F403

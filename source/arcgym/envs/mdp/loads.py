@@ -60,9 +60,11 @@ LOADS = {
     "shaft_force": Load("endoscope", "window_force_norm", "window_force_peak", "N"),
     "wall_strain": Load("colon", "wall_strain", "wall_strain_peak", ""),
     "anchor_tension": Load("colon", "anchor_tension", "anchor_tension_peak", "N"),
+    "lumen_pressure": Load("colon", "lumen_pressure_mean", "lumen_pressure_peak", "Pa"),
 }
 """Loads by kind: force between tip and wall, between each window of the scope and wall (the tip's windows included),
-largest principal strain of each ring of the wall, pull of each ring on its anchors (the mesentery)."""
+largest principal strain of each ring of the wall, pull of each ring on its anchors (the mesentery), pressure of the gas
+in the lumen where there is gas."""
 
 REDUCTIONS = ("mean", "peak")
 """How a load is reduced over the physics steps of a control step."""

@@ -98,7 +98,7 @@ class PostStepForcesRecorder(RecorderTerm):
 class PostStepWallRecorder(RecorderTerm):
     """``wall/strain``, ``wall/strain_peak``, ``wall/anchor_tension``, ``wall/anchor_tension_peak`` [N], shape (T, R).
 
-    With ``positions`` also ``wall/positions`` [m], shape (T, V, 3).
+    With ``positions`` also ``wall/positions`` [m], shape (T, V, 3), with gas ``wall/lumen_pressure`` [Pa], shape (T,).
     """
 
     cfg: PostStepWallRecorderCfg
@@ -108,7 +108,8 @@ class PostStepWallRecorder(RecorderTerm):
         data = self._env.scene["colon"].data
         names = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
         values = {name.removeprefix("wall_"): getattr(data, name) for name in names}
-        return "wall", values | ({"positions": data.nodal_pos_w} if self.cfg.positions else {})
+        gas = {} if self._env.sim.gas is None else {"lumen_pressure": data.lumen_pressure}
+        return "wall", values | gas | ({"positions": data.nodal_pos_w} if self.cfg.positions else {})
 
 
 class PostStepPosesRecorder(RecorderTerm):

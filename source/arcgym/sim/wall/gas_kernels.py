@@ -49,6 +49,7 @@ class GasState:
 
     amount: wp.array[float]  # absolute pressure times volume [J]; 0 is to be filled at ``start``
     pressure: wp.array[float]  # above ambient [Pa]
+    mean: wp.array[float]  # mean of the control step, in the middle of one its sum [Pa]
     peak: wp.array[float]  # highest of the control step [Pa]
     volume: wp.array[float]  # of the lumen [m^3]
     flow: wp.array[float]  # of gas into the lumen, at ambient pressure [m^3/s]
@@ -186,6 +187,7 @@ def advance_gas(
     pressure += (amount - absolute * here) / (here + gives * absolute)
     gas.amount[w] = amount
     gas.pressure[w] = pressure
+    gas.mean[w] = gas.mean[w] + pressure
     gas.peak[w] = wp.max(gas.peak[w], pressure)
     gas.volume[w] = here
     set_loads(law, gas, loads, w)
@@ -206,6 +208,7 @@ def fill_gas(volume: wp.array2d[float], law: GasLaw, gas: GasState, loads: GasLo
     if gas.amount[w] <= 0.0:
         gas.pressure[w] = gas.start[w]
         gas.amount[w] = (law.ambient + gas.start[w]) * here
+    gas.mean[w] = gas.pressure[w]
     gas.peak[w] = gas.pressure[w]
     gas.volume[w] = here
     set_loads(law, gas, loads, w)

@@ -64,7 +64,7 @@ class LumenGas:
         self.state = kernels.GasState()
         start = cfg.imaging_pressure if cfg.start_pressure is None else cfg.start_pressure
         values = {"abdominal": cfg.abdominal_pressure, "start": start, "leak": cfg.leak_conductance}
-        for name in ("amount", "pressure", "peak", "volume", "flow", "abdominal", "start", "leak"):
+        for name in ("amount", "pressure", "mean", "peak", "volume", "flow", "abdominal", "start", "leak"):
             setattr(self.state, name, wp.full(self.num_envs, values.get(name, 0.0), dtype=float, device=device))
         shape = (len(topology.ring_start) - 1, self.num_envs)
         self._volume = wp.zeros(shape, dtype=float, device=device)
@@ -112,7 +112,12 @@ class LumenGas:
 
     def clear(self) -> None:
         """Start a control step."""
+        self.state.mean.zero_()
         self.state.peak.fill_(-self.cfg.ambient_pressure)
+
+    def finish(self, steps: int) -> None:
+        """End a control step of ``steps`` physics steps: the sum becomes a mean."""
+        wp.to_torch(self.state.mean).mul_(1.0 / steps)
 
     def reset(self, ids: torch.Tensor) -> None:
         """Stop flows of the worlds ``ids``, shape (n,), int64."""

@@ -23,7 +23,9 @@ class CapsuleSceneCfg(NavigationSceneCfg):
 class CapsuleActionsCfg:
     """Six velocities of the capsule in its own frame."""
 
-    capsule = mdp.TipVelocityActionCfg(linear_scale=0.05)
+    capsule: mdp.TipVelocityActionCfg = mdp.TipVelocityActionCfg(linear_scale=0.05)
+    gas: mdp.GasFlowActionCfg | None = None
+    """Off unless ``env.gas=commanded``: insufflation and suction."""
 
 
 @configclass

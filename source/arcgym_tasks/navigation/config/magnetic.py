@@ -23,7 +23,9 @@ class MagneticSceneCfg(NavigationSceneCfg):
 class MagneticActionsCfg:
     """Six velocities of the tip in its own frame."""
 
-    tip = mdp.TipVelocityActionCfg()
+    tip: mdp.TipVelocityActionCfg = mdp.TipVelocityActionCfg()
+    gas: mdp.GasFlowActionCfg | None = None
+    """Off unless ``env.gas=commanded``: insufflation and suction."""
 
 
 @configclass

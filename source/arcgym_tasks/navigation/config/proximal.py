@@ -23,7 +23,9 @@ class ProximalSceneCfg(NavigationSceneCfg):
 class ProximalActionsCfg:
     """Insertion and roll of the base, pitch and yaw of the bending section."""
 
-    base = mdp.InsertionActionCfg()
+    base: mdp.InsertionActionCfg = mdp.InsertionActionCfg()
+    gas: mdp.GasFlowActionCfg | None = None
+    """Off unless ``env.gas=commanded``: insufflation and suction."""
 
 
 @configclass
