@@ -5,6 +5,7 @@
 from typing import TYPE_CHECKING
 
 from arcgym.sim.simulation_cfg import ContactCfg, SimulationCfg, WallSolverCfg
+from arcgym.sim.weight_cfg import WeightCfg
 from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
@@ -17,6 +18,6 @@ _LAZY = {
     "SnapshotSet": "arcgym.sim.snapshot",
 }
 
-__all__ = ["ContactCfg", "Simulation", "SimulationCfg", "Snapshot", "SnapshotSet", "WallSolverCfg"]
+__all__ = ["ContactCfg", "Simulation", "SimulationCfg", "Snapshot", "SnapshotSet", "WallSolverCfg", "WeightCfg"]
 
 __getattr__ = lazy_names(__name__, _LAZY)

@@ -32,6 +32,7 @@ from arcgym.sim.wall.wall_parameters import WallParameters
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.sim.wall.wall_topology import LumenTopology
+from arcgym.sim.wall.wall_weight import WallWeight
 from arcgym.utils.configclass import validate
 
 logger = logging.getLogger(__name__)
@@ -114,7 +115,8 @@ class Simulation:
         )
         slots = len(self.contact.records.face)
         self.gas = self._lumen_gas(walls, lumen)
-        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, self.gas)
+        weight = self._wall_weight(walls)
+        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, self.gas, weight)
         if isinstance(colon.wall, ShellMesh):
             self.contact.soften(self.wall.tissue.moduli, cfg.contact.tissue_share)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
@@ -128,6 +130,14 @@ class Simulation:
         self.require_two_level("has no gas in the lumen", "set env.scene.colon.gas.enabled=false")
         assert isinstance(wall, ShellMesh)  # as ColonCfg checks
         return LumenGas(gas, lumen, walls, wall.triangles, self.patient, self.cfg.dt, self.device)
+
+    def _wall_weight(self, walls: list[WallParameters]) -> WallWeight | None:
+        """Return the weight of the walls, if they weigh."""
+        if not self.cfg.weight.enabled:
+            return None
+        self.require_two_level("has a wall without weight", "set env.sim.weight.enabled=false")
+        arcs = [patient.wall.ring_arc for patient in self.colon.patients]
+        return WallWeight(self.cfg.weight, walls, arcs, self.actuation.gravity, self.device)
 
     def _carried_surface(self, rest: list[np.ndarray], lumen: LumenTopology) -> CarriedSurface | None:
         """Return the fine surface that the links touch, or None if they touch the wall's own faces."""
@@ -279,7 +289,23 @@ class Simulation:
             "rigid": self.rigid,
             "patient": self.colon.data.patient,
             **({} if self.gas is None else self.gas.settings),
+            **({"gravity": wp.to_torch(self.actuation.gravity)} if self.cfg.weight.enabled else {}),
         }
+
+    def write_gravity(self, gravity: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+        """Turn patients: set the acceleration of free fall in their axes.
+
+        Args:
+            gravity: Such as ``cfg.weight.gravity("prone")`` [m/s^2], shape (n, 3).
+            env_ids: The worlds, all by default.
+
+        Raises:
+            ValueError: If nothing weighs.
+        """
+        if not self.cfg.weight.enabled:
+            raise ValueError("Nothing weighs, so a posture changes nothing: set env.sim.weight.enabled=true.")
+        array = wp.to_torch(self.actuation.gravity)
+        array[self._worlds(env_ids)] = gravity.to(array)
 
     def write_state(
         self, arrays: Mapping[str, torch.Tensor], env_ids: Sequence[int] | torch.Tensor | None = None

@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from typing import Literal
 
+from arcgym.sim.weight_cfg import WeightCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import (
     FINITE,
@@ -144,7 +145,7 @@ class SimulationCfg:
     """Device of physics, camera and tensors: ``cpu`` or ``cuda:0``."""
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Acceleration on the scope [m/s^2]. Zero by default: the colon's own weight is part of its rest shape, and
-    the scope's is carried by the wall and small against contact forces."""
+    the scope's is carried by the wall and small against contact forces. ``weight`` weighs both instead."""
     solver: Literal["two_level", "newton"] = "two_level"
     """Wall solver and coupling: ``two_level`` (ring correction + vertex block descent, own coupling loop) or ``newton``
     (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
@@ -155,6 +156,8 @@ class SimulationCfg:
     """Constraint iterations of MuJoCo a substep, with ``solver="newton"``."""
     mass_scaling: float = 1.0
     """Factor on the scope's real link masses. Inertia hardly matters at 50 mm/s; heavier links damp contact noise."""
+    weight: WeightCfg = WeightCfg()
+    """Weight of scope, wall and contents along the patient's posture; off by default."""
     contact: ContactCfg = ContactCfg()
     """Contact law and search."""
     wall: WallSolverCfg = WallSolverCfg()
@@ -175,5 +178,9 @@ class SimulationCfg:
         require(self, "gravity", FINITE, unit="m/s^2")
         require_at_least(self, 1, "scope_substeps", "scope_iterations", "newton_iterations")
         require_positive(self, "mass_scaling")
+        if self.weight.enabled and any(self.gravity):
+            raise FieldError(
+                self, "gravity", f"is {self.gravity}, expected zeros with weight.enabled=true, whose posture says it."
+            )
         if not re.fullmatch(r"cpu|cuda(:\d+)?", self.device):
             raise FieldError(self, "device", f"is {self.device!r}, expected 'cpu', 'cuda' or 'cuda:<number>'.")

@@ -15,6 +15,11 @@ def small_deflection(force: float, length: float, rigidity: float) -> float:
     return force * length**3 / (3.0 * rigidity)
 
 
+def own_weight_deflection(load: float, length: float, rigidity: float) -> float:
+    """Return the end of a clamped beam under a load by length [N/m] across it [m]: q L^4 / 8 EI (Euler-Bernoulli)."""
+    return load * length**4 / (8.0 * rigidity)
+
+
 def elastica_deflection(force: float, length: float, rigidity: float) -> float:
     """Return the end of a clamped elastica under a dead end load across its rest direction [m].
 

@@ -29,10 +29,20 @@ LINKS = 40
 """Links of the shaft."""
 
 
-def shaft_in_air(run: Run, num_envs: int, links: int = LINKS, **spec: Any) -> tuple[Any, LinkLoads]:
-    """Return worlds with a straight shaft below a short tube, and the loads on it."""
+def shaft_in_air(
+    run: Run, num_envs: int, links: int = LINKS, settings: dict[str, Any] | None = None, **spec: Any
+) -> tuple[Any, LinkLoads]:
+    """Return worlds with a straight shaft below a short tube, and the loads on it.
+
+    Args:
+        run: Device and folder.
+        num_envs: Worlds.
+        links: Links of the shaft.
+        settings: Changes of ``SimulationCfg``.
+        spec: Changes of the scope's spec.
+    """
     cfg = {"introducer": IntroducerCfg(**IN_AIR)}
-    sim = build(run, shaft_spec(links, **spec), Tube(0.15), num_envs, {"anchor_stiffness": FREE}, cfg)
+    sim = build(run, shaft_spec(links, **spec), Tube(0.15), num_envs, {"anchor_stiffness": FREE}, cfg, **settings or {})
     for coordinate in (sim.endoscope.data.joint_pos, sim.endoscope.data.joint_pos_target):
         coordinate[:, 0] = -DEPTH
     sim.forward()

@@ -15,6 +15,7 @@ from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.materials import ANCHOR_SCALES, TISSUE_PRESETS, anchor_scale, tissue_preset
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import EventTermCfg, ManagerTermBase
+from arcgym.sim.weight_cfg import POSTURES
 from arcgym.start_states.find import ensure_all, find_stored
 from arcgym.utils.validation import FRACTION, NON_NEGATIVE, POSITIVE, expects
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
 __all__ = [
+    "change_posture",
     "perturb_tip",
     "randomize_anchors",
     "randomize_color",
@@ -210,6 +212,21 @@ def randomize_friction(
         factor: Factor on what is drawn.
     """
     env.scene["endoscope"].write_friction_to_sim(factor * _log_uniform(env, "friction", env_ids, friction), env_ids)
+
+
+@expects(postures=POSTURES)
+def change_posture(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, postures: Sequence[str] = ("supine", "left_lateral")
+) -> None:
+    """Lay each world's patient in one of several postures, all equally likely; needs ``env.sim.weight.enabled=true``.
+
+    At a reset the wall then begins to sag from where it was stored; in mode ``interval`` patients are turned meanwhile.
+
+    Args:
+        postures: Names from :data:`arcgym.sim.weight_cfg.POSTURES`; one alone turns all patients to it.
+    """
+    gravity = [env.sim.cfg.weight.gravity(name) for name in postures]
+    env.sim.write_gravity(_choice(env, "posture", env_ids, gravity), env_ids)
 
 
 def _choice(env: ManagerBasedEnv, tag: str, env_ids: torch.Tensor, values: Sequence[object]) -> torch.Tensor:

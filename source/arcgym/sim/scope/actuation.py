@@ -38,7 +38,10 @@ class Actuation:
         self.resistance = wp.zeros((self.link_count, num_envs), dtype=wp.spatial_vector, device=device)
         """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W)."""
         self._guide = self._introducer(endoscope)
-        self._gravity = wp.vec3(*cfg.gravity) / cfg.mass_scaling
+        gravity = cfg.weight.gravity(cfg.weight.posture) if cfg.weight.enabled else cfg.gravity
+        self.gravity = wp.full(num_envs, wp.vec3(*gravity), dtype=wp.vec3, device=device)
+        """Acceleration of free fall in each world [m/s^2], shape (W,), vec3."""
+        self._mass_scaling = cfg.mass_scaling
 
     def _introducer(self, endoscope: Endoscope) -> kernels.Introducer:
         guide, cfg = kernels.Introducer(), endoscope.cfg.introducer
@@ -71,7 +74,7 @@ class Actuation:
             link_ring: Ring of the colon that each link is in, shape (W, L).
             dt: Substep [s].
         """
-        inputs = [state.body_q, state.body_qd, self.body_mass, self._gravity, self._guide]
+        inputs = [state.body_q, state.body_qd, self.body_mass, self.gravity, self._mass_scaling, self._guide]
         inputs += [state.joint_q, self.coords, link_ring, dt]
         outputs = [state.body_f, self.resistance]
         shape = (self.link_count, self.num_envs)

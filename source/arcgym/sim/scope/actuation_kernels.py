@@ -44,7 +44,8 @@ def load_links(
     body_q: wp.array[wp.transform],
     body_qd: wp.array[wp.spatial_vector],
     body_mass: wp.array[float],
-    gravity: wp.vec3,
+    gravity: wp.array[wp.vec3],
+    mass_scaling: float,
     guide: Introducer,
     joint_q: wp.array[float],
     coords: int,
@@ -57,11 +58,11 @@ def load_links(
 
     What is low of a link is pulled sideways onto the Z axis. The base's slide tells how high each would be in a
     straight shaft; a link up to ``SPHINCTER`` lower than that, and lower than ``min_height``, is lifted. ``ring`` has
-    the shape (W, L).
+    the shape (W, L), ``gravity`` the shape (W,).
     """
     link, w = wp.tid()
     i = w * resistance.shape[0] + link
-    force = body_mass[i] * gravity
+    force = body_mass[i] * (gravity[w] / mass_scaling)
     held = wp.vec3(0.0)
     p = wp.transform_get_translation(body_q[i])
     if ring[w, link] <= FIRST_RINGS:

@@ -24,6 +24,7 @@ from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall.wall_topology import ring_mean
+from arcgym.sim.wall.wall_weight import WallWeight
 from arcgym.utils.warp_setup import GPU_BLOCK
 
 REGULARISATION = 1.0e-5
@@ -71,6 +72,7 @@ class WallSolver:
         contact_slots: int,
         device: str,
         gas: LumenGas | None = None,
+        weight: WallWeight | None = None,
     ):
         """Allocate the solver.
 
@@ -83,6 +85,7 @@ class WallSolver:
             contact_slots: Number of contact records of all worlds.
             device: Warp device.
             gas: Gas in the lumen, if there is any; advanced in every step.
+            weight: Weight of the walls, if they weigh.
         """
         num_envs, first = len(patient), walls[0]
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
@@ -90,7 +93,7 @@ class WallSolver:
         mobile = np.any([wall.mobile for wall in walls], axis=0)
         self.moves = bool(mobile.any())
         self.nodes = wall_nodes(walls, patient, device)
-        self.gas = gas
+        self.gas, self.weight = gas, weight
         self.elements = wall_elements(walls, patient, device, None if gas is None else gas.loads)
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
@@ -156,6 +159,8 @@ class WallSolver:
         inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
         shape, outputs = (self.vertex_count, self.num_envs), [self.x_prev, self.inertial]
         self._launch(wall_kernels.predict, shape, inputs, outputs)
+        if self.weight is not None:
+            self.weight.add(self.nodes, self.tissue, self.dt, self.inertial)
         self.self_contact.measure(x)
         if self.gas is not None:
             self.gas.advance(self.inertial, self.tissue.rigid, moves=True)
@@ -228,7 +233,11 @@ class WallSolver:
         contacts = wall_contacts(contact, self.dt, x, body_q, body_q)
         self.self_contact.measure(x)
         self._measure(x)
-        self._residual(x, x, contacts, force)
+        inertial = x
+        if self.weight is not None:
+            inertial = wp.clone(x)
+            self.weight.add(self.nodes, self.tissue, self.dt, inertial)
+        self._residual(x, inertial, contacts, force)
         return force
 
     def _measure(self, x: wp.array) -> None:
