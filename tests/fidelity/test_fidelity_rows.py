@@ -17,6 +17,8 @@ QUICK = [
     "weight_scope",
     "wall_beam",
     "weight_wall",
+    "gas_pressure,gas_radius",
+    "gas_collapse",
     "straight_advance",
     "action_reaction_moving_paper,action_reaction_worst_paper",
     "friction_stop_low,friction_hold_low,friction_stop_high,friction_hold_high",

@@ -107,8 +107,8 @@ def test_a_jump_of_the_amount_is_followed_without_swinging(tube: TinySim, materi
         sim.step(1)
         seen.append(sim.colon.data.lumen_pressure.item())
     last, way = seen[-1], seen[-1] - IMAGED
-    assert way > 50.0 and max(seen) < last + 0.1 * way and min(seen) > IMAGED - 1.0
-    assert max(abs(value - last) for value in seen[-100:]) < 0.01 * way
+    assert way > 50.0 and max(seen) < last + 0.2 * way and min(seen) > IMAGED - 1.0
+    assert max(abs(value - last) for value in seen[8:]) < 0.01 * way  # there after 17 ms
 
 
 def test_suction_collapses_the_lumen_and_insufflation_opens_it(tube: TinySim) -> None:
@@ -124,6 +124,16 @@ def test_suction_collapses_the_lumen_and_insufflation_opens_it(tube: TinySim) ->
     flow_for(sim, 0.0, 960)
     assert sim.colon.data.lumen_volume.item() > 0.97 * at_rest
     assert not sim.non_finite.any()
+
+
+def test_a_soft_tube_that_folds_does_not_swing(tube: TinySim) -> None:
+    # Without tension at rest: at 100 Pa below, stiffness is nearly lost, and a pressure that lags would swing.
+    sim = filled(tube, leak_conductance=0.0, imaging_pressure=IMAGED, abdominal_pressure=IMAGED)
+    sim.colon.data.nodal_pos_w[0, :, 0] *= 0.99
+    flow_for(sim, -0.12, 2400)  # 10 ml
+    flow_for(sim, 0.0, 240)
+    assert radii(sim, MIDDLE).min() < 0.9 * radii(sim, MIDDLE).max()
+    assert sim.colon.data.nodal_vel_w.abs().max() < 2.0e-3
 
 
 def test_gas_beyond_its_opening_pressure_leaks(tube: TinySim) -> None:

@@ -128,6 +128,8 @@ class Simulation:
         if not gas.enabled:
             return None
         self.require_two_level("has no gas in the lumen", "set env.scene.colon.gas.enabled=false")
+        if not self.cfg.wall.coarse_correction:
+            raise ValueError("Gas needs the coarse correction: set env.sim.wall.coarse_correction=true.")
         assert isinstance(wall, ShellMesh)  # as ColonCfg checks
         return LumenGas(gas, lumen, walls, wall.triangles, self.patient, self.cfg.dt, self.device)
 

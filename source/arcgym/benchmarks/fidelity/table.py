@@ -37,6 +37,8 @@ TABLE: tuple[Check, ...] = (
     line("wall_ring", "wall:ring_mode"),
     line("wall_oval_paper", "wall:oval_mode", material="paper"),
     line("wall_oval_in_situ", "wall:oval_mode", material="in_situ"),
+    line("gas_pressure gas_radius", "gas:inflation", quick=True),
+    line("gas_collapse", "gas:collapse", quick=True),
     line("indentation_paper", "indentation:indentation", material="paper"),
     line("indentation_in_situ", "indentation:indentation", material="in_situ"),
     line("indentation_solid_paper", "solids:indentation", material="paper"),

@@ -5,8 +5,7 @@
 
 The gas is ideal and stays at body temperature: its amount, pressure times volume, changes by flow alone. It is stiff
 (1.5 l give by 1 ml at 67 Pa), far stiffer than the wall, so that a pressure computed from the volume at the start of a
-step would swing. The pressure therefore takes into account how far the wall gives way to it within the step, at most:
-as far as inertia alone would let it. A wall that gives less is followed later, by 0.1 s at most, without overshoot.
+step would swing: it is solved for together with the wall, see ``gas_rings``.
 """
 
 import warp as wp
@@ -28,7 +27,6 @@ class Lumen:
     start: wp.array[int]  # first face of each ring, shape (R + 1,)
     lid: wp.array[int]  # first face of each ring that is a lid, shape (R,)
     inverse_slice: wp.array2d[float]  # 1 over ``slice_volume`` when imaged [1/m^3], 0 if it is none, shape (R, P)
-    compliance: wp.array[float]  # volume by which inertia alone lets a wall widen in a step [m^3/Pa], shape (P,)
 
 
 @wp.struct
@@ -149,48 +147,48 @@ def set_loads(law: GasLaw, gas: GasState, loads: GasLoads, w: int):
 
 
 @wp.kernel
-def advance_gas(
-    volume: wp.array2d[float],
-    lumen: Lumen,
-    law: GasLaw,
-    rigid: wp.array[int],
-    moves: float,
-    dt: float,
-    gas: GasState,
-    loads: GasLoads,
-):
-    """Advance the gas by one step. Launch (W,).
+def add_flow(law: GasLaw, dt: float, gas: GasState):
+    """Let gas flow in and out for a step. Launch (W,).
 
     Args:
-        volume: Parts of the volume where inertia takes the wall [m^3], shape (R, W).
-        lumen: Lumen of all patients.
         law: Settings.
-        rigid: 1 where the wall stays where it is, shape (W,).
-        moves: 1 if walls move at all, else 0.
         dt: Step [s].
-        gas: State; changed in place.
-        loads: Loads of the pressure at the end of the step; written.
+        gas: State; the amount is changed.
     """
     w = wp.tid()
-    here = total_volume(volume, w)
     pressure = gas.pressure[w]
-    absolute = law.ambient + pressure
     flow = gas.flow[w]
     if flow < 0.0:
         left = pressure - gas.abdominal[w] + law.suction_depth
         flow *= wp.clamp(2.0 * left / law.suction_depth, 0.0, 1.0)
     lost = gas.leak[w] * wp.max(pressure - law.leak_opening, 0.0)
-    amount = gas.amount[w] + dt * (law.ambient * flow - absolute * lost)
-    gives = moves * lumen.compliance[lumen.patient[w]]
-    if rigid[w] == 1:
-        gives = 0.0
-    pressure += (amount - absolute * here) / (here + gives * absolute)
-    gas.amount[w] = amount
-    gas.pressure[w] = pressure
+    gas.amount[w] = gas.amount[w] + dt * (law.ambient * flow - (law.ambient + pressure) * lost)
+
+
+@wp.kernel
+def fit_rigid(volume: wp.array2d[float], law: GasLaw, gas: GasState, loads: GasLoads):
+    """Set the pressure in lumens whose walls do not move. Launch (W,).
+
+    Args:
+        volume: Parts of the volume [m^3], shape (R, W).
+        law: Settings.
+        gas: State; the pressure is changed.
+        loads: Loads of the pressure; written.
+    """
+    w = wp.tid()
+    here = total_volume(volume, w)
+    gas.volume[w] = here
+    gas.pressure[w] = gas.amount[w] / here - law.ambient
+    set_loads(law, gas, loads, w)
+
+
+@wp.kernel
+def note_pressure(gas: GasState):
+    """Take the pressure at the end of a step into mean and peak of the control step. Launch (W,)."""
+    w = wp.tid()
+    pressure = gas.pressure[w]
     gas.mean[w] = gas.mean[w] + pressure
     gas.peak[w] = wp.max(gas.peak[w], pressure)
-    gas.volume[w] = here
-    set_loads(law, gas, loads, w)
 
 
 @wp.kernel

@@ -22,8 +22,6 @@ GAS = "gas."
 LEAST_SLICE = 0.2
 """Least share that a ring's slice has of the cylinder with its faces' area and distance from the middle; a blind end,
 whose faces lie across the lumen, has less, and is not propped."""
-MARGIN = 1.5
-"""Factor on the volume by which inertia lets the imaged wall widen: a stretched wall gives more."""
 
 
 class LumenGas:
@@ -56,10 +54,8 @@ class LumenGas:
         self.cfg, self.dt, self.device, self.num_envs = cfg, dt, device, len(patient)
         rest = [wall.points.astype(np.float64) for wall in walls]
         cuts = [slices(points, topology) for points in rest]
-        gives = [_gives(wall, topology, dt) for wall in walls]
         self.lumen = _lumen(topology, patient, device)
         self.lumen.inverse_slice = patient_array([cut.inverse for cut in cuts], float, device)
-        self.lumen.compliance = wp.array(gives, dtype=float, device=device)
         self.law = _law(cfg)
         self.state = kernels.GasState()
         start = cfg.imaging_pressure if cfg.start_pressure is None else cfg.start_pressure
@@ -67,7 +63,8 @@ class LumenGas:
         for name in ("amount", "pressure", "mean", "peak", "volume", "flow", "abdominal", "start", "leak"):
             setattr(self.state, name, wp.full(self.num_envs, values.get(name, 0.0), dtype=float, device=device))
         shape = (len(topology.ring_start) - 1, self.num_envs)
-        self._volume = wp.zeros(shape, dtype=float, device=device)
+        self.parts = wp.zeros(shape, dtype=float, device=device)
+        """Parts of the lumen's volume, between each ring's faces and the origin [m^3], shape (R, W)."""
         self.loads = kernels.GasLoads()
         self.loads.patient = patient
         self.loads.push, self.loads.draw = (wp.zeros(self.num_envs, dtype=float, device=device) for _ in range(2))
@@ -93,22 +90,28 @@ class LumenGas:
         arrays = {"abdominal_pressure": state.abdominal, "start_pressure": state.start, "leak_conductance": state.leak}
         return {f"{GAS}{name}": wp.to_torch(array) for name, array in arrays.items()}
 
-    def advance(self, x: wp.array, rigid: wp.array, moves: bool) -> None:
-        """Advance by one physics step.
+    def begin(self, x: wp.array) -> None:
+        """Begin a physics step: let gas flow, and measure the lumen at ``x`` [m], shape (V, W), vec3."""
+        self._launch(kernels.add_flow, self.num_envs, [self.law, self.dt], [self.state])
+        self.measure(x)
 
-        Args:
-            x: Where inertia takes the wall in it [m], shape (V, W), vec3.
-            rigid: 1 where a wall stays where it is, shape (W,), int32.
-            moves: Whether walls move at all.
-        """
-        self._measure(x)
-        inputs = [self._volume, self.lumen, self.law, rigid, float(moves), self.dt]
-        self._launch(kernels.advance_gas, self.num_envs, inputs, [self.state, self.loads])
+    def measure(self, x: wp.array) -> None:
+        """Measure volume and props of the lumen at ``x`` [m], shape (V, W), vec3."""
+        shape = self.parts.shape
+        self._launch(kernels.measure_slices, shape, [x, self.lumen, self.law], [self.parts, self.loads.prop])
+
+    def fit_rigid(self) -> None:
+        """Set the pressure of walls that do not move, after :meth:`begin`."""
+        self._launch(kernels.fit_rigid, self.num_envs, [self.parts, self.law], [self.state, self.loads])
+
+    def end(self) -> None:
+        """End a physics step."""
+        self._launch(kernels.note_pressure, self.num_envs, [], [self.state])
 
     def fill(self, x: wp.array) -> None:
         """Fill lumens whose state was written without an amount of gas; ``x`` [m], shape (V, W), vec3."""
-        self._measure(x)
-        self._launch(kernels.fill_gas, self.num_envs, [self._volume, self.law], [self.state, self.loads])
+        self.measure(x)
+        self._launch(kernels.fill_gas, self.num_envs, [self.parts, self.law], [self.state, self.loads])
 
     def clear(self) -> None:
         """Start a control step."""
@@ -122,10 +125,6 @@ class LumenGas:
     def reset(self, ids: torch.Tensor) -> None:
         """Stop flows of the worlds ``ids``, shape (n,), int64."""
         wp.to_torch(self.state.flow)[ids] = 0.0
-
-    def _measure(self, x: wp.array) -> None:
-        shape = self._volume.shape
-        self._launch(kernels.measure_slices, shape, [x, self.lumen, self.law], [self._volume, self.loads.prop])
 
     def _launch(self, kernel: wp.Kernel, shape: object, inputs: list[object], outputs: list[object]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device)
@@ -238,17 +237,6 @@ def _lumen(topology: LumenTopology, patient: wp.array, device: str) -> kernels.L
     lumen.start = wp.array(start, dtype=int, device=device)
     lumen.lid = wp.array(start[:-1] + np.diff(topology.ring_start), dtype=int, device=device)
     return lumen
-
-
-def _gives(wall: WallParameters, topology: LumenTopology, dt: float) -> float:
-    """Return the volume by which inertia alone lets a wall widen in a step under 1 Pa, with a margin [m^3/Pa]."""
-    a, b, c = (wall.points[topology.faces[:, k]].astype(np.float64) for k in range(3))
-    share = np.cross(b - a, c - a) / 6.0
-    area = np.zeros((len(wall.points), 3))
-    for k in range(3):
-        np.add.at(area, topology.faces[:, k], share)
-    free = wall.mobile
-    return float(MARGIN * dt * dt * ((area[free] ** 2).sum(axis=1) / wall.mass[free]).sum())
 
 
 def _law(cfg: GasCfg) -> kernels.GasLaw:

@@ -19,6 +19,7 @@ from arcgym.sim.wall import coarse_kernels, wall_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
+from arcgym.sim.wall.gas_rings import GasRings
 from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.wall_elements import wall_elements
@@ -112,6 +113,7 @@ class WallSolver:
         self.measured = self._measured_contacts(contact_slots)
         self._prepared = False
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
+        self.gas_rings = None if gas is None else GasRings(gas, self.vertex_count, self.ring_count)
         self.self_contact = SelfContact(
             cfg, [wall.points for wall in walls], first.ring, modes[0].members, first.thickness, patient, device
         )
@@ -153,7 +155,9 @@ class WallSolver:
         """
         if not self.moves:
             if self.gas is not None:
-                self.gas.advance(x, self.tissue.rigid, moves=False)
+                self.gas.begin(x)
+                self.gas.fit_rigid()
+                self.gas.end()
             return
         decay = math.exp(-self.cfg.drag * self.dt)
         inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
@@ -163,7 +167,7 @@ class WallSolver:
             self.weight.add(self.nodes, self.tissue, self.dt, self.inertial)
         self.self_contact.measure(x)
         if self.gas is not None:
-            self.gas.advance(self.inertial, self.tissue.rigid, moves=True)
+            self.gas.begin(self.inertial)
         self._measure(self.inertial)
         self._prepared = True
 
@@ -189,12 +193,16 @@ class WallSolver:
         wp.copy(x, self.inertial)
         for repeat in range(self.cfg.repeats):
             if repeat > 0:
+                if self.gas is not None:
+                    self.gas.measure(x)
                 self._measure(x)
             self._residual(x, self.inertial, contacts, self.force)
             if self.cfg.coarse_correction:
                 self._correct_rings(x, contacts)
             for _ in range(self.cfg.iterations):
                 self._sweep(x, contacts)
+        if self.gas is not None:
+            self.gas.end()
         self._launch(wall_kernels.finish, x.shape, [x, self.x_prev, self.dt], [v])
 
     def finish_contacts(
@@ -274,7 +282,10 @@ class WallSolver:
             [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact],
             [system.diagonal, system.upper, system.rhs],
         )
-        system.solve()
+        if self.gas_rings is None:
+            system.solve()
+        else:
+            self.gas_rings.solve(x, self.elements.data.shell, rings, self.loads, tissue, system)
         self._launch(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:

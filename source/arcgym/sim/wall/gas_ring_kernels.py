@@ -1,0 +1,137 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+# mypy: ignore-errors
+"""How far the rings give way to a pressure in the lumen, see ``gas_rings``.
+
+R rings, V wall vertices, M modes, W worlds.
+"""
+
+import warp as wp
+
+from arcgym.sim.wall.band_kernels import Rings
+from arcgym.sim.wall.block_tridiagonal_kernels import MODES
+from arcgym.sim.wall.coarse_kernels import RingLoads, axis, ring_fields
+from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, GasState, set_loads, total_volume
+from arcgym.sim.wall.shell_kernels import ShellElements
+from arcgym.sim.wall.wall_kernels import Tissue
+from arcgym.utils import warp_setup  # noqa: F401
+
+
+@wp.kernel
+def measure_shares(x: wp.array2d[wp.vec3], shell: ShellElements, share: wp.array2d[wp.vec3]):
+    """Measure what a move of each vertex adds to the lumen's volume. Launch (V, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        shell: The shell.
+        share: Change of the volume with the vertex, the force of 1 Pa on it [m^2], shape (V, W); written.
+    """
+    i, w = wp.tid()
+    here = x[i, w]
+    total = wp.vec3(0.0)
+    for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
+        triangle = shell.fan[k]
+        total += wp.cross(x[triangle.first, w] - here, x[triangle.second, w] - here)
+    share[i, w] = total / 6.0
+
+
+@wp.kernel
+def assemble_push(
+    share: wp.array2d[wp.vec3],
+    rings: Rings,
+    loads: RingLoads,
+    tissue: Tissue,
+    push: wp.array3d[float],
+    answer: wp.array3d[float],
+):
+    """Sum up the force of 1 Pa on every unknown of the coarse system. Launch (R, W, M).
+
+    Args:
+        share: Force of 1 Pa on each vertex [m^2], shape (V, W).
+        rings: Rings of all patients.
+        loads: Loads of all patients.
+        tissue: Values of each world.
+        push: Force of 1 Pa on each unknown [m^2], shape (R, W, M); written.
+        answer: The same, to be solved for; written.
+    """
+    r, w, a = wp.tid()
+    field = axis(a // 3)
+    along = axis(a % 3)
+    p = rings.patient[w]
+    total = float(0.0)
+    if rings.moves[r, p] == 1 and tissue.rigid[w] == 0:
+        for j in range(loads.members.shape[1]):
+            v = loads.members[r, j]
+            if v >= 0:
+                total += wp.dot(ring_fields(rings, v, p), field) * wp.dot(share[v, w], along)
+    push[r, w, a] = total
+    answer[r, w, a] = total
+
+
+@wp.kernel
+def measure_gain(
+    push: wp.array3d[float], solution: wp.array3d[float], answer: wp.array3d[float], gain: wp.array2d[wp.vec2]
+):
+    """Measure the volume that each ring's move adds, and that its answer to 1 Pa would add. Launch (R, W).
+
+    Args:
+        push: Force of 1 Pa on each unknown [m^2], shape (R, W, M).
+        solution: Move of the wall without a change of pressure [m], shape (R, W, M).
+        answer: Move by 1 Pa [m/Pa], shape (R, W, M).
+        gain: The two volumes [m^3], [m^3/Pa], shape (R, W); written.
+    """
+    r, w = wp.tid()
+    moved = float(0.0)
+    given = float(0.0)
+    for a in range(MODES):
+        moved += push[r, w, a] * solution[r, w, a]
+        given += push[r, w, a] * answer[r, w, a]
+    gain[r, w] = wp.vec2(moved, given)
+
+
+@wp.kernel
+def settle_pressure(
+    volume: wp.array2d[float],
+    gain: wp.array2d[wp.vec2],
+    law: GasLaw,
+    gas: GasState,
+    loads: GasLoads,
+    change: wp.array[float],
+):
+    """Find the pressure at which gas and wall agree at the end of the step. Launch (W,).
+
+    Args:
+        volume: Parts of the volume where the wall is [m^3], shape (R, W).
+        gain: Volumes that its move adds without a change of pressure, and with it, shape (R, W).
+        law: Settings.
+        gas: State; the pressure is changed.
+        loads: Loads of the pressure; written.
+        change: Change of the pressure [Pa], shape (W,); written.
+    """
+    w = wp.tid()
+    moved = float(0.0)
+    given = float(0.0)
+    for r in range(gain.shape[0]):
+        moved += gain[r, w][0]
+        given += gain[r, w][1]
+    here = total_volume(volume, w)
+    there = wp.max(here + moved, 0.5 * here)
+    absolute = law.ambient + gas.pressure[w]
+    by = (gas.amount[w] - absolute * there) / (there + absolute * wp.max(given, 0.0))
+    gas.pressure[w] = gas.pressure[w] + by
+    gas.volume[w] = here
+    change[w] = by
+    set_loads(law, gas, loads, w)
+
+
+@wp.kernel
+def add_answer(answer: wp.array3d[float], change: wp.array[float], solution: wp.array3d[float]):
+    """Add the wall's answer to the change of pressure to its move. Launch (R, W, M).
+
+    Args:
+        answer: Move by 1 Pa [m/Pa], shape (R, W, M).
+        change: Change of the pressure [Pa], shape (W,).
+        solution: Move of the wall [m], shape (R, W, M); changed in place.
+    """
+    r, w, a = wp.tid()
+    solution[r, w, a] = solution[r, w, a] + change[w] * answer[r, w, a]

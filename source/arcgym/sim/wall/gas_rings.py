@@ -1,0 +1,71 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gas and wall in one coarse correction: the pressure is solved for together with the rings' motion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import warp as wp
+
+from arcgym.sim.wall import gas_ring_kernels as kernels
+from arcgym.sim.wall.band_kernels import Rings
+from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
+from arcgym.sim.wall.coarse_kernels import RingLoads
+from arcgym.sim.wall.lumen_gas import LumenGas
+from arcgym.sim.wall.ring_modes import MODES
+from arcgym.sim.wall.shell_kernels import ShellElements
+from arcgym.sim.wall.wall_kernels import Tissue
+
+
+class GasRings:
+    """Finds the change of pressure with which the gas fits the moved wall.
+
+    The gas couples all rings with one number. With the coarse system A d = f + b dp, where b is the force of 1 Pa on
+    the rings' modes, its solution is d = A^-1 f + dp A^-1 b, and the volume grows by b.d: with both solutions known the
+    gas law gives dp. So the wall's own stiffness, inertia and contacts at hand decide how far it gives.
+    """
+
+    def __init__(self, gas: LumenGas, vertices: int, rings: int):
+        """Allocate for V vertices and R rings."""
+        self.gas, self.device, count = gas, gas.device, gas.num_envs
+        self._system = BlockTridiagonalSolver(count, rings, self.device)
+        self._share = wp.zeros((vertices, count), dtype=wp.vec3, device=self.device)
+        self._push = wp.zeros((rings, count, MODES), dtype=float, device=self.device)
+        self._gain = wp.zeros((rings, count), dtype=wp.vec2, device=self.device)
+        self._change = wp.zeros(count, dtype=float, device=self.device)
+
+    def solve(
+        self,
+        x: wp.array,
+        shell: ShellElements,
+        rings: Rings,
+        loads: RingLoads,
+        tissue: Tissue,
+        system: BlockTridiagonalSolver,
+    ) -> None:
+        """Solve an assembled coarse system together with the gas.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3, at which the gas has measured the volume.
+            shell: The shell.
+            rings: Rings of all patients.
+            loads: Loads of all patients.
+            tissue: Values of each world.
+            system: The system; its right-hand side is replaced by the rings' motion.
+        """
+        own, gas = self._system, self.gas
+        wp.copy(own.diagonal, system.diagonal)
+        wp.copy(own.upper, system.upper)
+        self._launch(kernels.measure_shares, x.shape, [x, shell], [self._share])
+        shape = self._push.shape
+        self._launch(kernels.assemble_push, shape, [self._share, rings, loads, tissue], [self._push, own.rhs])
+        system.solve()
+        own.solve()
+        self._launch(kernels.measure_gain, self._gain.shape, [self._push, system.rhs, own.rhs], [self._gain])
+        inputs = [gas.parts, self._gain, gas.law]
+        self._launch(kernels.settle_pressure, self._change.shape, inputs, [gas.state, gas.loads, self._change])
+        self._launch(kernels.add_answer, shape, [own.rhs, self._change], [system.rhs])
+
+    def _launch(self, kernel: wp.Kernel, shape: Any, inputs: list[Any], outputs: list[Any]) -> None:
+        wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device)
