@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Gas in the lumen: the action that insufflates and sucks, and the pressure as an observation.
+"""Gas in the lumen: insufflation and suction as an action, pressure as an observation, other bellies by an event.
 
 Pressure is also a load, ``lumen_pressure`` of :data:`arcgym.envs.mdp.LOADS`: its metrics and costs are those of loads.
 """
@@ -16,12 +16,12 @@ from arcgym.assets.gas_cfg import MMHG
 from arcgym.envs.mdp.actions import VelocityAction
 from arcgym.managers import ActionTerm, ActionTermCfg
 from arcgym.utils.configclass import configclass
-from arcgym.utils.validation import POSITIVE, Range, expects, require
+from arcgym.utils.validation import NON_NEGATIVE, POSITIVE, Range, expects, require
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
-__all__ = ["RUPTURE_PRESSURE", "GasFlowAction", "GasFlowActionCfg", "lumen_pressure"]
+__all__ = ["RUPTURE_PRESSURE", "GasFlowAction", "GasFlowActionCfg", "lumen_pressure", "randomize_gas"]
 
 RUPTURE_PRESSURE = 81.0 * MMHG
 """Pressure at which the cecum of cadavers ruptured, the first part of the colon to do so; the sigmoid at 169 mmHg [Pa]
@@ -97,3 +97,32 @@ def lumen_pressure(env: ManagerBasedEnv, scale: float = 20.0 * MMHG) -> torch.Te
         scale: Pressure that counts as one [Pa]; the default is that of the imaged shape.
     """
     return env.scene["colon"].data.lumen_pressure[:, None] / scale
+
+
+@expects(abdominal_pressure=NON_NEGATIVE, start_pressure=NON_NEGATIVE, leak_conductance=NON_NEGATIVE)
+def randomize_gas(
+    env: ManagerBasedEnv,
+    env_ids: torch.Tensor,
+    abdominal_pressure: tuple[float, float] | None = (5.0 * MMHG, 12.0 * MMHG),
+    start_pressure: tuple[float, float] | None = None,
+    leak_conductance: tuple[float, float] | None = None,
+) -> None:
+    """Give each world a belly and an anus of its own, uniform between bounds; needs ``env.gas``.
+
+    Args:
+        abdominal_pressure: Least and largest pressure around the colon [Pa]; None leaves it as it is. 5 to 12 mmHg were
+            found lying on the back.
+        start_pressure: Of the lumen when an episode starts [Pa].
+        leak_conductance: Of the anus [m^3/(s Pa)].
+    """
+    given = {
+        "abdominal_pressure": abdominal_pressure,
+        "start_pressure": start_pressure,
+        "leak_conductance": leak_conductance,
+    }
+    drawn = {
+        name: bounds[0] + (bounds[1] - bounds[0]) * env.random.uniform(f"gas: {name}", env_ids=env_ids)
+        for name, bounds in given.items()
+        if bounds is not None
+    }
+    env.scene["colon"].write_gas_to_sim(**drawn, env_ids=env_ids)
