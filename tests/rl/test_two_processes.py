@@ -14,6 +14,7 @@ from test_sac import make_runner as make_sac_runner
 
 from arcgym.rl import OnPolicyRunner
 from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
+from arcgym.rl.episode_costs import EpisodeCosts
 from arcgym.rl.replay import ReplayBatch
 
 NUM_ENVS, STEPS = 8, 8
@@ -56,7 +57,16 @@ def sac_step(worlds: slice, processes: int) -> list[torch.Tensor]:
     return [p.detach() for model in (alg.actor, alg.critics) for p in model.parameters()]
 
 
-STEP = {"a2c": a2c_step, "sac": sac_step}
+def episode_costs(worlds: slice, processes: int) -> list[torch.Tensor]:
+    """Mean cost, which moves the multipliers, of episodes that cost as much as their world's number says."""
+    costs = torch.arange(float(NUM_ENVS))[worlds].unsqueeze(0)
+    tracker = EpisodeCosts(1, costs.shape[1], "cpu")
+    for _ in range(2):  # the first episode of a world does not count
+        tracker.add(costs, torch.ones(costs.shape[1]))
+    return [torch.tensor(tracker.take_means())]
+
+
+STEP = {"a2c": a2c_step, "sac": sac_step, "episode costs": episode_costs}
 
 
 def work(rank: int, name: str, folder: str) -> None:
