@@ -40,6 +40,12 @@ def test_solution_agrees_with_a_dense_solver(rows: int, device: str) -> None:
     system.diagonal.assign(np.stack([blocks[r, :, :, r] for r in range(rows)]))
     system.upper.assign(upper)
     system.rhs.assign(np.stack([rhs.reshape(rows, MODES) for _, rhs in systems], axis=1))
-    system.solve()
+    other = rng.normal(size=(rows, 2, MODES)).astype(np.float32)
+    also = wp.array(other, dtype=float, device=device)
+    system.solve(also)
     expected = np.stack([np.linalg.solve(matrix, rhs).reshape(rows, MODES) for matrix, rhs in systems], axis=1)
     np.testing.assert_allclose(system.rhs.numpy(), expected, atol=2e-5 * np.abs(expected).max())
+    answers = np.stack(
+        [np.linalg.solve(matrix, other[:, k].ravel()).reshape(rows, MODES) for k, (matrix, _) in enumerate(systems)], 1
+    )
+    np.testing.assert_allclose(also.numpy(), answers, atol=2e-5 * np.abs(answers).max())

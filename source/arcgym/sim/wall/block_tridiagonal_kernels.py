@@ -117,3 +117,30 @@ def solve_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.ar
         eliminate(r, w, diagonal, upper, rhs)
     for back in range(rows):
         substitute_back(rows - 1 - back, w, diagonal, upper, rhs)
+
+
+@wp.kernel
+def solve_again(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]):
+    """Solve every world's system for another right-hand side, after ``solve_rows``. Launch (W,).
+
+    Args:
+        diagonal: Its factors L, shape (R, W, M, M).
+        upper: Its blocks W, shape (R, W, M, M).
+        rhs: Right-hand side b, shape (R, W, M); the solution x afterwards.
+    """
+    w = wp.tid()
+    rows = diagonal.shape[0]
+    for r in range(rows):
+        y = Unknowns()
+        for j in range(MODES):
+            s = rhs[r, w, j]
+            if r > 0:
+                for k in range(MODES):
+                    s -= upper[r - 1, w, k, j] * rhs[r - 1, w, k]
+            for k in range(j):
+                s -= diagonal[r, w, j, k] * y[k]
+            y[j] = s * diagonal[r, w, j, j]
+        for j in range(MODES):
+            rhs[r, w, j] = y[j]
+    for back in range(rows):
+        substitute_back(rows - 1 - back, w, diagonal, upper, rhs)

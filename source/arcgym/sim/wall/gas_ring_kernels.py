@@ -9,8 +9,8 @@ R rings, V wall vertices, M modes, W worlds.
 import warp as wp
 
 from arcgym.sim.wall.band_kernels import Rings
-from arcgym.sim.wall.block_tridiagonal_kernels import MODES
-from arcgym.sim.wall.coarse_kernels import RingLoads, axis, ring_fields
+from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
+from arcgym.sim.wall.coarse_kernels import RingLoads, add_share, ring_fields
 from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, GasState, set_loads, total_volume
 from arcgym.sim.wall.shell_kernels import ShellElements
 from arcgym.sim.wall.wall_kernels import Tissue
@@ -18,20 +18,18 @@ from arcgym.utils import warp_setup  # noqa: F401
 
 
 @wp.kernel
-def measure_shares(x: wp.array2d[wp.vec3], shell: ShellElements, share: wp.array2d[wp.vec3]):
+def measure_shares(shell: ShellElements, share: wp.array2d[wp.vec3]):
     """Measure what a move of each vertex adds to the lumen's volume. Launch (V, W).
 
     Args:
-        x: Wall positions [m], shape (V, W).
-        shell: The shell.
+        shell: The shell, measured.
         share: Change of the volume with the vertex, the force of 1 Pa on it [m^2], shape (V, W); written.
     """
     i, w = wp.tid()
-    here = x[i, w]
     total = wp.vec3(0.0)
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
-        triangle = shell.fan[k]
-        total += wp.cross(x[triangle.first, w] - here, x[triangle.second, w] - here)
+        scaled = shell.scaled_normal[shell.fan_corner[k] // 3, w]
+        total += scaled / wp.max(wp.length_sq(scaled), 1.0e-12)
     share[i, w] = total / 6.0
 
 
@@ -44,7 +42,7 @@ def assemble_push(
     push: wp.array3d[float],
     answer: wp.array3d[float],
 ):
-    """Sum up the force of 1 Pa on every unknown of the coarse system. Launch (R, W, M).
+    """Sum up the force of 1 Pa on every unknown of the coarse system. Launch (R, W).
 
     Args:
         share: Force of 1 Pa on each vertex [m^2], shape (V, W).
@@ -54,18 +52,17 @@ def assemble_push(
         push: Force of 1 Pa on each unknown [m^2], shape (R, W, M); written.
         answer: The same, to be solved for; written.
     """
-    r, w, a = wp.tid()
-    field = axis(a // 3)
-    along = axis(a % 3)
+    r, w = wp.tid()
     p = rings.patient[w]
-    total = float(0.0)
+    total = Unknowns()
     if rings.moves[r, p] == 1 and tissue.rigid[w] == 0:
         for j in range(loads.members.shape[1]):
             v = loads.members[r, j]
             if v >= 0:
-                total += wp.dot(ring_fields(rings, v, p), field) * wp.dot(share[v, w], along)
-    push[r, w, a] = total
-    answer[r, w, a] = total
+                total = add_share(total, ring_fields(rings, v, p), share[v, w])
+    for a in range(MODES):
+        push[r, w, a] = total[a]
+        answer[r, w, a] = total[a]
 
 
 @wp.kernel

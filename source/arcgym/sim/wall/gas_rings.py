@@ -29,15 +29,13 @@ class GasRings:
     def __init__(self, gas: LumenGas, vertices: int, rings: int):
         """Allocate for V vertices and R rings."""
         self.gas, self.device, count = gas, gas.device, gas.num_envs
-        self._system = BlockTridiagonalSolver(count, rings, self.device)
         self._share = wp.zeros((vertices, count), dtype=wp.vec3, device=self.device)
-        self._push = wp.zeros((rings, count, MODES), dtype=float, device=self.device)
+        self._push, self._answer = (wp.zeros((rings, count, MODES), dtype=float, device=self.device) for _ in range(2))
         self._gain = wp.zeros((rings, count), dtype=wp.vec2, device=self.device)
         self._change = wp.zeros(count, dtype=float, device=self.device)
 
     def solve(
         self,
-        x: wp.array,
         shell: ShellElements,
         rings: Rings,
         loads: RingLoads,
@@ -47,25 +45,20 @@ class GasRings:
         """Solve an assembled coarse system together with the gas.
 
         Args:
-            x: Wall positions [m], shape (V, W), vec3, at which the gas has measured the volume.
-            shell: The shell.
+            shell: The shell, measured where the gas has measured the volume.
             rings: Rings of all patients.
             loads: Loads of all patients.
             tissue: Values of each world.
             system: The system; its right-hand side is replaced by the rings' motion.
         """
-        own, gas = self._system, self.gas
-        wp.copy(own.diagonal, system.diagonal)
-        wp.copy(own.upper, system.upper)
-        self._launch(kernels.measure_shares, x.shape, [x, shell], [self._share])
-        shape = self._push.shape
-        self._launch(kernels.assemble_push, shape, [self._share, rings, loads, tissue], [self._push, own.rhs])
-        system.solve()
-        own.solve()
-        self._launch(kernels.measure_gain, self._gain.shape, [self._push, system.rhs, own.rhs], [self._gain])
+        answer, gas, count = self._answer, self.gas, self._gain.shape
+        self._launch(kernels.measure_shares, self._share.shape, [shell], [self._share])
+        self._launch(kernels.assemble_push, count, [self._share, rings, loads, tissue], [self._push, answer])
+        system.solve(also=answer)
+        self._launch(kernels.measure_gain, count, [self._push, system.rhs, answer], [self._gain])
         inputs = [gas.parts, self._gain, gas.law]
         self._launch(kernels.settle_pressure, self._change.shape, inputs, [gas.state, gas.loads, self._change])
-        self._launch(kernels.add_answer, shape, [own.rhs, self._change], [system.rhs])
+        self._launch(kernels.add_answer, answer.shape, [answer, self._change], [system.rhs])
 
     def _launch(self, kernel: wp.Kernel, shape: Any, inputs: list[Any], outputs: list[Any]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device)

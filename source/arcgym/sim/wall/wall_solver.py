@@ -285,7 +285,7 @@ class WallSolver:
         if self.gas_rings is None:
             system.solve()
         else:
-            self.gas_rings.solve(x, self.elements.data.shell, rings, self.loads, tissue, system)
+            self.gas_rings.solve(self.elements.data.shell, rings, self.loads, tissue, system)
         self._launch(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
