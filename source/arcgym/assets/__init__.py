@@ -15,6 +15,7 @@ from arcgym.assets.endoscope_cfg import (
 )
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
 from arcgym.assets.gas_cfg import GasCfg
+from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ __all__ = [
     "MAGNETIC_CFG",
     "PROXIMAL_CFG",
     "TipPullCfg",
+    "WallLawCfg",
 ]
 
 __getattr__ = lazy_names(__name__, _LAZY)

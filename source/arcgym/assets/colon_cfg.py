@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.gas_cfg import GasCfg
+from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.string import did_you_mean
 from arcgym.utils.validation import FieldError, Range, require, require_at_least, require_non_negative, require_positive
@@ -59,6 +60,8 @@ class ColonCfg:
     :func:`arcgym.envs.mdp.randomize_anchors`, to see how much a policy depends on how firmly the colon is held."""
     gas: GasCfg = GasCfg()
     """Gas in the lumen: pressure, insufflation and collapse; off by default."""
+    wall_law: WallLawCfg = WallLawCfg()
+    """How a shell stretches: stiffening, thickness by diameter and relaxation; all off by default."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""
 
@@ -80,6 +83,8 @@ class ColonCfg:
         require_non_negative(self, "anchor_slack", unit="m")
         if self.gas.enabled and self.wall_model != "shell":
             raise FieldError(self, "wall_model", "is 'solid', expected 'shell' with gas.enabled=true: switch one off.")
+        if self.wall_law.active and self.wall_model != "shell":
+            raise FieldError(self, "wall_model", "is 'solid', expected 'shell' with any of wall_law: switch one off.")
         for field in ("anchor_stiffness", "anchor_slack"):
             for segment in getattr(self, field):
                 if segment not in SEGMENTS:

@@ -48,6 +48,11 @@ class GasCfg:
     """Pressure of the props at half the least opening [Pa]; at a quarter of it three times as much. A choice: as much
     as suction draws. Raise it if a collapsed lumen is to stay nearer to ``least_opening``."""
 
+    @property
+    def active(self) -> bool:
+        """Whether it is on."""
+        return self.enabled
+
     def validate_config(self) -> None:
         """Check bounds.
 

@@ -38,8 +38,15 @@ class ShellGeometry:
     """Largest stiffness of each hinge over flexural rigidity that any pattern of angles can ask for, shape (H,)."""
 
 
-def shell_geometry(points: np.ndarray, triangles: np.ndarray) -> ShellGeometry:
-    """Rest geometry of the triangles and of the edges between two of them."""
+def shell_geometry(points: np.ndarray, triangles: np.ndarray, share: np.ndarray | None = None) -> ShellGeometry:
+    """Rest geometry of the triangles and of the edges between two of them.
+
+    Args:
+        points: Rest positions [m], shape (V, 3).
+        triangles: Vertices, shape (F, 3).
+        share: Thickness at each vertex over that of the tissue, shape (V,), whose cube is a factor on the stiffness of
+            hinges; None for 1.
+    """
     points = points.astype(np.float64)
     a, b, c = (points[triangles[:, k]] for k in range(3))
     along = (b - a) / np.linalg.norm(b - a, axis=1, keepdims=True)
@@ -54,7 +61,10 @@ def shell_geometry(points: np.ndarray, triangles: np.ndarray) -> ShellGeometry:
     foot = np.einsum("hki,hi->hk", opposite, edge) / length[:, None] ** 2
     angle = fold_angles(points, hinges)
     own = hinge_of_edges(triangles, hinges, sides)
-    coupled, coupling = bending_coupling(points, triangles, area, own, polygon_factor(angle))
+    factor = polygon_factor(angle)
+    if share is not None:
+        factor = factor * share[hinges].mean(axis=1) ** 3
+    coupled, coupling = bending_coupling(points, triangles, area, own, factor)
     bound = np.abs(coupling).mean(axis=2).sum(axis=1)  # nu is at most 1/2
     return ShellGeometry(
         triangles, np.linalg.inv(edges), area, hinges, sides, foot, length, angle, coupled, coupling, bound

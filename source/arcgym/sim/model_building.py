@@ -20,6 +20,7 @@ from arcgym.assets.endoscope import Endoscope
 from arcgym.assets.shell_geometry import shell_geometry
 from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.wall.ring_modes import RingModes, ring_modes
+from arcgym.sim.wall.thickness import thickness_shares
 from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
 from arcgym.sim.wall.wall_topology import LumenTopology, lumen_topology
 
@@ -44,28 +45,32 @@ def wall_parameters(colon: Colon, patient: int = 0) -> WallParameters:
     wall = colon.patients[patient].wall
     builder.color(include_bending=isinstance(wall, ShellMesh))
     points = np.array(builder.particle_q, dtype=np.float64).reshape(-1, 3)
+    share = thickness_shares(colon.cfg.wall_law, points, wall.ring, colon.thickness)
     return WallParameters(
         points=points,
-        elements=_elements(wall, builder),
+        elements=_elements(wall, builder, share),
         moduli=colon.moduli(*colon.elasticity()),
-        mass=np.array(builder.particle_mass, dtype=np.float64),
+        mass=np.array(builder.particle_mass, dtype=np.float64) * share[wall.ring],
         mobile=colon.mobile(patient),
         anchor=colon.anchor_springs(patient),
         ring=wall.ring,
         thickness=2.0 * colon.surface_offset,
+        share=share,
         colors=[np.asarray(group) for group in builder.particle_color_groups],
     )
 
 
-def _elements(wall: ShellMesh | WallMesh, builder: newton.ModelBuilder) -> ShellParameters | SolidParameters:
+def _elements(
+    wall: ShellMesh | WallMesh, builder: newton.ModelBuilder, share: np.ndarray
+) -> ShellParameters | SolidParameters:
     if isinstance(wall, ShellMesh):
-        return ShellParameters(shell_geometry(wall.points, wall.triangles))
+        return ShellParameters(shell_geometry(wall.points, wall.triangles, share[wall.ring]))
     return SolidParameters(np.array(builder.tet_indices, dtype=np.int32).reshape(-1, 4))
 
 
 def wall_modes(wall: WallParameters) -> RingModes:
     """Return the ring modes of the wall."""
-    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness)
+    return ring_modes(wall.points, wall.ring, wall.mobile, wall.mass, wall.anchor.stiffness, wall.share)
 
 
 def carried_surface(

@@ -25,14 +25,13 @@ from arcgym.sim.patient_walls import patient_walls
 from arcgym.sim.scope.actuation import Actuation
 from arcgym.sim.scope.scope_readout import ScopeReadout
 from arcgym.sim.simulation_cfg import SimulationCfg
-from arcgym.sim.snapshot import Snapshot, SnapshotSet
+from arcgym.sim.snapshot import OPTIONAL, Snapshot, SnapshotSet
 from arcgym.sim.snapshot_library import SnapshotLibrary
-from arcgym.sim.wall.lumen_gas import GAS, LumenGas
-from arcgym.sim.wall.wall_parameters import WallParameters
+from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.sim.wall.wall_topology import LumenTopology
-from arcgym.sim.wall.wall_weight import WallWeight
+from arcgym.sim.wall_effects import wall_effects
 from arcgym.utils.configclass import validate
 
 logger = logging.getLogger(__name__)
@@ -114,32 +113,13 @@ class Simulation:
             self._carried_surface(rest, lumen),
         )
         slots = len(self.contact.records.face)
-        self.gas = self._lumen_gas(walls, lumen)
-        weight = self._wall_weight(walls)
-        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, self.gas, weight)
+        effects = wall_effects(self, walls, lumen)
+        self.gas: LumenGas | None = effects[0]
+        self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, *effects)
         if isinstance(colon.wall, ShellMesh):
             self.contact.soften(self.wall.tissue.moduli, cfg.contact.tissue_share)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
         self.wall_readout = WallReadout(lumen, rest, colon.wall.ring, anchors, scale, self.patient, self.device)
-
-    def _lumen_gas(self, walls: list[WallParameters], lumen: LumenTopology) -> LumenGas | None:
-        """Return the gas in the lumen, if there is any."""
-        gas, wall = self.colon.cfg.gas, self.colon.wall
-        if not gas.enabled:
-            return None
-        self.require_two_level("has no gas in the lumen", "set env.scene.colon.gas.enabled=false")
-        if not self.cfg.wall.coarse_correction:
-            raise ValueError("Gas needs the coarse correction: set env.sim.wall.coarse_correction=true.")
-        assert isinstance(wall, ShellMesh)  # as ColonCfg checks
-        return LumenGas(gas, lumen, walls, wall.triangles, self.patient, self.cfg.dt, self.device)
-
-    def _wall_weight(self, walls: list[WallParameters]) -> WallWeight | None:
-        """Return the weight of the walls, if they weigh."""
-        if not self.cfg.weight.enabled:
-            return None
-        self.require_two_level("has a wall without weight", "set env.sim.weight.enabled=false")
-        arcs = [patient.wall.ring_arc for patient in self.colon.patients]
-        return WallWeight(self.cfg.weight, walls, arcs, self.actuation.gravity, self.device)
 
     def _carried_surface(self, rest: list[np.ndarray], lumen: LumenTopology) -> CarriedSurface | None:
         """Return the fine surface that the links touch, or None if they touch the wall's own faces."""
@@ -276,7 +256,7 @@ class Simulation:
             **self.actuation.memory,
         }
         views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()} | self.contact.memory
-        views |= {} if self.gas is None else self.gas.memory
+        views |= self.wall.elements.memory | ({} if self.gas is None else self.gas.memory)
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
     def world_settings(self) -> dict[str, torch.Tensor]:
@@ -357,7 +337,7 @@ class Simulation:
         lumen is to be filled."""
         now = self.read_snapshot(0).arrays
         now["link_ring"] = np.full_like(now["link_ring"], -1)
-        now |= {name: np.zeros_like(now[name]) for name in now if name.startswith(GAS)}
+        now |= {name: np.zeros_like(now[name]) for name in now if name.startswith(OPTIONAL)}
         walls = [patient.wall.points.astype(np.float32) for patient in self.colon.patients]
         return [Snapshot({**now, "nodal_pos": points}) for points in walls]
 

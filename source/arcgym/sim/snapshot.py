@@ -16,9 +16,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from arcgym.sim.wall.lumen_gas import GAS
+from arcgym.sim.wall.tissue_shell import RELAXATION
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
+
+
+OPTIONAL = (GAS, RELAXATION)
+"""Begin the names of arrays that stored states may lack or have too many; zeros stand for those that they lack."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +130,7 @@ class SnapshotSet:
         if self.fingerprint != expected:
             return f"another wall mesh or endoscope (fingerprint {self.fingerprint}, expected {expected})"
         missing = set(sim.world_arrays()) ^ set(self.snapshots[0].arrays)
-        missing = {name for name in missing if not name.startswith(GAS)}
+        missing = {name for name in missing if not name.startswith(OPTIONAL)}
         return f"other actuators (differing in {', '.join(sorted(missing))})" if missing else ""
 
 

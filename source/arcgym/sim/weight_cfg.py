@@ -42,6 +42,11 @@ class WeightCfg:
     """Mass of fluid and stool by length of colon [kg/m], spread evenly. A choice: 0.1 l in 1.9 m, for 0 to 0.2 l are
     left by a good preparation (a choice, too); 0.3 kg unprepared (ICRP 89) is 0.16."""
 
+    @property
+    def active(self) -> bool:
+        """Whether it is on."""
+        return self.enabled
+
     def validate_config(self) -> None:
         """Check names and bounds.
 

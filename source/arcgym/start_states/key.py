@@ -23,6 +23,9 @@ FORMAT = 1
 NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "expert", "device", "use_graph")
 """Fields of configurations that change no state, or whose content is hashed instead of their name."""
 
+EFFECTS = ("gas", "wall_law", "weight")
+"""Fields that change no state while they are not ``active``."""
+
 
 @dataclass(frozen=True)
 class StateKey:
@@ -76,7 +79,8 @@ def state_key(colon: Colon, endoscope: Endoscope, sim: SimulationCfg, patient: i
 
 
 def _settings(cfg: Any) -> dict[str, Any]:
-    return {name: value for name, value in to_plain(cfg).items() if name not in NOT_IN_STATE}
+    off = [name for name in EFFECTS if hasattr(cfg, name) and not getattr(cfg, name).active]
+    return {name: value for name, value in to_plain(cfg).items() if name not in (*NOT_IN_STATE, *off)}
 
 
 def _digest(value: Any) -> str:

@@ -39,7 +39,12 @@ class RingModes:
 
 
 def ring_modes(
-    points: np.ndarray, ring: np.ndarray, mobile: np.ndarray, mass: np.ndarray, anchor: np.ndarray
+    points: np.ndarray,
+    ring: np.ndarray,
+    mobile: np.ndarray,
+    mass: np.ndarray,
+    anchor: np.ndarray,
+    share: np.ndarray | None = None,
 ) -> RingModes:
     """Find the rings' planes and project mass and anchors on their modes.
 
@@ -49,6 +54,7 @@ def ring_modes(
         mobile: Whether each vertex moves, shape (V,), bool.
         mass: Vertex masses [kg], shape (V,).
         anchor: Vertex anchor springs [N/m], shape (V,).
+        share: Thickness of each ring over the tissue's, shape (R,); None for 1. A band bends as its thicker ring.
     """
     count = int(ring.max()) + 1
     group = members(np.arange(len(points)), ring, count, pad_first=False)
@@ -56,6 +62,8 @@ def ring_modes(
     plane, radius = _in_plane(points, group)
     bending = np.zeros((count, 3, 3))
     bending[:-1] = np.linalg.cholesky(bending_bound(points, plane, radius, group))
+    if share is not None:
+        bending[:-1] *= (np.maximum(share[:-1], share[1:]) ** 1.5)[:, None, None]
     moves = np.array([mobile[row[row >= 0]].all() for row in group])
     fields = np.column_stack([np.ones(len(points)), plane])
     mass, anchor = (_products(values, ring, fields, count) for values in (mass, anchor))

@@ -8,15 +8,17 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
+import torch
 import warp as wp
 
-from arcgym.assets.shell_geometry import ShellGeometry
+from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.sim.patient_arrays import patient_array
-from arcgym.sim.wall import gas_shell_kernels, shell_kernels, solid_kernels
+from arcgym.sim.wall import solid_kernels
 from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.gas_kernels import GasLoads
-from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangles
+from arcgym.sim.wall.shell_elements import GasShell, Shell
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
+from arcgym.sim.wall.tissue_shell import TissueShell
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
 from arcgym.sim.wall.wall_topology import vertex_entries
@@ -38,22 +40,38 @@ class WallElements(Protocol):
     size: float
     """Length that makes the first modulus a stiffness [m]; 1 for a shell, whose moduli are stiffnesses."""
 
+    @property
+    def memory(self) -> dict[str, torch.Tensor]:
+        """What the elements' future depends on besides the wall, by name, as views of shape (W, ...)."""
+
+    def advance(self, x: wp.array, tissue: Tissue) -> None:
+        """Begin a step at positions ``x`` [m], shape (V, W)."""
+
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure the elements at positions ``x`` [m], shape (V, W), before a residual or a sweep."""
 
 
 def wall_elements(
-    walls: Sequence[WallParameters], patient: wp.array, device: str, gas: GasLoads | None = None
+    walls: Sequence[WallParameters],
+    patient: wp.array,
+    dt: float,
+    device: str,
+    gas: GasLoads | None = None,
+    law: WallLawCfg | None = None,
 ) -> WallElements:
     """Return elements of the walls' kind.
 
     Args:
         walls: Wall of each patient.
         patient: Patient of each world, shape (W,), int32.
+        dt: Physics step [s].
         device: Warp device.
         gas: What gas does to the walls, which are shells then; None for none.
+        law: How the walls stretch, which are shells then; None for the plain law.
     """
     shells = [wall.elements.geometry for wall in walls if isinstance(wall.elements, ShellParameters)]
+    if law is not None:
+        return TissueShell(law, walls, dt, patient, device, gas)
     if shells and gas is not None:
         return GasShell(shells, len(walls[0].points), patient, device, gas)
     if shells:
@@ -63,8 +81,9 @@ def wall_elements(
 
 
 class Solid:
-    """Tetrahedra, which need nothing measured."""
+    """Tetrahedra, which need nothing measured and remember nothing."""
 
+    memory: dict[str, torch.Tensor] = {}
     sweep_color, residual = sweep_kernels(
         solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic
     )
@@ -92,94 +111,8 @@ class Solid:
         self.data.entry_start = wp.array(start, dtype=int, device=device)
         self.data.entry = wp.array(entry, dtype=int, device=device)
 
-    def measure(self, x: wp.array, tissue: Tissue) -> None:
+    def advance(self, x: wp.array, tissue: Tissue) -> None:
         """Do nothing."""
 
-
-class Shell:
-    """Triangles and hinges, measured once a step."""
-
-    size = 1.0
-    sweep_color, residual = sweep_kernels(
-        shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
-    )
-    measure_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle)
-
-    def __init__(self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str):
-        """Copy the elements of the walls to the device and allocate what is measured in all W worlds.
-
-        Args:
-            geometries: Rest geometry of F triangles and H hinges, the same ones in each patient.
-            vertices: Number of vertices, V.
-            patient: Patient of each world, shape (W,), int32.
-            device: Warp device.
-        """
-        self.device, num_envs = device, len(patient)
-        self.data = data = shell_kernels.ShellElements()
-        first = geometries[0]
-        triangles, hinges = first.triangles, first.hinges
-        self.corners = triangles
-        start, corner = vertex_entries(triangles, vertices)
-        types: Any = (shell_kernels.VertexTriangle, shell_kernels.VertexTriangleRest)
-        dtypes = (types[0].numpy_dtype(), types[1].numpy_dtype())
-        fans = [vertex_triangles(geometry, corner, dtypes) for geometry in geometries]
-        shared = {
-            "triangles": (triangles, wp.vec3i),
-            "edges": (own_hinges(first), wp.vec3i),
-            "hinges": (hinges, wp.vec4i),
-            "coupled": (first.coupled, int),
-            "fan_start": (start, int),
-            "fan": (fans[0][0], types[0]),
-            "fan_corner": (corner, int),
-        }
-        own = {
-            "rest": ([triangle_rest(geometry) for geometry in geometries], wp.vec4),
-            "rest_angle": ([geometry.rest_angle for geometry in geometries], float),
-            "coupling": ([geometry.coupling for geometry in geometries], wp.vec2),
-            "inverse_length": ([1.0 / geometry.length for geometry in geometries], float),
-            "fan_rest": ([fan[1] for fan in fans], types[1]),
-        }
-        data.patient = patient
-        for name, (array, dtype) in shared.items():
-            setattr(data, name, wp.array(array, dtype=dtype, device=device))
-        for name, (arrays, dtype) in own.items():
-            setattr(data, name, patient_array(arrays, dtype, device))
-        data.scaled_normal = wp.zeros((len(triangles), num_envs), dtype=wp.vec3, device=device)
-        data.corner_force = wp.zeros((3 * len(triangles), num_envs), dtype=wp.vec3, device=device)
-        data.angle_change = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
-        data.moment = wp.zeros((len(hinges), num_envs), dtype=float, device=device)
-
     def measure(self, x: wp.array, tissue: Tissue) -> None:
-        """Measure normals and corner forces of the triangles and angles of the hinges."""
-        data = self.data
-        shape = data.angle_change.shape
-        wp.launch(shell_kernels.measure_hinges, shape, inputs=[x], outputs=[data], device=self.device)
-        wp.launch(shell_kernels.measure_moments, shape, inputs=[tissue], outputs=[data], device=self.device)
-        shape = data.scaled_normal.shape
-        wp.launch(shell_kernels.measure_triangles, shape, inputs=[x, tissue], outputs=[data], device=self.device)
-
-
-class GasShell:
-    """Triangles and hinges with gas inside, measured once a step."""
-
-    size = Shell.size
-    sweep_color, residual = sweep_kernels(
-        gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_elements, gas_shell_kernels.add_gas_forces
-    )
-    measure_bands = band_kernel(gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_band_triangle)
-
-    def __init__(
-        self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str, gas: GasLoads
-    ):
-        """Build the shell, see :class:`Shell`; ``gas`` is read in every step."""
-        self._shell = Shell(geometries, vertices, patient, device)
-        self.corners = self._shell.corners
-        self.data = gas_shell_kernels.GasShellElements()
-        self.data.shell, self.data.gas = self._shell.data, gas
-
-    def measure(self, x: wp.array, tissue: Tissue) -> None:
-        """Measure the shell, and add the gas to its corner forces."""
-        shell = self._shell
-        shell.measure(x, tissue)
-        shape = shell.data.scaled_normal.shape
-        wp.launch(gas_shell_kernels.add_gas, shape, inputs=[x, self.data], device=shell.device)
+        """Do nothing."""

@@ -53,6 +53,8 @@ class WallParameters:
     """Ring of each vertex, shape (V,)."""
     thickness: float
     """Distance between the outermost vertices of two stretches that touch [m]: a shell's thickness, 0 for a solid."""
+    share: np.ndarray
+    """Thickness of each ring over that of the tissue, shape (R,); 1 but for walls whose thickness differs."""
     colors: list[np.ndarray]
     """Vertices that share no element, colour by colour."""
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
+from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import patient_array
@@ -74,6 +75,7 @@ class WallSolver:
         device: str,
         gas: LumenGas | None = None,
         weight: WallWeight | None = None,
+        law: WallLawCfg | None = None,
     ):
         """Allocate the solver.
 
@@ -87,6 +89,7 @@ class WallSolver:
             device: Warp device.
             gas: Gas in the lumen, if there is any; advanced in every step.
             weight: Weight of the walls, if they weigh.
+            law: How shells stretch; None for the plain law.
         """
         num_envs, first = len(patient), walls[0]
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
@@ -95,7 +98,7 @@ class WallSolver:
         self.moves = bool(mobile.any())
         self.nodes = wall_nodes(walls, patient, device)
         self.gas, self.weight = gas, weight
-        self.elements = wall_elements(walls, patient, device, None if gas is None else gas.loads)
+        self.elements = wall_elements(walls, patient, dt, device, None if gas is None else gas.loads, law)
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
@@ -159,6 +162,7 @@ class WallSolver:
                 self.gas.fit_rigid()
                 self.gas.end()
             return
+        self.elements.advance(x, self.tissue)
         decay = math.exp(-self.cfg.drag * self.dt)
         inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
         shape, outputs = (self.vertex_count, self.num_envs), [self.x_prev, self.inertial]

@@ -1,0 +1,99 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shell whose tissue has a law of its own, on the device."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import torch
+import warp as wp
+
+from arcgym.assets.wall_law_cfg import WallLawCfg
+from arcgym.sim.patient_arrays import patient_array
+from arcgym.sim.wall import gas_shell_kernels, shell_kernels
+from arcgym.sim.wall import tissue_shell_kernels as kernels
+from arcgym.sim.wall.band_kernels import band_kernel
+from arcgym.sim.wall.gas_kernels import GasLoads
+from arcgym.sim.wall.shell_elements import Shell
+from arcgym.sim.wall.shell_kernels import STIFFENING
+from arcgym.sim.wall.sweep_kernels import sweep_kernels
+from arcgym.sim.wall.wall_kernels import Tissue
+from arcgym.sim.wall.wall_parameters import ShellParameters, WallParameters
+
+RELAXATION = "relaxation."
+"""Begins the names of the wall's memory of its tension. A state without them is that of a wall that has rested."""
+
+
+class TissueShell:
+    """Triangles and hinges with stiffening, thickness and relaxation of their own, and gas inside if there is any."""
+
+    size = Shell.size
+    sweep_color, residual = sweep_kernels(
+        kernels.TissueShellElements, kernels.add_tissue_elements, kernels.add_tissue_forces
+    )
+    measure_bands = band_kernel(kernels.TissueShellElements, kernels.add_tissue_band_triangle)
+
+    def __init__(
+        self,
+        law: WallLawCfg,
+        walls: Sequence[WallParameters],
+        dt: float,
+        patient: wp.array,
+        device: str,
+        gas: GasLoads | None,
+    ):
+        """Build the shell, see :class:`Shell`.
+
+        Args:
+            law: Settings.
+            walls: Wall of each patient.
+            dt: Physics step [s].
+            patient: Patient of each world, shape (W,), int32.
+            device: Warp device.
+            gas: What gas does to the walls, read in every step; None for none.
+        """
+        geometries = [wall.elements.geometry for wall in walls if isinstance(wall.elements, ShellParameters)]
+        self._shell = Shell(geometries, len(walls[0].points), patient, device)
+        self.corners = self._shell.corners
+        self._with_gas = gas_shell_kernels.GasShellElements()
+        self._with_gas.shell = self._shell.data
+        self.data = kernels.TissueShellElements()
+        self.data.shell = self._shell.data
+        self.data.gassy, self.data.relaxing = int(gas is not None), int(law.relaxation)
+        if gas is not None:
+            self._with_gas.gas = self.data.gas = gas
+        self.data.stiffening = float(STIFFENING) if law.stiffening is None else law.stiffening
+        shares = [wall.share[wall.ring][self.corners].mean(axis=1) for wall in walls]
+        self.data.share = patient_array(shares, float, device)
+        shape = (len(self.corners), len(patient)) if law.relaxation else (0, 0)
+        self._quick, self._slow, self.data.relief = (wp.zeros(shape, dtype=wp.vec3, device=device) for _ in range(3))
+        self._shares = wp.vec2(*law.relaxing_share)
+        self._ways = wp.vec2(*(1.0 - math.exp(-dt / time) for time in law.relaxing_time))
+
+    @property
+    def memory(self) -> dict[str, torch.Tensor]:
+        """What the wall remembers of its tension [N/m], by name, as views of shape (W, F, 3)."""
+        if self.data.relaxing == 0:
+            return {}
+        arrays = {"quick": self._quick, "slow": self._slow}
+        return {f"{RELAXATION}{name}": wp.to_torch(array).transpose(0, 1) for name, array in arrays.items()}
+
+    def advance(self, x: wp.array, tissue: Tissue) -> None:
+        """Begin a step at positions ``x`` [m], shape (V, W): let the tension fade."""
+        if self.data.relaxing == 1:
+            outputs = [self._quick, self._slow]
+            inputs = [x, tissue, self.data, self._shares, self._ways]
+            device = self._shell.device
+            wp.launch(kernels.relax, self._quick.shape, inputs=inputs, outputs=outputs, device=device)
+
+    def measure(self, x: wp.array, tissue: Tissue) -> None:
+        """Measure the shell with its tissue, and add the gas to its corner forces."""
+        shell = self._shell.data
+        device, hinges, triangles = self._shell.device, shell.angle_change.shape, shell.scaled_normal.shape
+        wp.launch(shell_kernels.measure_hinges, hinges, inputs=[x], outputs=[shell], device=device)
+        wp.launch(shell_kernels.measure_moments, hinges, inputs=[tissue], outputs=[shell], device=device)
+        wp.launch(kernels.measure_tissue, triangles, inputs=[x, tissue], outputs=[self.data], device=device)
+        if self.data.gassy == 1:
+            wp.launch(gas_shell_kernels.add_gas, triangles, inputs=[x, self._with_gas], device=device)

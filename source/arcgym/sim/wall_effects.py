@@ -1,0 +1,61 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Effects on the wall that are off by default: gas, weight and a law of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from arcgym.anatomy.shell import ShellMesh
+from arcgym.assets.wall_law_cfg import WallLawCfg
+from arcgym.sim.wall.lumen_gas import LumenGas
+from arcgym.sim.wall.wall_parameters import WallParameters
+from arcgym.sim.wall.wall_topology import LumenTopology
+from arcgym.sim.wall.wall_weight import WallWeight
+
+if TYPE_CHECKING:
+    from arcgym.sim.simulation import Simulation
+
+
+def wall_effects(
+    sim: Simulation, walls: Sequence[WallParameters], lumen: LumenTopology
+) -> tuple[LumenGas | None, WallWeight | None, WallLawCfg | None]:
+    """Return the gas in the lumen, the weight of the walls and how they stretch; None for each that is off.
+
+    Args:
+        sim: Simulation with colon, patients and actuation.
+        walls: Wall of each patient.
+        lumen: Faces of the lumen.
+
+    Raises:
+        ValueError: If one is on that ``SimulationCfg.solver`` does not have.
+    """
+    return _gas(sim, walls, lumen), _weight(sim, walls), _law(sim)
+
+
+def _gas(sim: Simulation, walls: Sequence[WallParameters], lumen: LumenTopology) -> LumenGas | None:
+    gas, wall = sim.colon.cfg.gas, sim.colon.wall
+    if not gas.enabled:
+        return None
+    sim.require_two_level("has no gas in the lumen", "set env.scene.colon.gas.enabled=false")
+    if not sim.cfg.wall.coarse_correction:
+        raise ValueError("Gas needs the coarse correction: set env.sim.wall.coarse_correction=true.")
+    assert isinstance(wall, ShellMesh)  # as ColonCfg checks
+    return LumenGas(gas, lumen, walls, wall.triangles, sim.patient, sim.cfg.dt, sim.device)
+
+
+def _weight(sim: Simulation, walls: Sequence[WallParameters]) -> WallWeight | None:
+    if not sim.cfg.weight.enabled:
+        return None
+    sim.require_two_level("has a wall without weight", "set env.sim.weight.enabled=false")
+    arcs = [patient.wall.ring_arc for patient in sim.colon.patients]
+    return WallWeight(sim.cfg.weight, walls, arcs, sim.actuation.gravity, sim.device)
+
+
+def _law(sim: Simulation) -> WallLawCfg | None:
+    law = sim.colon.cfg.wall_law
+    if not law.active:
+        return None
+    sim.require_two_level("has the plain law of the wall", "leave env.scene.colon.wall_law as it is by default")
+    return law
