@@ -14,6 +14,7 @@ QUICK = [
     "cantilever_small,cantilever_large",
     "torsion",
     "buckling",
+    "cantilever_graded",
     "weight_scope",
     "wall_beam",
     "weight_wall",

@@ -11,6 +11,7 @@ from arcgym.assets.endoscope_cfg import (
     MAGNETIC_CFG,
     PROXIMAL_CFG,
     EndoscopeCfg,
+    GradingCfg,
     IntroducerCfg,
 )
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
@@ -45,6 +46,7 @@ __all__ = [
     "FORCE_TIERS",
     "ForceTiersCfg",
     "GasCfg",
+    "GradingCfg",
     "IntroducerCfg",
     "MAGNETIC_CFG",
     "PROXIMAL_CFG",

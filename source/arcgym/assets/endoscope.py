@@ -127,6 +127,9 @@ class Endoscope:
                 stiffness = None if cfg.torsional_rigidity is None else twist[hinge - 1]
             if stiffness is not None:
                 _scale_turn(builder, dof, stiffness / builder.joint_target_ke[dof])
+            if cfg.grading.active and hinge < first_bent and axis != 2:
+                behind = float(stage.link_length[hinge:first_bent].sum())
+                _scale_turn(builder, dof, cfg.grading.share(behind - ROUNDING))
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
@@ -173,6 +176,10 @@ class Endoscope:
         """Set the friction coefficient between scope and wall, shape (n,), in the worlds ``env_ids``."""
         self._sim.require_two_level("has one friction coefficient for all worlds")
         self._sim.friction[slice(None) if env_ids is None else env_ids] = mu
+
+
+ROUNDING = 1.0e-6
+"""Rounding of lengths [m]."""
 
 
 def _scale_turn(builder: newton.ModelBuilder, dof: int, factor: float) -> None:

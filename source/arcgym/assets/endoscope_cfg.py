@@ -39,6 +39,44 @@ class IntroducerCfg:
 
 
 @configclass
+class GradingCfg:
+    """Shaft that is softer towards the tip. Both lengths are measured back from the bending section, or from the front
+    of a scope without one; see docs/physics.md, Scope."""
+
+    passive_length: float = 0.0
+    """Length of the passive section right behind the bending section [m]; 0 for none. 0.1 m goes with the default
+    share."""
+    passive_share: float = 0.4
+    """Its bending rigidity over the shaft's. A choice, from 0.25 to 0.6: no scope's is published that we know of."""
+    distal_length: float = 0.0
+    """How far the softer distal part of the shaft reaches [m]; 0 for none. 0.3 m goes with the default share."""
+    distal_share: float = 0.8
+    """Its bending rigidity over the shaft's, where the passive section does not lie. A choice."""
+
+    @property
+    def active(self) -> bool:
+        """Whether the shaft is graded."""
+        return max(self.passive_length, self.distal_length) > 0.0
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "passive_length", Range(0.0, 3.0), unit="m")
+        require(self, "distal_length", Range(0.0, 3.0), unit="m")
+        require(self, "passive_share", Range(0.01, 10.0))
+        require(self, "distal_share", Range(0.01, 10.0))
+
+    def share(self, distance: float) -> float:
+        """Return the rigidity at a distance [m] behind the bending section, over the shaft's."""
+        if distance < self.passive_length:
+            return self.passive_share
+        return self.distal_share if distance < self.distal_length else 1.0
+
+
+@configclass
 class EndoscopeCfg:
     """An endoscope and how it is driven."""
 
@@ -62,6 +100,8 @@ class EndoscopeCfg:
     """Bending rigidity EI of the bending section [N m^2], over the stage's."""
     torsional_rigidity: float | None = None
     """Torsional rigidity GJ of the whole scope [N m^2/rad], over the stage's."""
+    grading: GradingCfg = GradingCfg()
+    """Passive section and softer distal part of the shaft; off by default."""
     introducer: IntroducerCfg = IntroducerCfg()
     """Guide outside the anus."""
 

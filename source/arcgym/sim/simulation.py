@@ -25,7 +25,7 @@ from arcgym.sim.patient_walls import patient_walls
 from arcgym.sim.scope.actuation import Actuation
 from arcgym.sim.scope.scope_readout import ScopeReadout
 from arcgym.sim.simulation_cfg import SimulationCfg
-from arcgym.sim.snapshot import OPTIONAL, Snapshot, SnapshotSet
+from arcgym.sim.snapshot import Snapshot, SnapshotSet, optional
 from arcgym.sim.snapshot_library import SnapshotLibrary
 from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.wall_readout import WallReadout
@@ -337,7 +337,7 @@ class Simulation:
         lumen is to be filled."""
         now = self.read_snapshot(0).arrays
         now["link_ring"] = np.full_like(now["link_ring"], -1)
-        now |= {name: np.zeros_like(now[name]) for name in now if name.startswith(OPTIONAL)}
+        now |= {name: np.zeros_like(now[name]) for name in now if optional(name)}
         walls = [patient.wall.points.astype(np.float32) for patient in self.colon.patients]
         return [Snapshot({**now, "nodal_pos": points}) for points in walls]
 

@@ -24,6 +24,13 @@ if TYPE_CHECKING:
 
 OPTIONAL = (GAS, RELAXATION)
 """Begin the names of arrays that stored states may lack or have too many; zeros stand for those that they lack."""
+OPTIONAL_OF_DRIVES = (".play", ".lag")
+"""End the names of such arrays."""
+
+
+def optional(name: str) -> bool:
+    """Whether a stored state may lack an array of this name, or have one that is not asked for."""
+    return name.startswith(OPTIONAL) or name.endswith(OPTIONAL_OF_DRIVES)
 
 
 @dataclass(frozen=True)
@@ -130,7 +137,7 @@ class SnapshotSet:
         if self.fingerprint != expected:
             return f"another wall mesh or endoscope (fingerprint {self.fingerprint}, expected {expected})"
         missing = set(sim.world_arrays()) ^ set(self.snapshots[0].arrays)
-        missing = {name for name in missing if not name.startswith(OPTIONAL)}
+        missing = {name for name in missing if not optional(name)}
         return f"other actuators (differing in {', '.join(sorted(missing))})" if missing else ""
 
 

@@ -23,8 +23,10 @@ FORMAT = 1
 NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "expert", "device", "use_graph")
 """Fields of configurations that change no state, or whose content is hashed instead of their name."""
 
-EFFECTS = ("gas", "wall_law", "weight")
+EFFECTS = ("gas", "wall_law", "weight", "grading")
 """Fields that change no state while they are not ``active``."""
+OF_DRIVES = ("play", "lag")
+"""Fields of drives that change no state while they are zero."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,12 @@ def state_key(colon: Colon, endoscope: Endoscope, sim: SimulationCfg, patient: i
 
 def _settings(cfg: Any) -> dict[str, Any]:
     off = [name for name in EFFECTS if hasattr(cfg, name) and not getattr(cfg, name).active]
-    return {name: value for name, value in to_plain(cfg).items() if name not in (*NOT_IN_STATE, *off)}
+    kept = {name: value for name, value in to_plain(cfg).items() if name not in (*NOT_IN_STATE, *off)}
+    for drive in kept.get("actuators", {}).values():
+        for name in OF_DRIVES:
+            if drive.get(name) == 0.0:
+                del drive[name]
+    return kept
 
 
 def _digest(value: Any) -> str:

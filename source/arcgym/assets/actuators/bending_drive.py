@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -52,6 +53,10 @@ class BendingDrive(ActuatorBase):
         self.angle = wp.zeros(num_envs, dtype=wp.vec2, device=device)
         """Pitch and yaw that the section is driven to [rad], shape (W,)."""
         self.commands, self.memory, self.readings = [self.command], {"angle": self.angle}, {"bending": self.angle}
+        self._by_cables = self.cfg.play > 0.0 or self.cfg.lag > 0.0
+        if self._by_cables:
+            self._slack, self._behind = (wp.zeros(num_envs, dtype=wp.vec2, device=device) for _ in range(2))
+            self.memory |= {"play": self._slack, "lag": self._behind}
 
     def set_command(self, pitch: torch.Tensor, yaw: torch.Tensor) -> None:
         """Set the angles of the bending section, approached at ``cfg.rate`` and within the stage's limits.
@@ -68,14 +73,25 @@ class BendingDrive(ActuatorBase):
         """Turn the wheels towards the command and set the targets of the hinges."""
         inputs = [self.command, self.cfg.rate, self._limit, dt, self._hinge_coords, self._coords]
         outputs = [self.angle, control.joint_target_q]
-        wp.launch(kernels.drive_bending, self._num_envs, inputs=inputs, outputs=outputs, device=self._device)
+        kernel = kernels.drive_bending
+        if self._by_cables:
+            kernel = kernels.drive_bending_by_cables
+            inputs += [self.cfg.play, 1.0 if self.cfg.lag == 0.0 else 1.0 - math.exp(-dt / self.cfg.lag)]
+            outputs = [self.angle, self._slack, self._behind, control.joint_target_q]
+        wp.launch(kernel, self._num_envs, inputs=inputs, outputs=outputs, device=self._device)
 
     def turn_tip(self, angle: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | slice) -> None:
-        """Turn the wheels by the first two angles [rad], at once."""
-        bending = wp.to_torch(self.angle)
-        bending[env_ids] += angle[:, :2]
-        wp.to_torch(self.command)[env_ids] = bending[env_ids]
+        """Turn the wheels by the first two angles [rad], at once, and the section with them."""
+        wp.to_torch(self.angle)[env_ids] += angle[:, :2]
+        self._command_wheels(env_ids)
 
     def reset(self, env_ids: torch.Tensor) -> None:
         """Command the angles that are there."""
-        wp.to_torch(self.command)[env_ids] = wp.to_torch(self.angle)[env_ids]
+        self._command_wheels(env_ids)
+
+    def _command_wheels(self, env_ids: Sequence[int] | torch.Tensor | slice) -> None:
+        """Command the wheels to stay where they are."""
+        wheels = wp.to_torch(self.angle)[env_ids]
+        if self._by_cables:
+            wheels = wheels + wp.to_torch(self._behind)[env_ids] + wp.to_torch(self._slack)[env_ids]
+        wp.to_torch(self.command)[env_ids] = wheels

@@ -15,6 +15,25 @@ def small_deflection(force: float, length: float, rigidity: float) -> float:
     return force * length**3 / (3.0 * rigidity)
 
 
+def graded_deflection(force: float, length: float, parts: list[tuple[float, float]]) -> float:
+    """Return the end of a clamped beam of several rigidities under an end load [m].
+
+    The integral of F s^2 / EI(s) over the distance s from the free end (Castigliano).
+
+    Args:
+        force: Load [N].
+        length: Length [m].
+        parts: How far from the free end each part reaches [m], in order, and its rigidity [N m^2]; the last one reaches
+            the clamp.
+    """
+    begin, total = 0.0, 0.0
+    for end, rigidity in parts:
+        end = min(end, length)
+        total += force * (end**3 - begin**3) / (3.0 * rigidity)
+        begin = end
+    return total
+
+
 def own_weight_deflection(load: float, length: float, rigidity: float) -> float:
     """Return the end of a clamped beam under a load by length [N/m] across it [m]: q L^4 / 8 EI (Euler-Bernoulli)."""
     return load * length**4 / (8.0 * rigidity)

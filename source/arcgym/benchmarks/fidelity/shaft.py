@@ -30,7 +30,12 @@ LINKS = 40
 
 
 def shaft_in_air(
-    run: Run, num_envs: int, links: int = LINKS, settings: dict[str, Any] | None = None, **spec: Any
+    run: Run,
+    num_envs: int,
+    links: int = LINKS,
+    settings: dict[str, Any] | None = None,
+    endoscope: dict[str, Any] | None = None,
+    **spec: Any,
 ) -> tuple[Any, LinkLoads]:
     """Return worlds with a straight shaft below a short tube, and the loads on it.
 
@@ -39,9 +44,10 @@ def shaft_in_air(
         num_envs: Worlds.
         links: Links of the shaft.
         settings: Changes of ``SimulationCfg``.
+        endoscope: Changes of ``EndoscopeCfg``.
         spec: Changes of the scope's spec.
     """
-    cfg = {"introducer": IntroducerCfg(**IN_AIR)}
+    cfg = {"introducer": IntroducerCfg(**IN_AIR), **(endoscope or {})}
     sim = build(run, shaft_spec(links, **spec), Tube(0.15), num_envs, {"anchor_stiffness": FREE}, cfg, **settings or {})
     for coordinate in (sim.endoscope.data.joint_pos, sim.endoscope.data.joint_pos_target):
         coordinate[:, 0] = -DEPTH

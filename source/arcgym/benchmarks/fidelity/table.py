@@ -29,6 +29,7 @@ TABLE: tuple[Check, ...] = (
     line("cantilever_small cantilever_large", "shaft:cantilever", quick=True),
     line("torsion", "shaft:torsion", quick=True),
     line("buckling", "shaft:buckling", quick=True),
+    line("cantilever_graded", "shaft:graded", quick=True),
     line("weight_scope", "weight:scope_sag", quick=True),
     line("links_bend links_tight_bend", "links:link_length"),
     line("damping_bend", "links:damping"),

@@ -50,6 +50,30 @@ def cantilever(run: Run) -> list[Row]:
     ]
 
 
+def graded(run: Run) -> list[Row]:
+    """Measure the end deflection of a shaft that is softer towards its end, under a small load, in both planes."""
+    from arcgym.assets import GradingCfg
+
+    grading = GradingCfg(passive_length=0.1, distal_length=0.3)
+    sim, loads = shaft_in_air(run, 2, endoscope={"grading": grading})
+    stiff = rigidity(sim)
+    length, offset = beam(sim)
+    force = 0.05 * stiff / length**2
+    for world in range(2):
+        loads.point[world, -1, 2] = offset
+        loads.force[world, -1, world] = force
+    settle(sim)
+    end = end_places(sim, offset)
+    deflection = [float(end[world, world]) for world in range(2)]
+    parts = [
+        (grading.passive_length, grading.passive_share * stiff),
+        (grading.distal_length, grading.distal_share * stiff),
+        (length, stiff),
+    ]
+    exact = beams.graded_deflection(force, length, parts)
+    return [worst_plane("cantilever_graded", deflection, [exact, exact], [0, 1], 0.02, "m")]
+
+
 def worst_plane(
     name: str, value: list[float], reference: list[float], places: list[int], bound: float, unit: str
 ) -> Row:
