@@ -13,6 +13,7 @@ from tiny import write_tiny_colon
 from tiny_sim import TinySim
 
 from arcgym import start_states
+from arcgym.assets import GasCfg
 from arcgym.experts import ExpertBase, PullExpert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
@@ -98,6 +99,22 @@ def test_the_device_changes_nothing(tiny: TinySim) -> None:
     before = key_of(scene)
     scene.sim.cfg.device, scene.sim.cfg.use_graph = "cuda:3", False
     assert key_of(scene) == before
+
+
+def test_gas_takes_the_states_that_were_made_without_it(tiny: TinySim, cache: Path, monkeypatch) -> None:
+    start_states.ensure(build(tiny), "sigmoid")
+    made = counted(monkeypatch)
+    cfg = scene_cfg(tiny)
+    cfg.colon.gas = GasCfg(enabled=True)
+    scene = InteractiveScene(cfg, SimulationCfg())
+    states = start_states.ensure(scene, "sigmoid")
+    assert made == []
+    scene.sim.load_snapshots(states)
+    scene.sim.write_snapshot(states.index("sigmoid"))
+    scene.sim.forward()
+    assert scene.sim.colon.data.lumen_pressure[0] == pytest.approx(cfg.colon.gas.imaging_pressure)
+    farther = start_states.ensure(scene, "descending")  # is made without gas, too
+    assert made == ["descending"] and not any(name.startswith("gas.") for name in farther.snapshots[0].arrays)
 
 
 def test_a_drive_that_does_not_arrive_keeps_what_it_passed(tiny: TinySim, cache: Path, monkeypatch) -> None:

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 
 FORMAT = 1
 """Raise it when drives or files change, and older files are made anew."""
-NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "expert", "device", "use_graph")
-"""Fields of configurations that change no state, or whose content is hashed instead of their name."""
+NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "gas", "expert", "device", "use_graph")
+"""Fields of configurations that change no state, or whose content is hashed instead of their name. States are made
+without gas: at the pressure at which it was imaged, gas does nothing to a wall."""
 
-EFFECTS = ("gas", "wall_law", "weight", "grading")
+EFFECTS = ("wall_law", "weight", "grading")
 """Fields that change no state while they are not ``active``."""
 OF_DRIVES = ("play", "lag")
 """Fields of drives that change no state while they are zero."""
