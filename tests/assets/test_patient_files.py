@@ -100,3 +100,9 @@ def test_a_name_is_registered_once() -> None:
     for name in ("people", "c"):
         with pytest.raises(ValueError, match=f"cannot be called '{name}'"):
             register_population(name, "module:function")
+
+
+def test_two_hundred_patients_by_seed_are_no_file_name(population: list[tuple[str, int | None]]) -> None:
+    """Made together they are one entry of 1200 letters, for which the system has an error of its own."""
+    with pytest.raises(ValueError, match="no split '20000,20001,"):
+        find_stages([f"people:{seed}" for seed in range(20000, 20200)])

@@ -78,10 +78,18 @@ def _joined(entries: list[str]) -> list[str]:
 
 def _stages_of(entry: str, count: int | None) -> Sequence[Path]:
     population, colon, split = entry.partition(":")
-    if colon and len(population) > 1 and not Path(entry).exists():
+    if colon and len(population) > 1 and not _exists(entry):
         return _of_population(population, split, count)
     path = resolve_asset(entry)
     return _of_folder(path) if path.is_dir() else [path]
+
+
+def _exists(path: str) -> bool:
+    """Return whether there is such a file; no file system has names as long as those of 50 patients by seed."""
+    try:
+        return Path(path).exists()
+    except OSError:
+        return False
 
 
 def _of_population(name: str, split: str, count: int | None) -> Sequence[Path]:
