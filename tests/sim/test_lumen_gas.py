@@ -179,6 +179,17 @@ def test_states_without_gas_are_filled_at_the_start_pressure(tube: TinySim) -> N
     assert amount == pytest.approx((AMBIENT + 1000.0) * volume[1].item(), rel=1.0e-5)
 
 
+def test_a_reset_leaves_the_other_worlds_readings_alone(tube: TinySim) -> None:
+    sim = filled(tube, num_envs=2)
+    flow_for(sim, 1.0, 48)
+    names = ("lumen_pressure", "lumen_pressure_mean", "lumen_pressure_peak", "lumen_volume")
+    before = [getattr(sim.colon.data, name)[0].item() for name in names]
+    sim.write_snapshot(-1, [1])
+    sim.forward(torch.tensor([False, True]))
+    assert [getattr(sim.colon.data, name)[0].item() for name in names] == before
+    assert sim.colon.data.lumen_pressure[1].item() == pytest.approx(IMAGED)
+
+
 def test_a_rigid_wall_has_gas_too(tube: TinySim) -> None:
     sim = filled(tube, colon={"rigid": True}, leak_conductance=0.0)
     volume = sim.colon.data.lumen_volume.item()

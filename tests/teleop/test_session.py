@@ -13,6 +13,7 @@ from small_session import until
 from arcgym.cli.main import main
 from arcgym.managers import Episode, episode_paths, save_episode
 from arcgym.recordings.pieces import mark_steps
+from arcgym.teleop.choices import Choice, make_cfg
 from arcgym.teleop.readouts import readouts
 from arcgym.teleop.session import HAND, Session
 from arcgym.utils.errors import UsageError
@@ -229,3 +230,12 @@ def test_without_gas_the_page_says_so(session) -> None:
     assert "no gas" in readouts(session.frame, session.status, FORCE_TIERS, 0.0, 0.0)
     blown = dataclasses.replace(session.frame, lumen_pressure=40.0 * 133.322)
     assert "40.0 mmHg" in readouts(blown, session.status, FORCE_TIERS, 0.0, 0.0)
+
+
+def test_a_session_has_gas_where_it_can(tmp_path) -> None:
+    def gas(*overrides: str) -> str:
+        return make_cfg(Choice("ARC-Splenic-Proximal", gas=True, overrides=overrides), tmp_path)[1].gas
+
+    assert gas() == "commanded" and gas("env.gas=none") == "none" and gas("env.gas=present") == "present"
+    assert gas("env.scene.colon.wall_model=solid") == "none" and gas("env.sim.solver=newton") == "none"
+    assert make_cfg(Choice("ARC-Splenic-Proximal"), tmp_path)[1].gas == "none"

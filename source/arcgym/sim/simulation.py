@@ -237,7 +237,7 @@ class Simulation:
         mask = self._all_worlds if env_mask is None else wp.from_torch(env_mask.contiguous(), dtype=wp.bool)
         self.coupling.forward(mask)
         if self.gas is not None:
-            self.gas.fill(self.nodal_pos)
+            self.gas.fill(self.nodal_pos, mask)
         self._read_out(mask)
 
     def _read_out(self, world_mask: wp.array) -> None:

@@ -117,6 +117,8 @@ def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
         recorders.marks = RecorderTermCfg(class_type=MarksRecorder)
         cfg.recorders = recorders
         apply_overrides({"env": cfg}, list(choice.overrides))
+        if choice.gas and not any(text.startswith("env.gas=") for text in choice.overrides):
+            _add_gas(cfg)
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
     return name, cfg
@@ -129,7 +131,11 @@ def _choose(cfg: Any, choice: Choice) -> None:
         cfg.scene.colon.material = choice.tissue
     if choice.start is not None:
         cfg.start = choice.start
-    if choice.gas and hasattr(cfg, "gas") and cfg.gas == "none":
+
+
+def _add_gas(cfg: Any) -> None:
+    """Let the hand insufflate, where the task knows gas and its wall and solver can have it."""
+    if getattr(cfg, "gas", "") == "none" and cfg.scene.colon.wall_model == "shell" and cfg.sim.solver == "two_level":
         cfg.gas = "commanded"
 
 

@@ -192,16 +192,19 @@ def note_pressure(gas: GasState):
 
 
 @wp.kernel
-def fill_gas(volume: wp.array2d[float], law: GasLaw, gas: GasState, loads: GasLoads):
+def fill_gas(volume: wp.array2d[float], mask: wp.array[wp.bool], law: GasLaw, gas: GasState, loads: GasLoads):
     """Fill lumens that have no amount of gas yet at their start pressure. Launch (W,).
 
     Args:
         volume: Parts of the volume [m^3], shape (R, W).
+        mask: Worlds whose state was written, shape (W,); the others stay as they are.
         law: Settings.
         gas: State; changed in place.
         loads: Loads of the pressure; written.
     """
     w = wp.tid()
+    if not mask[w]:
+        return
     here = total_volume(volume, w)
     if gas.amount[w] <= 0.0:
         gas.pressure[w] = gas.start[w]

@@ -116,7 +116,7 @@ def settle_pressure(
     absolute = law.ambient + gas.pressure[w]
     by = (gas.amount[w] - absolute * there) / (there + absolute * wp.max(given, 0.0))
     gas.pressure[w] = gas.pressure[w] + by
-    gas.volume[w] = here
+    gas.volume[w] = there + given * by
     change[w] = by
     set_loads(law, gas, loads, w)
 

@@ -108,10 +108,15 @@ class LumenGas:
         """End a physics step."""
         self._launch(kernels.note_pressure, self.num_envs, [], [self.state])
 
-    def fill(self, x: wp.array) -> None:
-        """Fill lumens whose state was written without an amount of gas; ``x`` [m], shape (V, W), vec3."""
+    def fill(self, x: wp.array, mask: wp.array) -> None:
+        """Fill lumens whose state was written without an amount of gas.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            mask: Worlds that were written to, shape (W,), bool; the others stay as they are.
+        """
         self.measure(x)
-        self._launch(kernels.fill_gas, self.num_envs, [self.parts, self.law], [self.state, self.loads])
+        self._launch(kernels.fill_gas, self.num_envs, [self.parts, mask, self.law], [self.state, self.loads])
 
     def clear(self) -> None:
         """Start a control step."""
