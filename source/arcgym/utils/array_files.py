@@ -8,6 +8,7 @@ import dataclasses
 import importlib
 import json
 import os
+import threading
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -32,7 +33,7 @@ def save_arrays(value: Any, path: Path) -> None:
     arrays: list[np.ndarray] = []
     skeleton = _take_apart(value, arrays)
     path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.partial.npz")
+    partial = path.with_name(f".{path.stem}.{os.getpid()}.{threading.get_ident()}.partial.npz")
     try:
         np.savez(partial, **{_SKELETON: json.dumps(skeleton)}, **{str(k): array for k, array in enumerate(arrays)})  # type: ignore[arg-type]
         os.replace(partial, path)
@@ -45,7 +46,7 @@ def load_arrays(path: Path) -> Any:
     try:
         with np.load(path) as file:
             return _put_together(json.loads(str(file[_SKELETON])), file)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, ImportError, zipfile.BadZipFile):
+    except (OSError, EOFError, ValueError, KeyError, TypeError, AttributeError, ImportError, zipfile.BadZipFile):
         return None
 
 
