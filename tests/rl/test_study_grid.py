@@ -153,6 +153,20 @@ def test_the_limits_study_fits_its_task():
     assert ends == [None, None, None, None, None, 0.3, None]
 
 
+def test_the_limits_on_the_shaft_fit_their_task():
+    """2, 5 and 8 s of a cost that the task has only in this study, and none."""
+    limits, costs = [], []
+    for cell in all_cells(read_study(find_study("limits_shaft", SHIPPED)), FOLDER):
+        env_cfg = load_cfg_from_registry(cell.task, "env_cfg_entry_point")
+        agent_cfg = load_cfg_from_registry(cell.task, agent_key(cell.like or cell.algorithm))
+        assert env_cfg.costs.shaft_force is None
+        apply_overrides({"env": env_cfg, "agent": agent_cfg}, cell.overrides)
+        limits.append(getattr(agent_cfg.algorithm, "limits", {}).get("shaft_force"))
+        costs.append(env_cfg.costs.shaft_force and env_cfg.costs.shaft_force.params)
+    assert limits == [None, 2.0, 5.0, 8.0, 0.0]
+    assert costs == [None, *[{"kind": "shaft_force", "limit": "unsafe"}] * 4]
+
+
 @pytest.mark.parametrize(
     ("value", "text"),
     [(None, "null"), (True, "true"), (0.05, "0.05"), ([1, "a b"], "[1,'a b']"), ("it's", r"'it\'s'"), ("ppo", "ppo")],

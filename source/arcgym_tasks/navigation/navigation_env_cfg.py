@@ -178,6 +178,9 @@ class CostsCfg:
 
     tip_force = CostTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "unsafe"})
     view_blocked = CostTerm(func=mdp.view_blocked)
+    shaft_force: CostTerm | None = None
+    """Off, as the pushed scope's shaft bears that for most of an episode. Seconds with an unsafe force on 50 mm of it:
+    ``CostTerm(func=mdp.load_above, params={"kind": "shaft_force", "limit": "unsafe"})``."""
     lumen_pressure: CostTerm | None = None
     """Off unless ``env.gas`` is on: whether the pressure is one at which a cecum ruptured."""
 
