@@ -158,7 +158,7 @@ def test_an_unknown_segment_is_named(tiny: TinySim) -> None:
 
 
 def test_an_unknown_material_is_named(tiny: TinySim) -> None:
-    with pytest.raises(ValueError, match=r"no tissue preset 'rubber'; choose from \['in_situ', 'medium_nu045'"):
+    with pytest.raises(ValueError, match=r"no tissue preset 'rubber'; choose from \['clinical', 'in_situ'"):
         Colon(tiny.colon_cfg(material="rubber"))
 
 

@@ -31,8 +31,9 @@ class ColonCfg:
     """How many patients to take, from the first; ``None`` takes all. Set it for a split that has more than are wanted:
     a patient takes some MiB on the device."""
     material: str = "paper"
-    """Tissue preset: ``paper`` (5 MPa), ``in_situ`` (0.5 MPa, 1.5 mm, a mesentery with slack: the sigmoid colon loops)
-    or one of six for sensitivity tables, ``soft_nu045`` to ``stiff_nu049``, see :mod:`arcgym.assets.materials`."""
+    """Tissue preset: ``paper`` (5 MPa), ``in_situ`` (0.5 MPa, 1.5 mm, a mesentery with slack: the sigmoid colon
+    loops), ``clinical`` (the same with 95 kPa, see ``wall_law``) or one of six for sensitivity tables, ``soft_nu045``
+    to ``stiff_nu049``, see :mod:`arcgym.assets.materials`."""
     wall_model: Literal["shell", "solid"] = "shell"
     """What the wall is made of: ``shell``, triangles and hinges half way through the wall, or ``solid``, the stage's
     one layer of tetrahedra. Linear tetrahedra lock in bending: pinched, the solid is an order of magnitude too stiff

@@ -81,6 +81,13 @@ TISSUE_PRESETS = {
         anchor_stiffness={**ANCHOR_STIFFNESS, **MESENTERY_ANCHORS},
         anchor_slack=dict(MESOCOLON_HEIGHT),
     ),
+    "clinical": TissuePreset(
+        youngs_modulus=95.0e3,
+        poissons_ratio=0.49,
+        thickness=1.5e-3,
+        anchor_stiffness={**ANCHOR_STIFFNESS, **MESENTERY_ANCHORS},
+        anchor_slack=dict(MESOCOLON_HEIGHT),
+    ),
     **{
         f"{hardness}_{name}": TissuePreset(youngs_modulus=modulus, poissons_ratio=ratio)
         for hardness, modulus in SENSITIVITY_MODULI.items()
@@ -92,6 +99,9 @@ TISSUE_PRESETS = {
 ``in_situ``: a distended wall of 1.5 mm (under 3 mm in CT), 0.5 MPa, just below the quasi-static moduli of Massalou et
 al. (1.76 MPa lengthwise, 0.63 around) since a scope's small strains lie at the foot of their curves, and a mesentery
 with slack, so that the sigmoid colon can loop.
+
+``clinical``: as ``in_situ``, with the modulus of a wall that gas has stretched already and stretches further, 95 kPa,
+inferred from diameters in CT colonography and ex vivo; it goes with ``WallLawCfg.stiffening`` 1.5 (docs/physics.md).
 
 ``soft_nu045`` ... ``stiff_nu049``: the six settings of the ARCGym paper's material sensitivity, {0.5, 5, 10} MPa x
 {0.45, 0.49}, with the anchors of ``paper``."""

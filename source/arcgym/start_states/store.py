@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 DEFAULT_MATERIAL = "paper"
 """Tissue preset that states beside a colon are made in unless their file names another one."""
+ALONE = ("clinical",)
+"""Tissue presets in which those states are not at rest: without states of their own they have them made."""
 
 
 def beside_colon(colon_path: Path, endoscope_path: Path, material: str = DEFAULT_MATERIAL) -> Path:
@@ -33,7 +35,8 @@ def beside_colon(colon_path: Path, endoscope_path: Path, material: str = DEFAULT
 
 def find_beside_colon(colon: Colon, endoscope: Endoscope, patient: int = 0) -> Path | None:
     """Return a patient's states made in the colon's tissue, else those made in the default one, else None."""
-    materials = (colon.cfg.material, DEFAULT_MATERIAL)
+    own = colon.cfg.material
+    materials = (own,) if own in ALONE else (own, DEFAULT_MATERIAL)
     stage = colon.patients[patient].path
     paths = (beside_colon(stage, endoscope.path, material) for material in materials)
     return next((path for path in paths if path.is_file()), None)

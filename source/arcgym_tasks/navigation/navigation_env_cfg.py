@@ -24,6 +24,7 @@ from arcgym.scene import InteractiveSceneCfg
 from arcgym.sensors import EndoscopeCameraCfg
 from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import FieldError, require
+from arcgym_tasks.navigation import clinical
 from arcgym_tasks.navigation.robustness import NONE, VARIANTS, make_harder
 from arcgym_tasks.navigation.segments import Start, time_limit_s
 
@@ -297,6 +298,10 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     pressure (``env.scene.colon.gas`` holds its settings); ``commanded``: insufflation and suction are a further action,
     which policies that were trained without it do not have."""
 
+    clinical: tuple[str, ...] = ()
+    """Effects of a living colon and a used scope to switch on: ``[all]``, or some of ``tissue``, ``relaxation``,
+    ``gas``, ``weight``, ``scope`` and ``friction``; see docs/physics.md, Clinical. None in every benchmark."""
+
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
 
@@ -344,6 +349,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "extra_observations", tuple(EXTRA_OBSERVATIONS))
         require(self, "robustness", (NONE, *VARIANTS))
         require(self, "gas", ("none", "present", "commanded"))
+        require(self, "clinical", (clinical.ALL, *clinical.EFFECTS))
+        clinical.check(self)
         if self.gas != "none" and self.scene.colon.wall_model != "shell":
             raise FieldError(self, "gas", f"is '{self.gas}', which needs env.scene.colon.wall_model=shell.")
         require(self, "direction", ("insertion", "withdrawal"))
@@ -369,6 +376,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     def resolve(self) -> None:
         """Make the task harder, add groups of observations, leave the paper's reward alone, where that is asked for."""
+        clinical.make_clinical(self)
         make_harder(self, self.robustness)
         if self.gas != "none":
             self._add_gas()
