@@ -39,8 +39,8 @@ AGENTS = {
 }
 """Agents in the order of the rows, and how the page calls them."""
 
-LIMITS = {
-    "clone": "the clone that all start from",
+TIP = {
+    "clone": "a clone of the expert, as all start from (c78097c, 64 worlds)",
     "no_limit": "no limit (`ppo`)",
     "limit_1": "limit of 1 s",
     "limit_0.3": "limit of 0.3 s",
@@ -48,10 +48,14 @@ LIMITS = {
     "penalty": "fixed penalty of 1",
     "early_end": "early end after 0.3 s",
 }
+LIMITS = {"limits": (TIP, "tip")}
+"""Studies of limits: their cells, and what presses."""
+
 MARKS = ("", "†", "‡", "§", "¶")
 """Marks of commits, the most frequent one first."""
 
-CURVES = ("transitions", "seconds", "success", "reward", "progress", "cost_tip_force", "multiplier/tip_force")
+CURVES = ("transitions", "seconds", "success", "reward", "progress")
+COSTS = ("cost_tip_force", "cost_shaft_force", "multiplier/tip_force", "multiplier/shaft_force")
 FEW = 16
 """Episodes up to which a share is given as a fraction and not in percent."""
 
@@ -61,7 +65,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     taking = commands.add_parser("take", help="put a study's cells into the data, in place of the same cells")
-    taking.add_argument("data", choices=("keys", "limits"))
+    taking.add_argument("data", choices=("keys", *LIMITS))
     taking.add_argument("study", type=Path, help="folder of the study")
     taking.add_argument("--commit", required=True, help="commit that was run")
     commands.add_parser("write", help="write the tables into docs/learning.md and draw the pictures")
@@ -69,9 +73,12 @@ def main() -> None:
     if args.command == "take":
         take(data_file(args.data), args.study, args.commit)
         return
-    keys, limits = (json.loads(data_file(name).read_text()) for name in ("keys", "limits"))
+    keys = json.loads(data_file("keys").read_text())
     page = replaced(PAGE.read_text(), "keys", keys_table(keys["rows"]))
-    PAGE.write_text(replaced(page, "limits", limits_table(limits)))
+    limits = {name: json.loads(data_file(name).read_text()) for name in LIMITS}
+    for name, data in limits.items():
+        page = replaced(page, name, limits_table(data, *LIMITS[name]))
+    PAGE.write_text(page)
     draw_keys(keys, DOCS / "images" / "learning_keys.png")
     draw_limits(limits, DOCS / "images" / "learning_limits.png")
 
@@ -110,7 +117,7 @@ def curve_name(task: str, algorithm: str) -> str:
 def curves(cell: Cell) -> dict[str, list[float | None]]:
     """Return the curves of a cell, None where an iteration has no value."""
     rows = read_curves(cell)
-    found = [name for name in CURVES if any(row.get(name, "") != "" for row in rows)]
+    found = [name for name in CURVES + COSTS if any(row.get(name, "") != "" for row in rows)]
     return {n: [round(float(row[n]), 4) if row.get(n, "") != "" else None for row in rows] for n in found}
 
 
@@ -146,28 +153,26 @@ def share(row: dict[str, Any]) -> str:
     return f"{row['success %']:g} %"
 
 
-def limits_table(data: dict[str, Any]) -> str:
-    """Return the table of the limits and their controls."""
-    heads = (
-        "transitions",
-        "updates",
-        "success (95 % interval)",
-        "tip above unsafe, s an episode",
-        "largest tip force, N",
-    )
-    lines = [f"| | {' | '.join([*heads, 'arrival, s', 'multiplier at the end (most)'])} |", f"|---|{'---:|' * 7}"]
-    for name, label in LIMITS.items():
+def limits_table(data: dict[str, Any], labels: dict[str, str], part: str) -> str:
+    """Return the table of limits on the time that tip or shaft press unsafely, and of their controls."""
+    heads = ["transitions", "updates", "success (95 % interval)", f"{part} above unsafe, s an episode", "arrival, s"]
+    lines = [f"| | {' | '.join([*heads, 'multiplier at the end (most)'])} |", f"|---|{'---:|' * 6}"]
+    for name, label in labels.items():
         row = next((row for row in data["rows"] if row["algorithm"] == name), None)
-        if row is None:
-            continue
-        low, high = interval(row)
-        prices = [p for p in data["curves"].get(curve_name(row["task"], name), {}).get("multiplier/tip_force", []) if p]
-        cells = [f"{int(row['transitions']):,}".replace(",", " "), str(row["iterations"])]
-        cells += [f"{row['success %']:g} % ({low:.0f} to {high:.0f})", f"{row['tip > unsafe s']:.2f}"]
-        cells += [f"{row['largest tip N']:.1f}", f"{row['arrival s']:.1f}" if row["arrival s"] != "" else ""]
-        cells += [f"{prices[-1]:.1f} ({max(prices):.1f})" if prices else ""]
-        lines.append(f"| {label} | {' | '.join(cells)} |")
+        if row is not None:
+            lines.append(f"| {label} | {' | '.join(limits_cells(row, data['curves'], part))} |")
     return "\n".join(lines)
+
+
+def limits_cells(row: dict[str, Any], found: dict[str, Any], part: str) -> list[str]:
+    """Return the cells of a row of :func:`limits_table`."""
+    low, high = interval(row)
+    curve = found.get(curve_name(row["task"], row["algorithm"]), {})
+    prices = [price for price in curve.get(f"multiplier/{part}_force", []) if price]
+    count = f"{int(row['transitions']):,}".replace(",", " ") if row["transitions"] != "" else ""
+    cells = [count, str(row["iterations"]), f"{row['success %']:g} % ({low:.0f} to {high:.0f})"]
+    cells += [f"{row[f'{part} > unsafe s']:.2f}", f"{row['arrival s']:.1f}" if row["arrival s"] != "" else ""]
+    return [*cells, f"{prices[-1]:.1f} ({max(prices):.1f})" if prices else ""]
 
 
 def interval(row: dict[str, Any]) -> tuple[float, float]:
@@ -219,34 +224,45 @@ def draw_keys(data: dict[str, Any], out: Path) -> None:
     save(figure, out)
 
 
-def draw_limits(data: dict[str, Any], out: Path) -> None:
-    """Draw success against time above unsafe of the judged policies, and how success, cost and multipliers went."""
+def draw_limits(studies: dict[str, Any], out: Path) -> None:
+    """Draw success against time above unsafe of the judged policies, and how their training went, a row a study."""
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(1, 4, figsize=(17, 4.2), layout="constrained")
-    for k, (name, label) in enumerate(LIMITS.items()):
-        row = next((row for row in data["rows"] if row["algorithm"] == name), None)
-        if row is None:
-            continue
-        low, high = interval(row)
-        x, y = row["tip > unsafe s"], row["success %"]
-        marker, color = ("*", "k") if name == "clone" else ("o", f"C{k}")
-        axes[0].errorbar(x, y, [[max(y - low, 0)], [max(high - y, 0)]], fmt=marker, ms=9, color=color, label=label)
-        curve = data["curves"].get(curve_name(row["task"], name), {})
-        for axis, part in zip(axes[1:], ("success", "cost_tip_force", "multiplier/tip_force"), strict=True):
-            if part in curve:
-                xs, ys = smooth(curve["transitions"], curve[part], 1 if "multiplier" in part else 5)
-                axis.plot([1e-6 * v for v in xs], ys, color=color)
-    axes[0].set(xlabel="tip above unsafe, s an episode", ylabel="success [%]", title="first episodes, mean action")
-    axes[0].set(ylim=(-3, 103))
-    axes[0].set_xlim(left=-0.05)
-    axes[0].legend(fontsize=8)
-    titles = ("success in training", "tip above unsafe in training, s an episode", "multiplier")
-    for axis, title in zip(axes[1:], titles, strict=True):
-        axis.set(xlabel="transitions [million]", title=title)
-    for axis in axes:
-        axis.grid(alpha=0.3)
+    figure, axes = plt.subplots(len(studies), 4, figsize=(15, 3.6 * len(studies)), squeeze=False, layout="constrained")
+    for row, (name, data) in zip(axes, studies.items(), strict=True):
+        labels, part = LIMITS[name]
+        for k, (cell, label) in enumerate(labels.items()):
+            draw_cell(row, data, cell, label, part, "k" if cell == "clone" else f"C{k}")
+        titles = (
+            "judged: mean action, 95 %",
+            "success in training",
+            f"{part} above unsafe in training, s",
+            "multiplier",
+        )
+        for axis, title in zip(row, titles, strict=True):
+            axis.set(xlabel="transitions [million]", title=title)
+            axis.grid(alpha=0.3)
+        row[0].set(
+            xlabel=f"{part} above unsafe, s an episode", ylabel="success of first episodes [%]", ylim=(None, 103)
+        )
+        row[0].legend(fontsize=8)
     save(figure, out)
+
+
+def draw_cell(axes: Sequence[Any], data: dict[str, Any], name: str, label: str, part: str, color: str) -> None:
+    """Draw a cell's point and its curves, if it is there."""
+    row = next((row for row in data["rows"] if row["algorithm"] == name), None)
+    if row is None:
+        return
+    low, high = interval(row)
+    x, y = row[f"{part} > unsafe s"], row["success %"]
+    axes[0].errorbar(x, y, [[max(y - low, 0)], [max(high - y, 0)]], fmt="o", ms=7, color=color, label=label)
+    curve = data["curves"].get(curve_name(row["task"], name), {})
+    kinds = {"success": 5, f"cost_{part}_force": 5, f"multiplier/{part}_force": 1}
+    for axis, (kind, width) in zip(axes[1:], kinds.items(), strict=True):
+        if kind in curve:
+            xs, ys = smooth(curve["transitions"], curve[kind], width)
+            axis.plot([1e-6 * v for v in xs], ys, color=color)
 
 
 if __name__ == "__main__":
