@@ -63,6 +63,16 @@ def test_those_hardly_behind_keep_their_states_and_get_new_settings(tmp_path: Pa
     assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[:4], speed[:4]).any()
 
 
+def test_the_longer_the_foremost_is_stuck_the_farther_behind_others_may_be(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, 8)
+    population = Population(scene, PullExpert(scene))
+    arc = torch.tensor([0.45, 0.47, 0.50, 0.50, 0.51, 0.51, 0.52, 0.52])  # 7 cm behind and 5 cm behind, in that order
+    assert sorted(population.exchange(arc, arc)[0].tolist()) == [0, 1]
+    assert sorted(population.exchange(arc, arc)[0].tolist()) == [0]  # 6 cm are allowed now
+    assert len(population.exchange(arc, arc)[0]) == 0  # 9 cm
+    assert sorted(population.exchange(arc, arc + 0.02)[0].tolist()) == [0, 1]  # it got on: 3 cm
+
+
 def test_the_first_world_of_a_patient_is_not_disturbed(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 4)
     expert = PullExpert(scene)

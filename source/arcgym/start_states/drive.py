@@ -16,6 +16,7 @@ from arcgym.start_states.leaps import Leaps
 from arcgym.start_states.population import Population
 from arcgym.start_states.route import Peaks, Route, what_holds
 from arcgym.start_states.settling import CONTROL_STEP, settle
+from arcgym.start_states.trail import Trail
 from arcgym.utils.threads import one_thread
 
 OUT_OF_PLACE = -1.0
@@ -54,12 +55,15 @@ class Drive:
         self.scene, self.patience, self.max_time = scene, patience, max_time
         self.routes = [Route(dict(patient.bounds)) for patient in scene.colon.patients]
         """How far it has come in each patient."""
+        self.foremost = list(range(len(self.routes)))
+        """World of each patient whose tip is foremost."""
         self.time = 0.0
         """Simulated time [s]."""
         self.expert = make_expert(scene, speed=speed)
         self.population = Population(scene, self.expert, seed)
         self._peaks = Peaks(scene)
         self._leaps = Leaps(scene["endoscope"].data.tip_arc_length)
+        self._trail = Trail(scene.sim, len(self.routes), self._memory)
         self._steps = round(CONTROL_STEP / scene.sim.physics_dt)
         self._count = 0
         self._settled: set[tuple[int, str]] = set()
@@ -125,13 +129,26 @@ class Drive:
         places = zip(self.routes, front.values.tolist(), front.indices.tolist(), broken.tolist(), strict=True)
         for patient, (route, arc, row, lost) in enumerate(places):
             if route.running:
+                self.foremost[patient] = row * len(self.routes) + patient
                 route.problem = "the simulation broke" if lost else ""
-                self._follow(route, arc, row * len(self.routes) + patient)
+                self._follow(route, arc, self.foremost[patient])
         if self.population.each > 1 and self._count % self.expert.PERIOD == 0:
             merit = torch.where(arcs == OUT_OF_PLACE, OUT_OF_PLACE, self.expert.merit())
             moved, sources = self.population.exchange(merit, arcs)
             self._peaks.take_over(moved, sources)
             self._leaps.take_over(moved, sources)
+            self._try_again(arcs)
+
+    def _try_again(self, arcs: torch.Tensor) -> None:
+        """Let some worlds go on from farther back where the foremost is stuck."""
+        worlds, back = self.population.tries_again(arcs)
+        least = (arcs.view(self.population.each, -1).amax(dim=0)[worlds % len(self.routes)] - back).tolist()
+        draws = torch.rand(len(worlds), generator=self.population.random, device=self.scene.device).tolist()
+        self._trail.put_back(worlds.tolist(), least, draws)
+
+    def _memory(self) -> list[torch.Tensor]:
+        """Return what is remembered of every world beside its state, tensors of shape (N, ...)."""
+        return [*self.expert.memory(), *self._peaks.memory, *self._leaps.memory]
 
     def _arcs(self) -> torch.Tensor:
         """Return the arc lengths of the tips of worlds that count [m], shape (N,)."""
@@ -145,6 +162,8 @@ class Drive:
 
     def _follow(self, route: Route, arc: float, world: int) -> None:
         """Take note of a patient's foremost world."""
+        if self.population.each > 1 and arc > OUT_OF_PLACE:
+            self._trail.follow(world % len(self.routes), arc, world)
         for segment in route.advance(arc, self.time):
             self._enter(route, segment, world)
         if route.running:

@@ -23,6 +23,11 @@ class Leaps:
         """Which worlds have leapt, shape (N,), bool."""
         self._last = arc.clone()
 
+    @property
+    def memory(self) -> list[torch.Tensor]:
+        """What it remembers of every world, N entries each."""
+        return [self.lost, self._last]
+
     def update(self, arc: torch.Tensor, in_place: torch.Tensor) -> torch.Tensor:
         """Take note of a control step.
 

@@ -19,6 +19,12 @@ BEHIND = 2
 """One of so many worlds of a patient is moved, if it is behind."""
 NEAR = 0.03
 """Arc length by which a world may be behind the foremost and still go its own way, with new settings [m]."""
+ON = 0.01
+"""Way that the foremost has to get on between two exchanges, or it counts as stuck [m]."""
+STUCK = 0.1
+"""The same, from which worlds that stand beside the foremost go on from a state farther back [m]."""
+MOST_NEAR = 0.35
+"""Largest arc length by which a world may be behind, after many exchanges in which the foremost was stuck [m]."""
 
 
 class Population:
@@ -47,6 +53,8 @@ class Population:
         worlds = torch.arange(scene.num_envs, device=scene.device)
         expert.vary(worlds[self.patients :], self.random)
         self._plain = worlds < self.patients
+        self._farthest = torch.zeros(self.patients, device=scene.device)
+        self._near = torch.full_like(self._farthest, NEAR)
 
     def disturb(self) -> None:
         """Let the disturbances drift on by a control step."""
@@ -58,7 +66,7 @@ class Population:
         """Let the rear half of each patient's worlds take over the states of the foremost, with new settings.
 
         Those whose tips are hardly behind keep their states: what gets a tip on may begin with a step back, or with
-        scope that goes into loops.
+        scope that goes into loops. The longer the foremost is stuck, the farther back the others may go to try again.
 
         Args:
             score: Higher is better, shape (N,).
@@ -74,12 +82,40 @@ class Population:
         number = torch.arange(self.patients, device=self.scene.device)
         moved, sources = ((rows * self.patients + number).flatten() for rows in (rear, front.gather(0, pick)))
         farthest = arc.view(self.each, self.patients).amax(dim=0)
-        behind = arc[moved] < farthest[moved % self.patients] - NEAR
+        self._wait(farthest)
+        behind = arc[moved] < (farthest - self._near)[moved % self.patients]
         self._renew(moved[~behind])
         moved, sources = moved[behind], sources[behind]
         if len(moved):
             self._move(moved, sources)
         return moved, sources
+
+    def tries_again(self, arc: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Return worlds that stand where their foremost has been stuck for a while, with new settings.
+
+        Half of those that do and are not of the foremost quarter, drawn at random: they may go on from a state farther
+        back.
+
+        Args:
+            arc: Arc lengths of the tips [m], shape (N,).
+
+        Returns:
+            The worlds, int64, shape (n,), and how far back each may go [m], shape (n,).
+        """
+        order = arc.view(self.each, self.patients).argsort(dim=0, descending=True)[max(1, self.each // FRONT) :]
+        worlds = (order * self.patients + torch.arange(self.patients, device=self.scene.device)).flatten()
+        patient = worlds % self.patients
+        stuck = (self._near > STUCK)[patient] & (arc[worlds] > (self._farthest - NEAR)[patient])
+        draw = torch.rand(len(worlds), generator=self.random, device=self.scene.device) < 0.5
+        worlds = worlds[stuck & draw]
+        self._renew(worlds)
+        return worlds, self._near[worlds % self.patients]
+
+    def _wait(self, farthest: torch.Tensor) -> None:
+        """Take note of the arc lengths of the foremost tips [m], shape (P,), and of whether they got on."""
+        on = farthest > self._farthest + ON
+        self._farthest = torch.where(on, farthest, self._farthest)
+        self._near = torch.where(on, NEAR, (self._near + NEAR).clamp(max=MOST_NEAR))
 
     def _move(self, moved: torch.Tensor, sources: torch.Tensor) -> None:
         sim = self.scene.sim

@@ -93,6 +93,11 @@ class Peaks:
         self._data = scene["endoscope"].data
         self._values = torch.zeros(scene.num_envs, 3, device=scene.device)
 
+    @property
+    def memory(self) -> list[torch.Tensor]:
+        """What it remembers of every world, N entries each."""
+        return [self._values]
+
     def update(self) -> None:
         """Take note of the forces of the last control step."""
         data = self._data

@@ -17,7 +17,7 @@ from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
 from arcgym.start_states import Drive, store
 from arcgym.start_states.making import SPEED, key_of
-from arcgym.start_states.route import Route
+from arcgym.start_states.route import Route, what_holds
 from arcgym.start_states.settling import CONTROL_STEP
 from arcgym.utils.configclass import replace
 
@@ -79,7 +79,7 @@ def attempt(
     def report(drive: Drive) -> None:
         for patient, route in enumerate(drive.routes):
             if route.running and time.monotonic() > plan.deadline:
-                route.problem = OUT_OF_TIME
+                route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
             if not route.running and patient not in written:
                 written.add(patient)
                 about = {"robot": plan.robot, "tissue": plan.tissue, "worlds": plan.worlds, "seed": plan.seed}
