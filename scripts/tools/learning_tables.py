@@ -245,7 +245,7 @@ def draw_limits(studies: dict[str, Any], out: Path) -> None:
         row[0].set(
             xlabel=f"{part} above unsafe, s an episode", ylabel="success of first episodes [%]", ylim=(None, 103)
         )
-        row[0].legend(fontsize=8)
+    figure.legend(handles=axes[0, 0].get_legend_handles_labels()[0], loc="outside lower center", ncols=4, frameon=False)
     save(figure, out)
 
 
