@@ -1,25 +1,41 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Three worlds of different tissue, friction and motion, in reversed order on the CPU and on a GPU."""
+"""Three worlds of different tissue, friction and motion, in reversed order on the CPU and on a GPU, plainly and with
+gas, weight in another posture each, a wall law, a graded shaft and wheels with play."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.sim import Simulation
+from arcgym.assets import GasCfg, GradingCfg, WallLawCfg
+from arcgym.sim import Simulation, WeightCfg
 
 DEVICES = ["cpu", pytest.param("cuda:0", marks=pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA"))]
 STEPS = 10
 
 
-def pushed(tiny: TinySim) -> Simulation:
+def three(tiny: TinySim, effects: bool, **cfg: Any) -> Simulation:
+    """Make three worlds, with all effects that are off by default or with none."""
+    if not effects:
+        return tiny(links=10, num_envs=3, colon={"youngs_modulus": 5.0e5}, **cfg)
+    law = WallLawCfg(stiffening=1.5, thickness_by_diameter=True, relaxation=True, relaxing_time=(0.1, 1.0))
+    scope = {"grading": GradingCfg(passive_length=0.05), "drives": {"bending": {"play": 0.1, "lag": 0.05}}}
+    colon = {"youngs_modulus": 5.0e5, "gas": GasCfg(enabled=True), "wall_law": law}
+    return tiny(links=10, num_envs=3, colon=colon, scope=scope, weight=WeightCfg(enabled=True), **cfg)
+
+
+def pushed(tiny: TinySim, effects: bool) -> Simulation:
     """Push three bent scopes into walls of 0.7 to 1.4 times the stiffness, until they have moved them."""
-    sim = tiny(links=10, num_envs=3, colon={"youngs_modulus": 5.0e5})
+    sim = three(tiny, effects)
+    if effects:
+        down = ("prone", "left_lateral", "right_lateral")
+        sim.write_gravity(torch.tensor([sim.cfg.weight.gravity(name) for name in down]))
     sim.moduli.mul_(torch.tensor([[0.7], [1.0], [1.4]]))
     sim.friction.copy_(torch.tensor([0.05, 0.1, 0.15]))
     command(sim, [0, 1, 2])
@@ -36,11 +52,12 @@ def command(sim: Simulation, order: list[int]) -> None:
     sim.endoscope.set_bending_command(values[1], values[2])
 
 
+@pytest.mark.parametrize("effects", [False, True])
 @pytest.mark.parametrize("device", DEVICES)
-def test_a_world_goes_on_alike_in_another_place_and_on_a_gpu(tmp_path: Path, device: str) -> None:
+def test_a_world_goes_on_alike_in_another_place_and_on_a_gpu(tmp_path: Path, device: str, effects: bool) -> None:
     tiny = TinySim(tmp_path, radius=0.016)
-    first = pushed(tiny)
-    second = tiny(links=10, num_envs=3, colon={"youngs_modulus": 5.0e5}, device=device)
+    first = pushed(tiny, effects)
+    second = three(tiny, effects, device=device)
     for kind in ("world_arrays", "world_settings"):
         for name, array in getattr(second, kind)().items():
             array.copy_(getattr(first, kind)()[name].flip(0))
