@@ -225,6 +225,7 @@ def test_a_second_tab_and_a_lost_connection_lose_nothing(tab, page) -> None:
     key(tab, "keydown", "Space")
     key(tab, "keydown", "KeyW")
     until(lambda: session.status.steps >= 4, FAR)
+    key(tab, "keyup", "KeyW")  # nothing moves while the second tab loads, however long: the episode goes on
     tab.switch_to.new_window("tab")
     tab.get(page.gate.url)
     until(lambda: state(tab).get("connected"), FAR)
@@ -232,6 +233,8 @@ def test_a_second_tab_and_a_lost_connection_lose_nothing(tab, page) -> None:
     tab.close()
     tab.switch_to.window(first)
     until(lambda: page.hand_server.tabs == 1, FAR)
+    key(tab, "keydown", "KeyW")
+    until(lambda: session.hand.value().any(), FAR)
     before = session.status.steps
     tab.get("about:blank")
     until(lambda: page.hand_server.tabs == 0 and session.status.state == "waiting", FAR)
