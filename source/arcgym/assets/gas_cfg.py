@@ -27,7 +27,7 @@ class GasCfg:
     :meth:`arcgym.assets.Colon.write_gas_to_sim`."""
     start_pressure: float | None = None
     """Pressure at the start of an episode [Pa]; ``None`` takes the imaging pressure, at which the wall is at rest. Tips
-    that are free measure 15 mmHg (9 to 57) during colonoscopy."""
+    that are free measure 15 mmHg (9 to 57) during colonoscopy (Kozarek et al., Gastroenterology 78:7, 1980)."""
     ambient_pressure: float = 101325.0
     """Absolute pressure of the surrounding air [Pa]. Lower it on a mountain: gas then gives more easily."""
     leak_opening: float = 20.0 * MMHG
@@ -42,8 +42,9 @@ class GasCfg:
     on the flow falls. A choice; more crumples a soft wall further."""
     least_opening: float = 0.25
     """Share of its imaged volume to which a slice of lumen narrows before its opposite sides touch and prop each other.
-    A tube that collapses to two lobes touches itself at 0.27 of its cross-section (Flaherty, Keller and Rubinow 1972).
-    Lower it for a flatter lumen; 0 lets opposite sides pass through each other."""
+    An elastic ring that does not stretch touches itself at 0.271 of its area, in two lobes (Flaherty, Keller and
+    Rubinow, SIAM J. Appl. Math. 23:446, 1972). Lower it for a flatter lumen; 0 lets opposite sides pass through each
+    other."""
     prop_pressure: float = 1000.0
     """Pressure of the props at half the least opening [Pa]; at a quarter of it three times as much. A choice: as much
     as suction draws. Raise it if a collapsed lumen is to stay nearer to ``least_opening``."""

@@ -57,7 +57,8 @@ def restored_cfg(episode: Episode, task: str | None, device: str, overrides: Seq
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
     if episode.settings:
-        restore(cfg, {name: value for name, value in episode.settings.items() if name != "viewer"}, "env")
+        settings = {name: value for name, value in episode.settings.items() if name != "viewer"}
+        restore(cfg, settings, "env", recorded=True)
     _choose_patient(cfg, episode)
     try:
         apply_overrides({"env": cfg}, list(overrides))

@@ -75,7 +75,7 @@ def read_params(run: Path) -> RunParams | None:
     return RunParams(folder, str(about.get("task", "")), about.get("agent"), contents["env"], contents["agent"])
 
 
-def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = ()) -> None:
+def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = (), recorded: bool = False) -> None:
     """Write the values of a run into a configuration, in place.
 
     Args:
@@ -83,6 +83,7 @@ def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = ()) -> None
         saved: Values of the run.
         kind: ``env`` or ``agent``.
         keep: Paths whose values in ``cfg`` stay, such as those that the ``-Play`` variant changes.
+        recorded: Whether the values come from a recording, for the message.
 
     Raises:
         UsageError: A value does not fit this version, or names code of a package that the task does not use.
@@ -92,6 +93,8 @@ def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = ()) -> None
     try:
         from_dict(cfg, wanted)
     except (TypeError, ValueError) as error:
+        if recorded:
+            raise UsageError(f"The recording's settings do not fit this version: {error}") from error
         raise UsageError(
             f"params/{kind}.yaml of the run does not fit this version: {error} Use --no_params to run the registered "
             "configuration."

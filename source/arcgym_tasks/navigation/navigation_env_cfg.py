@@ -8,7 +8,7 @@ A robot's configuration adds its endoscope and its actions (``config/<robot>.py`
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets import ColonCfg, EndoscopeCfg
@@ -16,8 +16,6 @@ from arcgym.envs import ManagerBasedRLEnvCfg, mdp
 from arcgym.managers import CostTermCfg as CostTerm
 from arcgym.managers import EventTermCfg as EventTerm
 from arcgym.managers import MetricsTermCfg as MetricsTerm
-from arcgym.managers import ObservationGroupCfg as ObsGroup
-from arcgym.managers import ObservationTermCfg as ObsTerm
 from arcgym.managers import RewardTermCfg as RewTerm
 from arcgym.managers import TerminationTermCfg as DoneTerm
 from arcgym.scene import InteractiveSceneCfg
@@ -25,6 +23,8 @@ from arcgym.sensors import EndoscopeCameraCfg
 from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import FieldError, require
 from arcgym_tasks.navigation import clinical
+from arcgym_tasks.navigation.gas import add_gas, check_gas
+from arcgym_tasks.navigation.observations import EXTRA_OBSERVATIONS, ObservationsCfg, add_observations
 from arcgym_tasks.navigation.robustness import NONE, VARIANTS, make_harder
 from arcgym_tasks.navigation.segments import Start, time_limit_s
 
@@ -44,74 +44,6 @@ class NavigationSceneCfg(InteractiveSceneCfg):
 
     camera: EndoscopeCameraCfg = EndoscopeCameraCfg(width=84, height=84)
     """The policy's camera."""
-
-
-@configclass
-class ObservationsCfg:
-    """What the policy and the critic see."""
-
-    @configclass
-    class PolicyCfg(ObsGroup):
-        """Images of the last half second, the only input that a real endoscope has; shape (N, 15, H, W), uint8."""
-
-        concatenate_dim: int = 0
-        rgb = ObsTerm(func=mdp.rgb, history_length=5)
-
-    @configclass
-    class CriticCfg(ObsGroup):
-        """Privileged state for the value function, used in training only."""
-
-        lumen_direction = ObsTerm(func=mdp.tip_lumen_direction)
-        centerline = ObsTerm(func=mdp.centerline_ahead)
-        progress = ObsTerm(func=mdp.tip_progress)
-        axis_distance = ObsTerm(func=mdp.tip_axis_distance)
-        velocity = ObsTerm(func=mdp.tip_velocity)
-        bending = ObsTerm(func=mdp.tip_bending)
-        inserted_length = ObsTerm(func=mdp.inserted_length)
-        wall_forces = ObsTerm(func=mdp.wall_forces)
-        drive_forces = ObsTerm(func=mdp.drive_forces)
-        lumen = ObsTerm(func=mdp.lumen_state)
-        last_action = ObsTerm(func=mdp.last_action)
-
-    @configclass
-    class ForceCfg(ObsGroup):
-        """What force sensors in tip and drive feel, over 10 N; shape (N, 4)."""
-
-        tip = ObsTerm(func=mdp.tip_force_vector, scale=0.1)
-        base = ObsTerm(func=mdp.base_force, scale=0.1)
-
-    @configclass
-    class ShapeCfg(ObsGroup):
-        """The last 60 cm of the shaft in the tip's frame, as a fiber or magnetic imaging gives it; shape (N, 36)."""
-
-        shaft = ObsTerm(func=mdp.shaft_shape)
-
-    @configclass
-    class InsertionCfg(ObsGroup):
-        """Length of scope inside the anus [m], as its marks give it; shape (N, 1)."""
-
-        depth = ObsTerm(func=mdp.insertion_depth)
-
-    @configclass
-    class PressureCfg(ObsGroup):
-        """Pressure in the lumen over 20 mmHg, as an insufflator's gauge gives it; shape (N, 1). Needs ``env.gas``."""
-
-        lumen = ObsTerm(func=mdp.lumen_pressure)
-
-    policy: PolicyCfg = PolicyCfg()
-    """Group of the actor."""
-
-    critic: CriticCfg = CriticCfg()
-    """Group of the critic."""
-
-
-EXTRA_OBSERVATIONS = {
-    "force": ObservationsCfg.ForceCfg,
-    "shape": ObservationsCfg.ShapeCfg,
-    "insertion": ObservationsCfg.InsertionCfg,
-    "pressure": ObservationsCfg.PressureCfg,
-}
-"""Groups that ``env.extra_observations`` adds, by name."""
 
 
 ABLATED = ("s_c", "s_1", "s_2", "s_o")
@@ -309,7 +241,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     """Colon, endoscope, camera."""
 
     observations: ObservationsCfg = ObservationsCfg()
-    """Groups ``policy`` and ``critic``."""
+    """Groups ``policy`` and ``critic``, and those of ``extra_observations``."""
 
     extra_observations: tuple[str, ...] = ()
     """Further groups that some robots can sense, of ``force``, ``shape``, ``insertion`` and ``pressure``:
@@ -348,11 +280,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "reward", ("shaped", "paper", *ABLATED))
         require(self, "extra_observations", tuple(EXTRA_OBSERVATIONS))
         require(self, "robustness", (NONE, *VARIANTS))
-        require(self, "gas", ("none", "present", "commanded"))
         require(self, "clinical", (clinical.ALL, *clinical.EFFECTS))
         clinical.check(self)
-        if self.gas != "none" and self.scene.colon.wall_model != "shell":
-            raise FieldError(self, "gas", f"is '{self.gas}', which needs env.scene.colon.wall_model=shell.")
+        check_gas(self)
         require(self, "direction", ("insertion", "withdrawal"))
         if self.direction == "withdrawal" and self.start == "rest":
             raise FieldError(
@@ -378,30 +308,13 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """Make the task harder, add groups of observations, leave the paper's reward alone, where that is asked for."""
         clinical.make_clinical(self)
         make_harder(self, self.robustness)
-        if self.gas != "none":
-            self._add_gas()
-        for name in self.extra_observations:
-            setattr(self.observations, name, EXTRA_OBSERVATIONS[name]())
+        add_gas(self)
+        add_observations(self.observations, self.extra_observations)
         if self.reward in ABLATED:
             self.rewards.lumen = RewTerm(func=mdp.lumen_part, weight=1.0, params={"part": self.reward})
         if self.reward != "shaped":
             for name in vars(self.rewards):
                 setattr(self.rewards, name, self.rewards.lumen if name == "lumen" else None)
-
-    def _add_gas(self) -> None:
-        """Simulate the gas, with what measures it and, where that is asked for, commands it."""
-        self.scene.colon.gas.enabled = True
-        pressure = {"kind": "lumen_pressure"}
-        rupture = CostTerm(func=mdp.load_above, params={**pressure, "limit": mdp.RUPTURE_PRESSURE})
-        mean = MetricsTerm(func=mdp.load, reduce="mean", params=pressure)
-        peak = MetricsTerm(func=mdp.load, reduce="max", params={**pressure, "reduce": "peak"})
-        terms: list[tuple[Any, str, Any]] = [(self.costs, "lumen_pressure", rupture)]
-        terms += [(self.metrics, "mean_lumen_pressure", mean), (self.metrics, "max_lumen_pressure", peak)]
-        if self.gas == "commanded":
-            terms.append((self.actions, "gas", mdp.GasFlowActionCfg()))
-        for owner, name, term in terms:
-            if owner is not None and getattr(owner, name, None) is None:
-                setattr(owner, name, term)
 
     @property
     def max_episode_length_s(self) -> float:

@@ -25,7 +25,7 @@ __all__ = ["RUPTURE_PRESSURE", "GasFlowAction", "GasFlowActionCfg", "lumen_press
 
 RUPTURE_PRESSURE = 81.0 * MMHG
 """Pressure at which the cecum of cadavers ruptured, the first part of the colon to do so; the sigmoid at 169 mmHg [Pa]
-("Air pressure-induced colon injury", the study of 34 patients that the pressures of ``GasCfg`` are from)."""
+(Kozarek et al., Gastroenterology 78:7, 1980, who also measured the pressure at the tip in 34 patients)."""
 LITRES_PER_MINUTE = 1.0 / 60000.0
 """One litre a minute [m^3/s]."""
 

@@ -10,6 +10,9 @@ Relaxation: with G(t) = 1 - sum_k g_k (1 - exp(-t / tau_k)) the tension T of a w
 T = E - sum_k g_k q_k, where q_k follows E: tau_k dq_k/dt = E - q_k (integrate dE by parts). E and q_k are the force
 over length of the springs along its edges that a membrane acts like, three numbers a triangle. q_k is that of
 the step's start; it changes by the share dt / tau_k of the tension in a step.
+
+Some lines stand in ``shell_kernels`` as well: with functions shared between the two a compiler orders the arithmetic of
+the plain shell anew, and published runs of it would differ in their last bits.
 """
 
 import warp as wp
