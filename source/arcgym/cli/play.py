@@ -7,8 +7,9 @@
 
 Uses the -Play variant of the task with the run's own configurations; the command line's changes come on top and are
 printed. It ends when each world's first episode has ended: these are the episodes that the success rate counts. The
-video goes to videos/play of the run, the policy to exported. --policy zero, random and expert need no checkpoint; the
-scripted expert sees the centerline. --record writes every episode's trajectory to a file.
+video goes to videos/play of the run, the policy to exported. Where nothing was trained, and with
+--use_pretrained_checkpoint, the policy that comes with ARCGym plays. --policy zero, random and expert need no
+checkpoint; the scripted expert sees the centerline. --record writes every episode's trajectory to a file.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from dataclasses import dataclass, replace
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.task import PLAY, load_cfgs, load_run_cfgs
+from arcgym.utils.errors import UsageError
 
 TAKES_OVERRIDES = True
 
@@ -35,6 +37,9 @@ class PlayArguments(RunArguments):
     record: str | None = argument("record trajectories: a folder, or a file ending in .hdf5", None, metavar="PATH")
     observations: bool = argument("record what the policy observes too, for imitation", False)
     json: bool = argument("print the figures as JSON on the last line", False)
+    use_pretrained_checkpoint: bool = argument(
+        "the policy that comes with ARCGym for this robot (default where nothing was trained)", False
+    )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -51,6 +56,7 @@ def run(namespace: argparse.Namespace) -> None:
         args = replace(args, task=f"{args.task}{PLAY}")
     checkpoint = None
     if args.policy == "trained":
+        args = _with_pretrained(args)
         env_cfg, agent_cfg, checkpoint = load_run_cfgs(args)
     else:
         env_cfg, agent_cfg = load_cfgs(args)
@@ -68,3 +74,28 @@ def run(namespace: argparse.Namespace) -> None:
         args.observations,
     )
     play(args.task, env_cfg, agent_cfg, options)
+
+
+def _with_pretrained(args: PlayArguments) -> PlayArguments:
+    """Return the arguments with the shipped policy as checkpoint, where it is asked for or nothing was trained.
+
+    Raises:
+        UsageError: It is asked for and there is none, or another checkpoint is asked for as well.
+    """
+    from arcgym.rl.pretrained import pretrained_checkpoint
+    from arcgym.rl.run_folder import has_checkpoints
+
+    chosen = args.checkpoint or args.load_run
+    if args.use_pretrained_checkpoint:
+        if chosen:
+            raise UsageError(f"--use_pretrained_checkpoint and '{chosen}' are two checkpoints: leave one of them out.")
+        return replace(args, checkpoint=str(pretrained_checkpoint(args.task)))
+    _, agent_cfg = load_cfgs(args)
+    if chosen or agent_cfg.load_checkpoint != "latest" or has_checkpoints(agent_cfg.experiment_name):
+        return args
+    try:
+        path = pretrained_checkpoint(args.task)
+    except UsageError:
+        return args
+    print(f"nothing was trained in logs/rsl_rl/{agent_cfg.experiment_name}: the policy that comes with ARCGym plays")
+    return replace(args, checkpoint=str(path))

@@ -14,6 +14,7 @@ from arcgym.rl.device import place
 from arcgym.rl.exporter import export_policy_as_jit, export_policy_as_onnx
 from arcgym.rl.make_env import VideoOptions, make_env
 from arcgym.rl.preflight import check_environment, check_run
+from arcgym.rl.pretrained import is_pretrained
 from arcgym.rl.rollout import UNTRAINED, Policy, RolloutResult, run_policy
 from arcgym.rl.run_folder import LOG_ROOT
 from arcgym.rl.trained_policy import trained_policy
@@ -56,7 +57,7 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
     Raises:
         UsageError: Something is wrong that can be known before the run.
     """
-    folder = options.checkpoint.parent if options.checkpoint else LOG_ROOT / agent_cfg.experiment_name / options.policy
+    folder = output_folder(agent_cfg.experiment_name, options.checkpoint, options.policy)
     _check(env_cfg, agent_cfg, options, folder)
     place(env_cfg, agent_cfg, options.device)
     records = _record_to(options, env_cfg)
@@ -82,12 +83,19 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
     return result
 
 
+def output_folder(experiment: str, checkpoint: Path | None, policy: str = "trained") -> Path:
+    """Return where videos and exported files go: beside the checkpoint, but never among what ARCGym came with."""
+    if checkpoint is None:
+        return LOG_ROOT / experiment / policy
+    return LOG_ROOT / experiment / "pretrained" if is_pretrained(checkpoint) else checkpoint.parent
+
+
 def load_policy(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> Policy:
-    """Return the trained policy, exported beside its checkpoint."""
+    """Return the trained policy, exported into ``exported`` of its :func:`output_folder`."""
     policy = trained_policy(env, agent_cfg, checkpoint)
     print(f"checkpoint: {checkpoint}")
     for export in (export_policy_as_jit, export_policy_as_onnx):
-        print(f"exported: {export(policy, checkpoint.parent / 'exported')}")
+        print(f"exported: {export(policy, output_folder(agent_cfg.experiment_name, checkpoint) / 'exported')}")
     return policy
 
 

@@ -125,6 +125,11 @@ def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "la
     )
 
 
+def has_checkpoints(experiment: str, root: Path = LOG_ROOT) -> bool:
+    """Return whether a run of an experiment has a numbered checkpoint."""
+    return any(_checkpoints(run) for run in (root / experiment).glob("*"))
+
+
 def find_newest_checkpoint(run: Path) -> Path | None:
     """Return the numbered checkpoint of a run with the most iterations, or None where it has none."""
     numbered = _checkpoints(run)

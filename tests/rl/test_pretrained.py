@@ -1,0 +1,76 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Policies that come with ARCGym: which one a task gets, what they hold, and that nothing is written beside them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from arcgym.cli.play import PlayArguments, _with_pretrained
+from arcgym.cli.task import load_cfgs
+from arcgym.rl.checkpoint import read_checkpoint
+from arcgym.rl.playing import output_folder
+from arcgym.rl.pretrained import pretrained_checkpoint, robot_of, write_small
+from arcgym.utils.errors import UsageError
+
+TASK = "ARC-Rectum-Magnetic-Play"
+
+
+@pytest.fixture
+def shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A policy for the magnetic scope, in an installation of its own; the working folder has no runs."""
+    (tmp_path / "data" / "usd").mkdir(parents=True)
+    monkeypatch.setenv("ARCGYM_ASSETS", str(tmp_path / "data" / "usd"))
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "data" / "policies" / "magnetic" / "model.pt"
+    path.parent.mkdir(parents=True)
+    path.write_bytes(b"")
+    return path
+
+
+@pytest.mark.parametrize("task", ["ARC-Sigmoid-Magnetic", "ARC-LeftColon-Magnetic-Play"])
+def test_a_task_gets_the_policy_of_its_robot(shipped: Path, task: str) -> None:
+    assert robot_of(task) == "magnetic" and pretrained_checkpoint(task) == shipped
+
+
+def test_a_robot_without_a_policy_is_told_which_have_one(shipped: Path) -> None:
+    with pytest.raises(UsageError, match="for 'mine', the robot of ARC-Sigmoid-Mine; there are some for: magnetic"):
+        pretrained_checkpoint("ARC-Sigmoid-Mine")
+
+
+def test_it_plays_where_nothing_was_trained_and_where_it_is_asked_for(shipped: Path) -> None:
+    assert _with_pretrained(PlayArguments(task=TASK)).checkpoint == str(shipped)
+    _, agent_cfg = load_cfgs(PlayArguments(task=TASK))
+    own = Path("logs/rsl_rl") / agent_cfg.experiment_name / "2026-01-01_00-00-00" / "model_5.pt"
+    own.parent.mkdir(parents=True)
+    own.write_bytes(b"")
+    assert _with_pretrained(PlayArguments(task=TASK)).checkpoint is None
+    asked = PlayArguments(task=TASK, use_pretrained_checkpoint=True)
+    assert _with_pretrained(asked).checkpoint == str(shipped)
+
+
+def test_two_checkpoints_are_refused(shipped: Path) -> None:
+    with pytest.raises(UsageError, match="--use_pretrained_checkpoint and 'best' are two checkpoints"):
+        _with_pretrained(PlayArguments(task=TASK, use_pretrained_checkpoint=True, checkpoint="best"))
+
+
+def test_nothing_is_written_beside_a_shipped_policy(shipped: Path, tmp_path: Path) -> None:
+    assert output_folder("rectum", shipped) == Path("logs/rsl_rl/rectum/pretrained")
+    assert output_folder("rectum", tmp_path / "run" / "model_5.pt") == tmp_path / "run"
+    assert output_folder("rectum", None, "expert") == Path("logs/rsl_rl/rectum/expert")
+
+
+def test_a_shipped_policy_is_the_actor_in_half_precision(tmp_path: Path) -> None:
+    """1 + 2^-12 lies between the halves 1 and 1 + 2^-10; a counter stays whole."""
+    actor = {"mlp.0.weight": torch.tensor([1.0, 1.0 + 2.0**-12, 0.5]), "steps": torch.tensor(70_000)}
+    contents = {"actor_state_dict": actor, "critic_state_dict": {"w": torch.zeros(9)}, "iter": 5, "infos": None}
+    torch.save(contents, tmp_path / "model_5.pt")
+    write_small(tmp_path / "model_5.pt", tmp_path / "out" / "model.pt")
+    small = read_checkpoint(tmp_path / "out" / "model.pt")
+    assert set(small) == {"actor_state_dict", "iter", "infos"}
+    assert small["actor_state_dict"]["mlp.0.weight"].tolist() == [1.0, 1.0, 0.5]
+    assert small["actor_state_dict"]["mlp.0.weight"].dtype == torch.float16
+    assert small["actor_state_dict"]["steps"].item() == 70_000
