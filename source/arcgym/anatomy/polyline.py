@@ -49,7 +49,7 @@ def restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
     for first in (0, 1):
         a, b = points[first:-1:2], points[first + 1 :: 2]
         offset = b - a
-        length = np.linalg.norm(offset, axis=1, keepdims=True)
+        length = np.sqrt((offset * offset).sum(1, keepdims=True))
         half = 0.5 * offset * (1.0 - edge[first::2, None] / np.maximum(length, 1e-9))
         a += half
         b -= half

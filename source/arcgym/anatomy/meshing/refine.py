@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from arcgym.anatomy.meshing.triangle_surface import edge_ends, edge_keys
+
 
 def refine(points: np.ndarray, faces: np.ndarray, selected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Split the selected triangles into four and their neighbours as far as needed to leave no hanging vertex.
@@ -18,13 +20,12 @@ def refine(points: np.ndarray, faces: np.ndarray, selected: np.ndarray) -> tuple
     Returns:
         The refined points and faces; old points keep their numbers and every winding is kept.
     """
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), 1)
-    unique, inverse = np.unique(edges, axis=0, return_inverse=True)
+    keys, inverse = np.unique(edge_keys(faces, len(points)).T.ravel(), return_inverse=True)
     edge_of = inverse.reshape(3, -1).T
-    split = _close(edge_of, selected, len(unique))
-    middle = np.full(len(unique), -1)
+    split = _close(edge_of, selected, len(keys))
+    middle = np.full(len(keys), -1)
     middle[split] = len(points) + np.arange(split.sum())
-    ends = unique[split]
+    ends = edge_ends(keys[split], len(points))
     points = np.concatenate([points, 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])])
     cuts = split[edge_of].sum(1)
     parts = [faces[cuts == 0], _split_in_four(faces[cuts == 3], middle[edge_of[cuts == 3]])]

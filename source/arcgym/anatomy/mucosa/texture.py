@@ -87,27 +87,35 @@ class _Noise:
     def __call__(self, shortest: float, longest: float, slope: float = 1.0) -> np.ndarray:
         """Return noise of unit variance with wavelengths from ``shortest`` to ``longest`` pixels."""
         f = self.frequency
-        gain = np.where((f > 1 / longest) & (f < 1 / shortest), f**-slope, 0.0)
-        phase = self.rng.normal(size=f.shape) + 1j * self.rng.normal(size=f.shape)
-        image = np.fft.irfft2(gain * phase, s=self.shape)
-        return image / image.std()
+        within = (f > 1 / longest) & (f < 1 / shortest)
+        gain = np.zeros(f.shape)
+        gain[within] = f[within] ** -slope
+        phase = np.empty(f.shape, complex)
+        phase.real = self.rng.normal(size=f.shape)
+        phase.imag = self.rng.normal(size=f.shape)
+        phase *= gain
+        image = np.fft.irfft2(phase, s=self.shape)
+        image /= image.std()
+        return image
 
 
 def _albedo(noise: _Noise, trunks: np.ndarray, fine: np.ndarray, look: MucosaSpec) -> np.ndarray:
     """Salmon mucosa with paler and redder patches; vessels show where the mucosa is thin."""
     base, pale, red = np.array([[0.850, 0.470, 0.390], [0.905, 0.610, 0.500], [0.790, 0.340, 0.300]])
-    paleness = np.clip(look.paleness + 0.26 * noise(60, 700, 1.3), 0, 1)[..., None]
-    redness = np.clip(look.redness + 0.20 * noise(30, 320, 1.2), 0, 0.7)[..., None]
-    color = base + paleness * (pale - base)
-    color += redness * (red - color)
-    color *= 1.0 + 0.022 * noise(2, 12, 0.4)[..., None] + 0.02 * noise(14, 60, 0.8)[..., None]
+    paleness = np.clip(look.paleness + 0.26 * noise(60, 700, 1.3), 0, 1)
+    redness = np.clip(look.redness + 0.20 * noise(30, 320, 1.2), 0, 0.7)
+    shade = 1.0 + 0.022 * noise(2, 12, 0.4) + 0.02 * noise(14, 60, 0.8)
     thin = 1.0 / (1.0 + np.exp(-1.5 * noise(160, 900)))
-    for vessels, strength, ink in (
-        (fine, look.vessels * 0.42 * thin, [0.66, 0.20, 0.17]),
-        (trunks, look.vessels * 0.62 * (0.35 + 0.65 * thin), [0.55, 0.15, 0.16]),
-    ):
-        color += (vessels * strength)[..., None] * (np.array(ink) - color)
-    return _bytes(color)
+    small, large = fine * (look.vessels * 0.42 * thin), trunks * (look.vessels * 0.62 * (0.35 + 0.65 * thin))
+    image = np.empty((*thin.shape, 3), np.uint8)
+    for k, (few, much) in enumerate(zip([0.66, 0.20, 0.17], [0.55, 0.15, 0.16], strict=True)):
+        color = base[k] + paleness * (pale[k] - base[k])
+        color += redness * (red[k] - color)
+        color *= shade
+        color += small * (few - color)
+        color += large * (much - color)
+        image[..., k] = _bytes(color)
+    return image
 
 
 def _detail(noise: _Noise, trunks: np.ndarray) -> np.ndarray:
@@ -118,7 +126,7 @@ def _detail(noise: _Noise, trunks: np.ndarray) -> np.ndarray:
     around = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / (2 * _PIXEL)
     wetness = np.clip(0.55 + 0.35 * noise(40, 300), 0.05, 1.0)
     slopes = [0.5 + 0.5 * slope / SLOPE_RANGE for slope in (around, along)]
-    detail = _bytes(np.stack([*slopes, 0.5 + height / HEIGHT_RANGE, wetness], -1))
+    detail = np.stack([_bytes(channel) for channel in (*slopes, 0.5 + height / HEIGHT_RANGE, wetness)], -1)
     return detail & _DETAIL_BITS
 
 
@@ -168,4 +176,5 @@ def _foam(noise: _Noise, albedo: np.ndarray, detail: np.ndarray, share: float) -
 
 
 def _bytes(image: np.ndarray) -> np.ndarray:
-    return np.clip(np.rint(255 * image), 0, 255).astype(np.uint8)
+    scaled = 255 * image
+    return np.clip(np.rint(scaled, out=scaled), 0, 255, out=scaled).astype(np.uint8)

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -126,9 +127,10 @@ def _stroke(pen: ImageDraw.ImageDraw, path: np.ndarray, branch: _Branch, trunk: 
     thickness = np.linspace(1.0, 0.8, len(path)) * branch.width * _SUPERSAMPLE
     if branch.rises:
         thickness *= np.minimum(1.0, np.linspace(0.1, 3.0, len(path)))
+    widths = np.maximum(1, np.rint(thickness[:-1])).astype(int)
+    changes = [0, *(np.flatnonzero(np.diff(widths)) + 1).tolist(), len(widths)]
     for dx in shifts[0] * size[0]:
         for dy in shifts[1] * size[1]:
-            points = (path + [dx, dy]) * _SUPERSAMPLE
-            for k in range(len(path) - 1):
-                ends = [tuple(points[k]), tuple(points[k + 1])]
-                pen.line(ends, fill=ink, width=max(1, round(thickness[k])))
+            points = ((path + [dx, dy]) * _SUPERSAMPLE).ravel().tolist()
+            for first, last in pairwise(changes):  # pieces of the same width at once
+                pen.line(points[2 * first : 2 * last + 2], fill=ink, width=int(widths[first]))
