@@ -11,8 +11,9 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.main import main
-from arcgym.evaluation.check import problems
+from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
 from arcgym.evaluation.compare import compare
+from arcgym.evaluation.leaderboard import submissions
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.trials import read_conditions
@@ -21,7 +22,7 @@ from arcgym.utils.errors import UsageError
 CONDITIONS = read_conditions(read_suites()["paper"].conditions_path)
 RUN = {
     "agent": "checkpoint",
-    "checkpoint_sha256": ["abc"],
+    "checkpoint_sha256": ["abc", "def", "fed"],
     "suite": "paper",
     "conditions_sha256": CONDITIONS.sha256,
     "overrides": [],
@@ -121,6 +122,13 @@ def test_the_cecum_is_reached_before_the_way_ends(tmp_path: Path, progress: floa
     [
         ({**RUN, "overrides": ["env.start=rest"]}, "change the task"),
         ({**RUN, "checkpoint_sha256": []}, "cannot be identified"),
+        ({**RUN, "checkpoint_sha256": ["abc", "abc"]}, "has 1 checkpoint(s), expected 3 training seeds"),
+        ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"clinical": [[], ["all"]]}}}, "run with clinical = ['all']"),
+        ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"gas": ["none", "present"]}}}, "run with gas = present"),
+        ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"scene.camera.far": [0.6, 0.3]}}}, "with scene.camera.far = 0.3"),
+        ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"actions.tip.linear_scale": [0.045, 0.1]}}}, "linear_scale = 0.1"),
+        ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"actions.tip.forward_velocity": [None, 0.1]}}}, "velocity = 0.1"),
+        ({**RUN, "inputs": {"ARC-Rectum-Magnetic": {"sees": [], "simulator_depth": True}}}, "simulator's depth"),
         ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"start": ["segment", "rest"]}}}, "run with start = rest"),
         ({**RUN, "suite": "mine"}, "expected one of paper"),
         ({**RUN, "conditions_sha256": "x"}, "hash of the condition file differs"),
@@ -129,6 +137,29 @@ def test_the_cecum_is_reached_before_the_way_ends(tmp_path: Path, progress: floa
 def test_a_run_that_is_not_the_suites_is_refused(tmp_path: Path, capsys, run: dict, message: str) -> None:
     assert main(["results", "check", str(result(tmp_path / "mine", run=run))]) == 1
     assert message in capsys.readouterr().out
+
+
+def test_what_is_the_agents_own_is_no_reason_to_refuse(tmp_path: Path) -> None:
+    """Its reward, what it sees, a velocity that it could command itself, and settings of the agent."""
+    own = {
+        "reward": ["shaped", "paper"],
+        "rewards.progress.weight": [300.0, 100.0],
+        "actions.tip.forward_velocity": [None, 0.04],
+        "observations.policy.image.params.size": [84, 64],
+    }
+    run = {**RUN, "changes": {TASKS[0]: own}, "overrides": ["agent.action_constraint.in_evaluation=false"]}
+    assert problems(result(tmp_path / "mine", run=run)) == []
+
+
+def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
+    """A new effect of the environment is part of the task until it is said to be the agent's."""
+    from arcgym.utils.coerce import to_plain
+    from arcgym.utils.registry import load_cfg_from_registry
+
+    fields = to_plain(load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point"))
+    assert set(AGENTS_OWN) - {FORWARD_VELOCITY} <= set(fields)
+    assert fields["actions"]["tip"]["linear_scale"] == FASTEST
+    assert {"gas", "clinical", "sim", "scene", "events", "terminations", "metrics"} <= set(fields) - set(AGENTS_OWN)
 
 
 def test_missing_trials_are_counted(tmp_path: Path, capsys) -> None:
@@ -215,7 +246,8 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert "old" not in text and text.endswith("<!-- end of entries -->\nend\n")
     line = next(line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`"))
     assert line.startswith(f"| `{TASKS[0]}` | Mine | A. Author | 100 (89–100) | 1.00 (1.00–1.00) |")
-    assert "| 2e+06 | 1.5 | abc | ? | reproduced: B. Other 2026-12 |" in text and "| abc | ? | self-reported |" in text
+    assert "| 2e+06 | 1.5 | abc, def, fed | ? | reproduced: B. Other 2026-12 |" in text
+    assert "| abc, def, fed | ? | self-reported |" in text
     (result(tmp_path / "all" / "wrong", seed=5) / "entry.yaml").write_text(ENTRY)
     result(tmp_path / "all" / "nameless", progress=0.5)
     (tmp_path / "all" / "nameless" / "entry.yaml").write_text("name: Mine\ncost: 3\n")
@@ -225,6 +257,15 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert "nameless: trial 0 of ARC-Rectum-Magnetic succeeded with a progress of 0.5" in out
     assert "lacks by, sees, trained_on, transitions, gpu_hours and has the unknown cost" in out
     assert page.read_text() == text
+
+
+def test_an_entry_that_saw_more_than_it_says_is_refused(tmp_path: Path) -> None:
+    inputs = {TASKS[0]: {"sees": ["policy", "force"], "simulator_depth": False}}
+    path = result(tmp_path / "all" / "mine", run={**RUN, "inputs": inputs})
+    (path / "entry.yaml").write_text(ENTRY)
+    assert submissions(tmp_path / "all") == ([], {path: ["says that it sees policy, and saw force, policy"]})
+    (path / "entry.yaml").write_text(ENTRY.replace("sees: policy", "sees: policy, force"))
+    assert submissions(tmp_path / "all") == ([path], {})
 
 
 @pytest.mark.parametrize(

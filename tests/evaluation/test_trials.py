@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 import torch
 
+from arcgym.evaluation.suites import FOLDER
 from arcgym.evaluation.trial_queue import TrialQueue
 from arcgym.evaluation.trials import Trial, read_conditions, write_conditions
 from arcgym.utils.errors import UsageError
@@ -25,6 +26,22 @@ def test_a_changed_file_has_another_hash(tmp_path: Path) -> None:
         write_conditions(tmp_path / "a.csv", trials, "")
         hashes.add(read_conditions(tmp_path / "a.csv").sha256)
     assert len(hashes) == 2
+
+
+SHIPPED = {
+    "cross_colon_v1": "706111bebfea0af9",
+    "ct_v1": "f40797aec41e4c2e",
+    "five_colons_v1": "2958c330008314b4",
+    "paper_v1": "9daf4c1f73ff953c",
+    "population_v2": "f9905f1ea7b45e90",
+    "robustness_v2": "5c7867ef5b36f05c",
+}
+"""Begins of the hashes of the shipped files: a changed one gets another name, and a line here."""
+
+
+def test_the_shipped_files_are_never_changed() -> None:
+    files = sorted((FOLDER / "conditions").glob("*.csv"))
+    assert {path.stem: read_conditions(path).sha256[:16] for path in files} == SHIPPED
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,9 @@
 
 from __future__ import annotations
 
+import dataclasses
+import re
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,6 +18,9 @@ from drawn_shafts import up_and_round, zigzag
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.managers import MetricsManager
 from arcgym_tasks.navigation.navigation_env_cfg import MetricsCfg
+from arcgym_tasks.navigation.withdrawal_cfg import WithdrawalMetricsCfg
+
+ROOT = Path(__file__).parents[2]
 
 STRAIGHT = torch.stack([torch.zeros(41), torch.zeros(41), torch.linspace(0.0, 0.4, 41)], 1)
 STEPS = (
@@ -118,6 +124,18 @@ def finished(env) -> dict[str, torch.Tensor]:
 
 def test_the_table_has_every_metric(finished) -> None:
     assert set(finished) == set(EXPECTED)
+
+
+def test_every_column_is_defined_in_the_docs() -> None:
+    """Figures of tip and shaft share lines: their names are given without the part, and with ``<tier>``."""
+    told = set(re.findall(r"`(\w+|\w+<tier>)`", (ROOT / "docs" / "metrics.md").read_text()))
+    shared = {f"{kind}_{part}_force" for kind in ("max", "mean", "p95", "peak") for part in ("tip", "shaft")}
+    shared |= {
+        f"{part}_time_above_{tier}" for part in ("tip", "shaft") for tier in ("comfort", "unsafe", "perforation")
+    }
+    assert {"max_", "mean_", "p95_", "peak_tip_force", "peak_shaft_force", "tip_time_above_<tier>"} <= told
+    columns = {field.name for cfg in (MetricsCfg, WithdrawalMetricsCfg) for field in dataclasses.fields(cfg)}
+    assert columns - shared - {"patient_index"} <= told  # a trial names its patient itself
 
 
 @pytest.mark.parametrize("name", EXPECTED)

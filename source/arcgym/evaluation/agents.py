@@ -23,6 +23,18 @@ def trained_agent(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> 
     return BatchedPolicy(policy, env.num_envs)
 
 
+def inputs_of(agent_cfg: Any) -> dict[str, Any]:
+    """Return the observation groups that a trained agent acts by, and whether rules on its actions read true depth."""
+    groups = getattr(agent_cfg, "obs_groups", None) or {}
+    rules = getattr(agent_cfg, "action_constraint", None)
+    simulated = rules is not None and rules.in_evaluation and _reads_truth(rules.depth)
+    return {"sees": list(groups.get("actor", groups.get("student", ()))), "simulator_depth": simulated}
+
+
+def _reads_truth(depth: Any) -> bool:
+    return depth.weights is None or depth.align_to_simulator
+
+
 def file_sha256(path: Path) -> str:
     """Return the SHA-256 of a file, by which results name a checkpoint."""
     digest = hashlib.sha256()

@@ -13,22 +13,17 @@ from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
-TASK_FIELDS = (
-    *(
-        "segment",
-        "start",
-        "direction",
-        "robustness",
-        "episode_length_s",
-        "decimation",
-        "force_tiers",
-        "events",
-        "terminations",
-        "sim.",
-    ),
-    *("metrics", "lumen", "scene.colon", "scene.endoscope"),
+AGENTS_OWN = (
+    *("observations", "extra_observations", "reward", "rewards", "costs", "curriculum", "viewer"),
+    *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs", "actions.tip.forward_velocity"),
 )
-"""Beginnings of the paths that make a task what it is: observations, actions and rewards are the agent's."""
+"""Fields of the environment, with all below them, that are the agent's: all others make a task what it is."""
+
+FORWARD_VELOCITY, FASTEST = "actions.tip.forward_velocity", 0.045
+"""A constant velocity of the tip, and the largest that actions command [m/s]."""
+
+SEEDS = 3
+"""Training seeds that are asked for where a condition file has groups."""
 
 KEPT_UNSEEN = ("population", "ct")
 """Suites whose patients nothing may be trained on."""
@@ -73,18 +68,29 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
     found += _seen_in_training(run, str(run.get("suite")))
-    more = [text for text in run.get("overrides", []) if text not in suite.overrides]
+    more = [text for text in run.get("overrides", []) if text not in suite.overrides and not text.startswith("agent.")]
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
+    checkpoints, wanted = len(set(run.get("checkpoint_sha256", []))), min(conditions.groups, SEEDS)
+    if run.get("agent") == "checkpoint" and 0 < checkpoints < wanted:
+        found.append(f"has {checkpoints} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups")
     for task, changes in run.get("changes", {}).items():
         asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
         allowed = {path: value for path, _, value in asked}
-        for path in changes:
-            if path.startswith(TASK_FIELDS) and str(changes[path][1]).lower() != allowed.get(path, "").lower():
-                found.append(
-                    f"{task} was run with {path} = {changes[path][1]}, which changes the task ({changes[path][0]})"
-                )
+        for path, (registered, used) in changes.items():
+            if not _is_agents(path, used) and str(used).lower() != allowed.get(path, "").lower():
+                found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
+    for task, inputs in run.get("inputs", {}).items():
+        if inputs["simulator_depth"]:
+            found.append(f"{task} was run with rules on actions that read the simulator's depth")
     return found
+
+
+def _is_agents(path: str, used: Any) -> bool:
+    """Return whether a field of the environment, by its path, is the agent's to choose, with the value used."""
+    if path == FORWARD_VELOCITY and used is not None:
+        return abs(float(used)) <= FASTEST
+    return any(path == own or path.startswith(f"{own}.") for own in AGENTS_OWN)
 
 
 def _seen_in_training(run: dict[str, Any], suite: str) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any
 import torch
 
 from arcgym.envs.provenance import versions
-from arcgym.evaluation.agents import file_sha256, trained_agent
+from arcgym.evaluation.agents import file_sha256, inputs_of, trained_agent
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.run_trials import run_trials
 from arcgym.evaluation.sharing import Share
@@ -184,6 +184,8 @@ def _run_batch(
     patients = patients_of(trials)
     cfgs = load_cfgs(task, checkpoint_of(agent))
     folder.note_changes(task, changes_of(task, cfgs[0]))
+    if agent not in UNTRAINED:
+        folder.note_inputs(task, inputs_of(cfgs[1]))
     with opened(task, agent, trials, cfgs, options) as (env, make_policy):
         with counted(task if len(patients) > 1 else f"{task}, {patients[0]}", len(trials)) as show:
             started = len(folder.rows)

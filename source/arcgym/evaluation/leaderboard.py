@@ -97,10 +97,12 @@ def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:
 def _entry_problems(folder: Path) -> list[str]:
     """Return what is wrong with what a submission says of itself, none or one line."""
     try:
-        read_entry(folder)
+        entry = read_entry(folder)
     except UsageError as error:
         return [str(error)]
-    return []
+    said = {name.strip() for name in str(entry.sees).split(",")}
+    seen = {name for inputs in read_run(folder).get("inputs", {}).values() for name in inputs["sees"]}
+    return [f"says that it sees {entry.sees}, and saw {', '.join(sorted(seen))}"] if seen - said else []
 
 
 def entries_table(folders: Sequence[Path]) -> str:

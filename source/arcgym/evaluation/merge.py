@@ -25,6 +25,8 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
         run = read_run(part)
         ResultFolder(out, run)
         _merge_changes(folder, part, run.get("changes", {}))
+        for task, inputs in run.get("inputs", {}).items():
+            folder.note_inputs(task, inputs)
         for row in read_trial_rows(part):
             key = (row["task"], row["trial"])
             if key not in known:

@@ -63,6 +63,12 @@ class ResultFolder:
         run.setdefault("changes", {})[task] = changes
         _write_run(self.path / RUN_FILE, run)
 
+    def note_inputs(self, task: str, inputs: dict[str, Any]) -> None:
+        """Write down what a trained agent sees in a task, see :func:`arcgym.evaluation.agents.inputs_of`."""
+        run = read_run(self.path)
+        run.setdefault("inputs", {})[task] = inputs
+        _write_run(self.path / RUN_FILE, run)
+
     def add(self, row: Row) -> None:
         """Write a row to the disk.
 

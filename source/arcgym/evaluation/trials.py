@@ -48,6 +48,11 @@ class Conditions:
     sha256: str
     """Hash of the file's contents."""
 
+    @property
+    def groups(self) -> int:
+        """Number of training seeds that the trials are for."""
+        return len({trial.group for trial in self.trials})
+
 
 def read_conditions(path: Path) -> Conditions:
     """Return the trials of a condition file.
