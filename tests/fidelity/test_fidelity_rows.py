@@ -20,6 +20,8 @@ QUICK = [
     "weight_wall",
     "gas_pressure,gas_radius",
     "gas_collapse",
+    "abdomen_stop",
+    "hand_dent,hand_push",
     "stiffening_hoop",
     "thickness_hoop",
     "relaxation_quick,relaxation_slow",

@@ -15,6 +15,7 @@ from arcgym.anatomy.segments import SEGMENTS
 from arcgym.utils.world_random import WorldRandom
 
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
+ABDOMEN_READOUTS = ("hand_dent", "abdomen_force")
 GAS_READOUTS = ("lumen_pressure", "lumen_pressure_mean", "lumen_pressure_peak")
 RING_READOUTS = ("wall_strain", "wall_strain_peak", "anchor_tension", "anchor_tension_peak")
 
@@ -83,7 +84,8 @@ class FakeColon:
             segment_spans=spans.expand(num_envs, len(SEGMENTS), 2),
             centerline_pos_w=points.expand(num_envs, 6, 3),
             **{name: torch.zeros(num_envs, 6) for name in RING_READOUTS},
-            **{name: torch.zeros(num_envs) for name in GAS_READOUTS},
+            **{name: torch.zeros(num_envs) for name in (*GAS_READOUTS, *ABDOMEN_READOUTS)},
+            hand_place=torch.zeros(num_envs, 2),
         )
         self.patients = [SimpleNamespace(name="tube", bounds={"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.5)})]
         self.commands: dict[str, Any] = {}
@@ -109,6 +111,13 @@ class FakeColon:
 
     def write_gas_to_sim(self, env_ids: torch.Tensor, **values: torch.Tensor) -> None:
         self.commands["gas"] = (values, env_ids)
+
+    def write_abdomen_to_sim(self, env_ids: torch.Tensor, **values: torch.Tensor) -> None:
+        self.commands["abdomen"] = (values, env_ids)
+
+    def set_hand_pressure(self, force: torch.Tensor, place: torch.Tensor) -> None:
+        self.commands["hand"] = (force.clone(), place.clone())
+        self.data.hand_place[:] = place
 
     def set_gas_flow(self, flow: torch.Tensor) -> None:
         self.commands["flow"] = flow.clone()

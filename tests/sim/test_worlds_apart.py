@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 """Three worlds of different tissue, friction and motion, in reversed order on the CPU and on a GPU, plainly and with
-gas, weight in another posture each, a wall law, a graded shaft and wheels with play."""
+gas, weight in another posture each, a wall law, a graded shaft, wheels with play and a hand on the abdomen."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.assets import GasCfg, GradingCfg, WallLawCfg
+from arcgym.assets import AbdomenCfg, GasCfg, GradingCfg, WallLawCfg
 from arcgym.sim import Simulation, WeightCfg
 
 DEVICES = ["cpu", pytest.param("cuda:0", marks=pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA"))]
@@ -27,6 +27,7 @@ def three(tiny: TinySim, effects: bool, **cfg: Any) -> Simulation:
     law = WallLawCfg(stiffening=1.5, thickness_by_diameter=True, relaxation=True, relaxing_time=(0.1, 1.0))
     scope = {"grading": GradingCfg(passive_length=0.05), "drives": {"bending": {"play": 0.1, "lag": 0.05}}}
     colon = {"youngs_modulus": 5.0e5, "gas": GasCfg(enabled=True), "wall_law": law}
+    colon["abdomen"] = AbdomenCfg(enabled=True, gap=0.0, hand_place=(0.0, 0.0))
     return tiny(links=10, num_envs=3, colon=colon, scope=scope, weight=WeightCfg(enabled=True), **cfg)
 
 
@@ -50,6 +51,8 @@ def command(sim: Simulation, order: list[int]) -> None:
     values = [torch.tensor(one, device=sim.device)[order] for one in (advance, bend, aside)]
     sim.endoscope.set_insertion_command(values[0], torch.zeros_like(values[0]))
     sim.endoscope.set_bending_command(values[1], values[2])
+    if sim.surroundings is not None:
+        sim.colon.set_hand_pressure(torch.tensor([20.0, 30.0, 40.0])[order])
 
 
 @pytest.mark.parametrize("effects", [False, True])

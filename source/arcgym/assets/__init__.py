@@ -4,6 +4,7 @@
 
 from typing import TYPE_CHECKING
 
+from arcgym.assets.abdomen_cfg import AbdomenCfg
 from arcgym.assets.actuators import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, TipPullCfg
 from arcgym.assets.colon_cfg import ColonCfg
 from arcgym.assets.endoscope_cfg import (
@@ -33,6 +34,7 @@ _LAZY = {
 }
 
 __all__ = [
+    "AbdomenCfg",
     "ActuatorBaseCfg",
     "BaseDriveCfg",
     "BendingDriveCfg",

@@ -266,6 +266,50 @@ class Colon:
         array = self.data._of_gas("flow")
         array[self._worlds(env_ids)] = flow.to(array)
 
+    def write_abdomen_to_sim(
+        self,
+        gap: torch.Tensor | None = None,
+        stiffness: torch.Tensor | None = None,
+        env_ids: Sequence[int] | torch.Tensor | None = None,
+    ) -> None:
+        """Set values of the abdomen, see :class:`arcgym.assets.AbdomenCfg`, of the worlds ``env_ids`` (all by default).
+
+        Args:
+            gap: Way from the imaged colon to the inside of the abdomen [m], shape (n,); None leaves it as it is.
+            stiffness: Pressure over depth [Pa/m], shape (n,).
+            env_ids: The worlds.
+
+        Raises:
+            ValueError: If there is no abdomen.
+        """
+        shape = self.data._abdomen().shape
+        for array, value in ((shape.gap, gap), (shape.stiffness, stiffness)):
+            if value is not None:
+                tensor = wp.to_torch(array)
+                tensor[self._worlds(env_ids)] = value.to(tensor)
+
+    def set_hand_pressure(
+        self,
+        force: torch.Tensor,
+        place: torch.Tensor | None = None,
+        env_ids: Sequence[int] | torch.Tensor | None = None,
+    ) -> None:
+        """Press on the abdomen by hand until the next command or write of state.
+
+        Args:
+            force: Of the hand [N], shape (n,); negative ones count as none.
+            place: Where, to the patient's right and cranial of ``AbdomenCfg.hand_place`` [m], shape (n, 2); None leaves
+                it. The hand stays on the front.
+            env_ids: The worlds, all by default.
+
+        Raises:
+            ValueError: If there is no abdomen.
+        """
+        hand, worlds = self.data._abdomen().hand, self._worlds(env_ids)
+        wp.to_torch(hand.force)[worlds] = force.to(self.data.hand_dent).clamp(min=0.0)
+        if place is not None:
+            self.data.hand_place[worlds] = place.to(self.data.hand_place)
+
     def write_patient_to_sim(self, patient: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
         """Give the worlds ``env_ids`` (all by default) other patients, indices into :attr:`patients`, shape (n,).
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any, Literal
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.assets.abdomen_cfg import AbdomenCfg
 from arcgym.assets.gas_cfg import GasCfg
 from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.utils.configclass import configclass
@@ -63,6 +64,8 @@ class ColonCfg:
     """Gas in the lumen: pressure, insufflation and collapse; off by default."""
     wall_law: WallLawCfg = WallLawCfg()
     """How a shell stretches: stiffening, thickness by diameter and relaxation; all off by default."""
+    abdomen: AbdomenCfg = AbdomenCfg()
+    """The abdomen, which stops loops, and a hand that presses on it; off by default."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""
 
@@ -86,6 +89,10 @@ class ColonCfg:
             raise FieldError(self, "wall_model", "is 'solid', expected 'shell' with gas.enabled=true: switch one off.")
         if self.wall_law.active and self.wall_model != "shell":
             raise FieldError(self, "wall_model", "is 'solid', expected 'shell' with any of wall_law: switch one off.")
+        if self.abdomen.enabled and self.wall_model != "shell":
+            raise FieldError(
+                self, "wall_model", "is 'solid', expected 'shell' with abdomen.enabled=true: switch one off."
+            )
         for field in ("anchor_stiffness", "anchor_slack"):
             for segment in getattr(self, field):
                 if segment not in SEGMENTS:

@@ -16,6 +16,7 @@ from arcgym.assets.patient import span_table
 if TYPE_CHECKING:
     from arcgym.assets.colon import Colon
     from arcgym.sim.simulation import Simulation
+    from arcgym.sim.wall.abdomen import Abdomen
 
 
 class ColonData:
@@ -42,7 +43,7 @@ class ColonData:
         self.segment_spans: torch.Tensor = self._spans[self.patient]
         """Arc length at start and end of each of :data:`arcgym.anatomy.segments.SEGMENTS` [m], shape (N, S, 2). One
         that a patient does not have begins and ends where the one before it ends."""
-        self._gas = sim.gas
+        self._gas, self._surroundings = sim.gas, sim.surroundings
         readout = sim.wall_readout
         self.wall_strain: torch.Tensor = wp.to_torch(readout.strain).transpose(0, 1)
         """Largest principal strain (stretch - 1) of each ring's lumen faces, mean over the control step, (N, R)."""
@@ -93,6 +94,38 @@ class ColonData:
         if self._gas is None:
             raise ValueError("No gas is simulated in the colon: set env.scene.colon.gas.enabled=true.")
         return wp.to_torch(getattr(self._gas.state, name))
+
+    @property
+    def abdomen_force(self) -> torch.Tensor:
+        """Push of the colon on the abdomen, summed over all places, at the start of the last step [N], shape (N,).
+
+        Raises:
+            ValueError: If there is no abdomen.
+        """
+        return wp.to_torch(self._abdomen().push)
+
+    @property
+    def hand_dent(self) -> torch.Tensor:
+        """How deep the hand has pressed the front of the abdomen in [m], shape (N,).
+
+        Raises:
+            ValueError: If there is no abdomen.
+        """
+        return wp.to_torch(self._abdomen().hand.dent)
+
+    @property
+    def hand_place(self) -> torch.Tensor:
+        """Where the hand is, to the right and cranial of ``AbdomenCfg.hand_place`` [m], shape (N, 2).
+
+        Raises:
+            ValueError: If there is no abdomen.
+        """
+        return wp.to_torch(self._abdomen().hand.place)
+
+    def _abdomen(self) -> Abdomen:
+        if self._surroundings is None or self._surroundings.abdomen is None:
+            raise ValueError("There is no abdomen around the colon: set env.scene.colon.abdomen.enabled=true.")
+        return self._surroundings.abdomen
 
     @property
     def default_nodal_state_w(self) -> torch.Tensor:

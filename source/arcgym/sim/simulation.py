@@ -28,6 +28,7 @@ from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet, optional
 from arcgym.sim.snapshot_library import SnapshotLibrary
 from arcgym.sim.wall.lumen_gas import LumenGas
+from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.sim.wall.wall_topology import LumenTopology
@@ -113,8 +114,9 @@ class Simulation:
             self._carried_surface(rest, lumen),
         )
         slots = len(self.contact.records.face)
-        effects = wall_effects(self, walls, lumen)
+        effects = wall_effects(self, walls, modes, lumen)
         self.gas: LumenGas | None = effects[0]
+        self.surroundings: Surroundings | None = effects[3]
         self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, *effects)
         if isinstance(colon.wall, ShellMesh):
             self.contact.soften(self.wall.tissue.moduli, cfg.contact.tissue_share)
@@ -257,6 +259,7 @@ class Simulation:
         }
         views = {name: wp.to_torch(array).view(n, -1) for name, array in arrays.items()} | self.contact.memory
         views |= self.wall.elements.memory | ({} if self.gas is None else self.gas.memory)
+        views |= {} if self.surroundings is None else self.surroundings.memory
         return {**views, "nodal_pos": self.colon.data.nodal_pos_w, "nodal_vel": self.colon.data.nodal_vel_w}
 
     def world_settings(self) -> dict[str, torch.Tensor]:
@@ -271,6 +274,7 @@ class Simulation:
             "rigid": self.rigid,
             "patient": self.colon.data.patient,
             **({} if self.gas is None else self.gas.settings),
+            **({} if self.surroundings is None else self.surroundings.settings),
             **({"gravity": wp.to_torch(self.actuation.gravity)} if self.cfg.weight.enabled else {}),
         }
 
@@ -378,3 +382,5 @@ class Simulation:
         self.actuation.reset(ids)
         if self.gas is not None:
             self.gas.reset(ids)
+        if self.surroundings is not None:
+            self.surroundings.reset(ids)

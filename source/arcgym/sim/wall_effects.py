@@ -1,15 +1,20 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Effects on the wall that are off by default: gas, weight and a law of its own."""
+"""Effects on the wall that are off by default: gas, weight, a law of its own and what lies around it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import warp as wp
+
 from arcgym.anatomy.shell import ShellMesh
 from arcgym.assets.wall_law_cfg import WallLawCfg
+from arcgym.sim.wall.abdomen import Abdomen
 from arcgym.sim.wall.lumen_gas import LumenGas
+from arcgym.sim.wall.ring_modes import RingModes
+from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_parameters import WallParameters
 from arcgym.sim.wall.wall_topology import LumenTopology
 from arcgym.sim.wall.wall_weight import WallWeight
@@ -19,19 +24,20 @@ if TYPE_CHECKING:
 
 
 def wall_effects(
-    sim: Simulation, walls: Sequence[WallParameters], lumen: LumenTopology
-) -> tuple[LumenGas | None, WallWeight | None, WallLawCfg | None]:
-    """Return the gas in the lumen, the weight of the walls and how they stretch; None for each that is off.
+    sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes], lumen: LumenTopology
+) -> tuple[LumenGas | None, WallWeight | None, WallLawCfg | None, Surroundings | None]:
+    """Return gas in the lumen, weight of the walls, how they stretch and their surroundings; None for each that is off.
 
     Args:
         sim: Simulation with colon, patients and actuation.
         walls: Wall of each patient.
+        modes: Its ring modes.
         lumen: Faces of the lumen.
 
     Raises:
         ValueError: If one is on that ``SimulationCfg.solver`` does not have.
     """
-    return _gas(sim, walls, lumen), _weight(sim, walls), _law(sim)
+    return _gas(sim, walls, lumen), _weight(sim, walls), _law(sim), _surroundings(sim, walls, modes)
 
 
 def _gas(sim: Simulation, walls: Sequence[WallParameters], lumen: LumenTopology) -> LumenGas | None:
@@ -59,3 +65,14 @@ def _law(sim: Simulation) -> WallLawCfg | None:
         return None
     sim.require_two_level("has the plain law of the wall", "leave env.scene.colon.wall_law as it is by default")
     return law
+
+
+def _surroundings(sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes]) -> Surroundings | None:
+    cfg, wall = sim.colon.cfg.abdomen, sim.colon.wall
+    if not cfg.enabled:
+        return None
+    sim.require_two_level("has no abdomen around the colon", "set env.scene.colon.abdomen.enabled=false")
+    assert isinstance(wall, ShellMesh)  # as ColonCfg checks
+    members = wp.array(modes[0].members, dtype=int, device=sim.device)
+    abdomen = Abdomen(cfg, walls, wall.triangles, members, sim.patient, sim.device)
+    return Surroundings(walls[0].ring, members, sim.num_envs, sim.device, abdomen)

@@ -10,7 +10,7 @@ from arcgym.utils.validation import FieldError
 
 ALL = "all"
 """Name for every effect."""
-EFFECTS = ("tissue", "relaxation", "gas", "weight", "scope", "friction")
+EFFECTS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen")
 """Names of the effects."""
 
 STIFFENING = 1.5
@@ -35,7 +35,7 @@ def check(cfg: Any) -> None:
         FieldError: If a wall of tetrahedra or another solver has none of them.
     """
     on = set(chosen(cfg.clinical))
-    if on & {"tissue", "relaxation", "gas"} and cfg.scene.colon.wall_model != "shell":
+    if on & {"tissue", "relaxation", "gas", "abdomen"} and cfg.scene.colon.wall_model != "shell":
         raise FieldError(
             cfg, "clinical", f"is {list(cfg.clinical)}, which needs env.scene.colon.wall_model=shell; it is 'solid'."
         )
@@ -92,6 +92,10 @@ def _friction(cfg: Any) -> None:
     _where_default(cfg.sim.contact, "static_friction", 1.0, STATIC_FRICTION)
 
 
+def _abdomen(cfg: Any) -> None:
+    cfg.scene.colon.abdomen.enabled = True
+
+
 def _where_default(cfg: Any, name: str, shipped: Any, value: Any) -> None:
     if getattr(cfg, name) == shipped:
         setattr(cfg, name, value)
@@ -104,4 +108,5 @@ _SWITCHES = {
     "weight": _weight,
     "scope": _scope,
     "friction": _friction,
+    "abdomen": _abdomen,
 }

@@ -24,6 +24,7 @@ from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import FieldError, require
 from arcgym_tasks.navigation import clinical
 from arcgym_tasks.navigation.gas import add_gas, check_gas
+from arcgym_tasks.navigation.hand import add_hand, check_hand
 from arcgym_tasks.navigation.observations import EXTRA_OBSERVATIONS, ObservationsCfg, add_observations
 from arcgym_tasks.navigation.robustness import NONE, VARIANTS, make_harder
 from arcgym_tasks.navigation.segments import Start, time_limit_s
@@ -230,9 +231,14 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     pressure (``env.scene.colon.gas`` holds its settings); ``commanded``: insufflation and suction are a further action,
     which policies that were trained without it do not have."""
 
+    hand_pressure: Literal["none", "commanded"] = "none"
+    """An assistant's hand on the abdomen. ``commanded``: where and how hard it presses is a further action, and the
+    colon lies in an abdomen (``env.scene.colon.abdomen`` holds its settings). ``none`` in every benchmark."""
+
     clinical: tuple[str, ...] = ()
     """Effects of a living colon and a used scope to switch on: ``[all]``, or some of ``tissue``, ``relaxation``,
-    ``gas``, ``weight``, ``scope`` and ``friction``; see docs/physics.md, Clinical. None in every benchmark."""
+    ``gas``, ``weight``, ``scope``, ``friction`` and ``abdomen``; see docs/physics.md, Clinical. None in every
+    benchmark."""
 
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
@@ -283,6 +289,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "clinical", (clinical.ALL, *clinical.EFFECTS))
         clinical.check(self)
         check_gas(self)
+        check_hand(self)
         require(self, "direction", ("insertion", "withdrawal"))
         if self.direction == "withdrawal" and self.start == "rest":
             raise FieldError(
@@ -309,6 +316,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         clinical.make_clinical(self)
         make_harder(self, self.robustness)
         add_gas(self)
+        add_hand(self)
         add_observations(self.observations, self.extra_observations)
         if self.reward in ABLATED:
             self.rewards.lumen = RewTerm(func=mdp.lumen_part, weight=1.0, params={"part": self.reward})

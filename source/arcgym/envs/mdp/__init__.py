@@ -3,6 +3,7 @@
 
 """Terms of the Markov decision process, one module for each kind; import as ``from arcgym.envs import mdp``."""
 
+from arcgym.envs.mdp.abdomen import *  # noqa: F403
 from arcgym.envs.mdp.actions import *  # noqa: F403
 from arcgym.envs.mdp.costs import *  # noqa: F403
 from arcgym.envs.mdp.coverage import *  # noqa: F403

@@ -26,9 +26,9 @@ class Shell:
 
     size = 1.0
     memory: dict[str, torch.Tensor] = {}
-    sweep_color, residual = sweep_kernels(
-        shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces
-    )
+    _laws = (shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces)
+    sweep_color, residual = sweep_kernels(*_laws)
+    surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle)
 
     def __init__(self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str):
@@ -93,9 +93,9 @@ class GasShell:
 
     size = Shell.size
     memory: dict[str, torch.Tensor] = {}
-    sweep_color, residual = sweep_kernels(
-        gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_elements, gas_shell_kernels.add_gas_forces
-    )
+    _laws = (gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_elements, gas_shell_kernels.add_gas_forces)
+    sweep_color, residual = sweep_kernels(*_laws)
+    surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_band_triangle)
 
     def __init__(

@@ -12,6 +12,7 @@ from arcgym.sim.wall.wall_kernels import (
     WallContacts,
     WallNodes,
     add_contact,
+    add_outer_force,
     add_self_contact,
     converged,
     inertia_and_anchor,
@@ -22,7 +23,7 @@ from arcgym.utils.math_kernels import clamp_length
 
 
 def sweep_kernels(
-    elements_type: type, add_elements: wp.Function, add_forces: wp.Function
+    elements_type: type, add_elements: wp.Function, add_forces: wp.Function, surrounded: bool = False
 ) -> tuple[wp.Kernel, wp.Kernel]:
     """Make the kernels ``sweep_color`` and ``residual`` for one kind of elements.
 
@@ -31,6 +32,7 @@ def sweep_kernels(
         add_elements: Adds force and Hessian of the elements around a vertex to its block, at the present positions;
             takes block, elements, positions, vertex, world and moduli.
         add_forces: Adds the forces alone, where the elements were measured; takes the same.
+        surrounded: Whether to add ``contacts.outer``.
     """
 
     @wp.kernel(module="unique")
@@ -69,6 +71,8 @@ def sweep_kernels(
         block = add_elements(block, elements, x, i, w, tissue.moduli[w])
         block = add_contact(block, contacts, x, i, w)
         block = add_self_contact(block, contacts.self_contact, x[i, w], i, w)
+        if wp.static(surrounded):
+            block = add_outer_force(block, contacts.outer, x[i, w], i, w)
         x[i, w] = x[i, w] + clamp_length(wp.inverse(block.hessian) * block.force, largest_move)
 
     @wp.kernel(module="unique")
@@ -101,6 +105,8 @@ def sweep_kernels(
             block = add_forces(block, elements, x, i, w, tissue.moduli[w])
             block.force += vertex_contact_force(contacts.records, measured, i, w)
             block = add_self_contact(block, contacts.self_contact, x[i, w], i, w)
+            if wp.static(surrounded):
+                block = add_outer_force(block, contacts.outer, x[i, w], i, w)
         force[i, w] = block.force
 
     return sweep_color, residual

@@ -30,9 +30,9 @@ class TissueShell:
     """Triangles and hinges with stiffening, thickness and relaxation of their own, and gas inside if there is any."""
 
     size = Shell.size
-    sweep_color, residual = sweep_kernels(
-        kernels.TissueShellElements, kernels.add_tissue_elements, kernels.add_tissue_forces
-    )
+    _laws = (kernels.TissueShellElements, kernels.add_tissue_elements, kernels.add_tissue_forces)
+    sweep_color, residual = sweep_kernels(*_laws)
+    surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(kernels.TissueShellElements, kernels.add_tissue_band_triangle)
 
     def __init__(

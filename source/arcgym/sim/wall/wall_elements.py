@@ -31,6 +31,8 @@ class WallElements(Protocol):
     """Sweep over this kind of elements, see :mod:`arcgym.sim.wall.sweep_kernels`."""
     residual: wp.Kernel
     """Total force with this kind of elements."""
+    surrounded: tuple[wp.Kernel, wp.Kernel]
+    """The two for walls with surroundings, see :mod:`arcgym.sim.wall.outer_force_kernels`."""
     measure_bands: wp.Kernel
     """Stiffness in the rings' modes, see :mod:`arcgym.sim.wall.band_kernels`."""
     corners: np.ndarray
@@ -84,9 +86,9 @@ class Solid:
     """Tetrahedra, which need nothing measured and remember nothing."""
 
     memory: dict[str, torch.Tensor] = {}
-    sweep_color, residual = sweep_kernels(
-        solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic
-    )
+    _laws = (solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic)
+    sweep_color, residual = sweep_kernels(*_laws)
+    surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(solid_kernels.SolidElements, solid_kernels.add_band_tet)
 
     def __init__(self, points: Sequence[np.ndarray], tets: np.ndarray, patient: wp.array, device: str):

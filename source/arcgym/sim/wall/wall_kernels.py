@@ -20,6 +20,7 @@ from arcgym.sim.contact.contact_kernels import (
 )
 from arcgym.sim.contact.self_contact_kernels import SelfContactForce
 from arcgym.sim.wall.anchor_kernels import Anchors, anchor_hessian, anchor_pull
+from arcgym.sim.wall.outer_force_kernels import OuterForce, outer_force
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.math_kernels import clamp_length
 
@@ -88,6 +89,7 @@ class WallContacts:
     links: LinkShapes
     law: ContactLaw
     self_contact: SelfContactForce
+    outer: OuterForce  # read by kernels for walls with surroundings alone
     friction: wp.array[float]  # Coulomb coefficient, shape (W,)
     dt: float  # physics step [s]
     x_prev: wp.array2d[wp.vec3]  # wall positions at the start of the step [m], shape (V, W)
@@ -286,6 +288,16 @@ def add_self_contact(block: VertexBlock, self_contact: SelfContactForce, x: wp.v
         n = wp.vec3(plane[0], plane[1], plane[2])
         out.force += (plane[3] - k * wp.dot(n, x)) * n
         out.hessian += k * wp.outer(n, n)
+    return out
+
+
+@wp.func
+def add_outer_force(block: VertexBlock, outer: OuterForce, x: wp.vec3, i: int, w: int) -> VertexBlock:
+    """Add what the surroundings do to vertex ``i`` of world ``w`` at ``x``."""
+    out = block
+    if outer.near[outer.ring[i], w] == 1:
+        out.force += outer_force(outer, x, i, w)
+        out.hessian += outer.stiffness[i, w]
     return out
 
 

@@ -23,6 +23,7 @@ from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.gas_rings import GasRings
 from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
+from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall.wall_topology import ring_mean
@@ -76,6 +77,7 @@ class WallSolver:
         gas: LumenGas | None = None,
         weight: WallWeight | None = None,
         law: WallLawCfg | None = None,
+        surroundings: Surroundings | None = None,
     ):
         """Allocate the solver.
 
@@ -90,6 +92,7 @@ class WallSolver:
             gas: Gas in the lumen, if there is any; advanced in every step.
             weight: Weight of the walls, if they weigh.
             law: How shells stretch; None for the plain law.
+            surroundings: What else pushes or pulls on the walls, if anything does.
         """
         num_envs, first = len(patient), walls[0]
         self.cfg, self.dt, self.num_envs, self.device = cfg, dt, num_envs, device
@@ -97,8 +100,10 @@ class WallSolver:
         mobile = np.any([wall.mobile for wall in walls], axis=0)
         self.moves = bool(mobile.any())
         self.nodes = wall_nodes(walls, patient, device)
-        self.gas, self.weight = gas, weight
+        self.gas, self.weight, self.surroundings = gas, weight, surroundings
         self.elements = wall_elements(walls, patient, dt, device, None if gas is None else gas.loads, law)
+        kernels = (self.elements.sweep_color, self.elements.residual)
+        self._sweep_color, self._sum_forces = kernels if surroundings is None else self.elements.surrounded
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
@@ -170,6 +175,9 @@ class WallSolver:
         if self.weight is not None:
             self.weight.add(self.nodes, self.tissue, self.dt, self.inertial)
         self.self_contact.measure(x)
+        if self.surroundings is not None:
+            self.surroundings.measure(x, self.dt)
+            self.surroundings.advance(self.dt)
         if self.gas is not None:
             self.gas.begin(self.inertial)
         self._measure(self.inertial)
@@ -227,7 +235,7 @@ class WallSolver:
         for color in self.colors:
             inputs = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
             self._launch(
-                self.elements.sweep_color,
+                self._sweep_color,
                 (len(color), self.num_envs),
                 [*inputs, self.cfg.largest_move, ROUNDING * self.elements.size, self.force],
                 [x],
@@ -244,6 +252,8 @@ class WallSolver:
         force = wp.zeros_like(x)
         contacts = wall_contacts(contact, self.dt, x, body_q, body_q)
         self.self_contact.measure(x)
+        if self.surroundings is not None:
+            self.surroundings.measure(x, self.dt)
         self._measure(x)
         inertial = x
         if self.weight is not None:
@@ -266,11 +276,13 @@ class WallSolver:
     def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
         """Measure the contacts at ``x``, and sum all up to the ``force`` on every vertex."""
         contacts.self_contact = self.self_contact.force
+        if self.surroundings is not None:
+            contacts.outer = self.surroundings.force
         shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
         self._launch(wall_kernels.measure_contacts, shape, [contacts, x], [measured])
         self._launch(
-            self.elements.residual,
+            self._sum_forces,
             x.shape,
             [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x],
             [force],
@@ -286,6 +298,8 @@ class WallSolver:
             [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact],
             [system.diagonal, system.upper, system.rhs],
         )
+        if self.surroundings is not None:
+            self.surroundings.add_rows(rings, tissue, system.diagonal)
         if self.gas_rings is None:
             system.solve()
         else:

@@ -26,6 +26,8 @@ class MagneticActionsCfg:
     tip: mdp.TipVelocityActionCfg = mdp.TipVelocityActionCfg()
     gas: mdp.GasFlowActionCfg | None = None
     """Off unless ``env.gas=commanded``: insufflation and suction."""
+    hand: mdp.HandPressureActionCfg | None = None
+    """Off unless ``env.hand_pressure=commanded``: an assistant's hand on the abdomen."""
 
 
 @configclass

@@ -1,0 +1,114 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+
+"""The abdomen around the colon: an assistant's hand on it as an action and an observation, other bodies by an event."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import torch
+
+from arcgym.envs.mdp.actions import VelocityAction
+from arcgym.managers import ActionTerm, ActionTermCfg
+from arcgym.utils.configclass import configclass
+from arcgym.utils.validation import NON_NEGATIVE, Range, expects, require
+
+if TYPE_CHECKING:
+    from arcgym.envs import ManagerBasedEnv
+
+__all__ = ["HandPressureAction", "HandPressureActionCfg", "hand", "randomize_abdomen"]
+
+
+class HandPressureAction(VelocityAction):
+    """Force of an assistant's hand on the abdomen, none below zero, and where the hand moves on it; D = 3.
+
+    The hand's place moves once a control step, at the commanded velocity, and stays on the front of the abdomen.
+    """
+
+    cfg: HandPressureActionCfg
+    axes = ("press", "right", "cranial")
+    units = ("N", "m/s", "m/s")
+
+    def __init__(self, cfg: HandPressureActionCfg, env: ManagerBasedEnv) -> None:
+        """Check that there is an abdomen.
+
+        Raises:
+            ValueError: If there is none.
+        """
+        super().__init__(cfg, env, [cfg.force, cfg.speed, cfg.speed], {})
+        self._place = self._asset.data.hand_place.clone()
+
+    def process_actions(self, actions: torch.Tensor) -> None:
+        """Clip and scale ``actions``, shape (N, 3), and move the hand by one control step."""
+        super().process_actions(actions)
+        reach = self._processed[:, 1:] * self._env.step_dt
+        self._place = (self._asset.data.hand_place + reach).clamp(-self.cfg.reach, self.cfg.reach)
+
+    def apply_actions(self) -> None:
+        """Command the hand."""
+        self._asset.set_hand_pressure(self._processed[:, 0], self._place)
+
+    def commanded_actions(self) -> torch.Tensor:
+        """Return zeros, shape (N, 3): no expert has an assistant."""
+        return torch.zeros_like(self._raw)
+
+
+@configclass
+class HandPressureActionCfg(ActionTermCfg):
+    """Configuration of :class:`HandPressureAction`."""
+
+    class_type: type[ActionTerm] | str = HandPressureAction
+    """The term's class."""
+
+    asset_name: str = "colon"
+    """Scene element around which the abdomen is."""
+
+    force: float = 40.0
+    """Force at a raw action of one [N]. A choice, half way between 20 and 60 N: no source says how hard assistants
+    press; how the front of the abdomen resists is ``AbdomenCfg.hand_stiffness``."""
+
+    speed: float = 0.1
+    """Speed of the hand on the abdomen at a raw action of one [m/s], along each of two directions. A choice."""
+
+    reach: float = 0.2
+    """Farthest way of the hand from where it is at first, along each of them [m]."""
+
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds.
+        """
+        require(self, "force", Range(0.0, 100.0, above=True), unit="N")
+        require(self, "speed", Range(0.0, 1.0, above=True), unit="m/s")
+        require(self, "reach", Range(0.0, 0.5), unit="m")
+
+
+def hand(env: ManagerBasedEnv) -> torch.Tensor:
+    """Return how deep the hand has pressed the abdomen in, and where it is, over 0.1 m, shape (N, 3)."""
+    data = env.scene["colon"].data
+    return torch.cat([data.hand_dent[:, None], data.hand_place], dim=1) / 0.1
+
+
+@expects(gap=NON_NEGATIVE, stiffness=NON_NEGATIVE)
+def randomize_abdomen(
+    env: ManagerBasedEnv,
+    env_ids: torch.Tensor,
+    gap: tuple[float, float] | None = (0.0, 0.03),
+    stiffness: tuple[float, float] | None = (2.0e5, 5.0e5),
+) -> None:
+    """Give each world a body of its own, uniform between bounds; needs ``env.scene.colon.abdomen.enabled=true``.
+
+    Args:
+        gap: Least and largest way from the imaged colon to the inside of the abdomen [m]; None leaves it as it is. A
+            choice.
+        stiffness: Pressure over depth [Pa/m], 2 to 5 kPa a cm, a choice.
+    """
+    given = {"gap": gap, "stiffness": stiffness}
+    drawn = {
+        name: bounds[0] + (bounds[1] - bounds[0]) * env.random.uniform(f"abdomen: {name}", env_ids=env_ids)
+        for name, bounds in given.items()
+        if bounds is not None
+    }
+    env.scene["colon"].write_abdomen_to_sim(**drawn, env_ids=env_ids)

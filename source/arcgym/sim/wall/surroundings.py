@@ -1,0 +1,71 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What lies around the walls of all worlds and pushes or pulls on them, besides their anchors."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+import warp as wp
+
+from arcgym.sim.wall import outer_force_kernels as kernels
+from arcgym.sim.wall.abdomen import Abdomen
+from arcgym.sim.wall.band_kernels import Rings
+from arcgym.sim.wall.ring_modes import MODES
+from arcgym.sim.wall.wall_kernels import Tissue
+
+
+class Surroundings:
+    """Forces of the surroundings, measured once a step and linear within it. V vertices, R rings, W worlds."""
+
+    def __init__(self, ring: np.ndarray, members: wp.array, num_envs: int, device: str, abdomen: Abdomen | None = None):
+        """Allocate.
+
+        Args:
+            ring: Ring of each vertex, shape (V,).
+            members: Vertices of each ring, -1 padded, shape (R, S).
+            num_envs: Number of worlds.
+            device: Warp device.
+            abdomen: The abdomen, if there is one.
+        """
+        self.abdomen, self._members, self._device = abdomen, members, device
+        self.force = kernels.OuterForce()
+        """Their force on every vertex."""
+        self.force.ring = wp.array(ring, dtype=int, device=device)
+        self.force.push = wp.zeros((len(ring), num_envs), dtype=wp.vec3, device=device)
+        self.force.stiffness = wp.zeros((len(ring), num_envs), dtype=wp.mat33, device=device)
+        self.force.near = wp.zeros((len(members), num_envs), dtype=int, device=device)
+
+    @property
+    def memory(self) -> dict[str, torch.Tensor]:
+        """What their future depends on, by name, as views of shape (W, ...)."""
+        return {} if self.abdomen is None else self.abdomen.memory
+
+    @property
+    def settings(self) -> dict[str, torch.Tensor]:
+        """What may differ between worlds, by name, shape (W,) each."""
+        return {} if self.abdomen is None else self.abdomen.settings
+
+    def measure(self, x: wp.array, dt: float) -> None:
+        """Measure the forces of a step of ``dt`` [s] at positions ``x`` [m], shape (V, W), vec3."""
+        shape = self.force.near.shape
+        inputs, outputs = [self._members], [self.force]
+        wp.launch(kernels.clear_outer_force, shape, inputs=inputs, outputs=outputs, device=self._device)
+        if self.abdomen is not None:
+            self.abdomen.measure(x, dt, self.force)
+
+    def advance(self, dt: float) -> None:
+        """End the step's part that takes no wall: move the hands."""
+        if self.abdomen is not None:
+            self.abdomen.advance(dt)
+
+    def add_rows(self, rings: Rings, tissue: Tissue, diagonal: wp.array) -> None:
+        """Add their stiffness to the rings' ``diagonal`` blocks [N/m], shape (R, W, 9, 9)."""
+        inputs = [self._members, rings.plane, rings.moves, rings.patient, tissue.rigid, self.force]
+        shape = (*self.force.near.shape, MODES)
+        wp.launch(kernels.add_outer_rows, shape, inputs=inputs, outputs=[diagonal], device=self._device)
+
+    def reset(self, ids: torch.Tensor) -> None:
+        """Forget the commands in the worlds ``ids``, shape (n,), int64."""
+        if self.abdomen is not None:
+            self.abdomen.reset(ids)
