@@ -37,6 +37,7 @@ def result(path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = sl
         for trial in CONDITIONS.trials[trials]:
             row = {"task": task, "agent": "a", **vars(trial), "success": 1, "end": "success", "reward": 1.0}
             row |= {"seconds": seconds + trial.trial, "progress": 1.0, "centered_rate": 1.0, "p95_tip_force": 0.0}
+            row |= {"mean_tip_force": 0.0, "max_tip_force": 0.0, "peak_tip_force": 0.0}
             folder.add(row | (changes if not folder.rows else {}))
     return path
 
@@ -96,6 +97,8 @@ def test_what_the_parts_changed_is_known_of_the_whole(tmp_path: Path, capsys) ->
         ({"trial": 1}, "is there twice"),
         ({"centered_rate": 1.5}, "has centered_rate = 1.5, expected 0 to 1"),
         ({"p95_tip_force": -0.2}, "has p95_tip_force = -0.2, expected no negative number"),
+        ({"mean_tip_force": 3.0, "max_tip_force": 2.0}, "has mean_tip_force = 3.0, above the largest, 2.0"),
+        ({"max_tip_force": 2.0, "peak_tip_force": 1.5}, "has max_tip_force = 2.0, above the peak, 1.5"),
         ({"p95_tip_force": float("nan")}, "has p95_tip_force = nan, expected a finite number"),
     ],
 )
@@ -105,9 +108,19 @@ def test_a_wrong_submission_is_refused_with_the_reason(tmp_path: Path, capsys, c
     assert message in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(("progress", "refused"), [(0.98, False), (0.9, True)])
+def test_the_least_progress_at_the_cecum_fits_the_patients() -> None:
+    """Half of the cecum's length before the end; all that are known come to 0.975 or more."""
+    from arcgym.anatomy.generator.population import draw_spec
+    from arcgym.anatomy.generator.splits import read_splits
+
+    for seed in read_splits().seeds["test"]:
+        lengths = {name: segment.length for name, segment in draw_spec(seed).segments.items()}
+        assert 1.0 - 0.5 * lengths["cecum"] / sum(lengths.values()) > 0.975
+
+
+@pytest.mark.parametrize(("progress", "refused"), [(0.975, False), (0.96, True)])
 def test_the_cecum_is_reached_before_the_way_ends(tmp_path: Path, progress: float, refused: bool) -> None:
-    """Its middle lies 3 cm before the end of a colon that is at least 1 m long."""
+    """Its middle lies 3 cm before the end of a colon that is at least 1.1 m long."""
     suite = read_suites()["cecum"]
     conditions = read_conditions(suite.conditions_path)
     folder = ResultFolder(tmp_path / "a", {**RUN, "suite": "cecum", "conditions_sha256": conditions.sha256})

@@ -142,8 +142,12 @@ def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
 
 
 def _least_progress(task: str) -> float:
-    """Return the least progress with which a task succeeds: the cecum is reached halfway from its valve to its end."""
-    return 0.95 if "-Cecum-" in task else 0.999
+    """Return the least progress with which a task succeeds.
+
+    The cecum is reached halfway from its valve to its end: at 0.975 of the way in the shortest colon (``ct_2``, 1.19 m)
+    and at 0.977 or more in the patients of the split ``test``.
+    """
+    return 0.97 if "-Cecum-" in task else 0.999
 
 
 def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:
@@ -158,6 +162,10 @@ def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:
             yield name, value, "expected 0 to 1"
         elif value < -1e-6 and any(word in name for word in POSITIVE):
             yield name, value, "expected no negative number"
+        elif name.startswith("mean_") and value > (most := row.get(f"max_{name[5:]}", math.inf)) * (1 + 1e-5):
+            yield name, value, f"above the largest, {most}"
+        elif name.startswith("max_") and value > (peak := row.get(f"peak_{name[4:]}", math.inf)) * (1 + 1e-5) + 1e-6:
+            yield name, value, f"above the peak, {peak}"
 
 
 def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
