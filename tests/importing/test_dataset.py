@@ -6,13 +6,17 @@ from __future__ import annotations
 
 import csv
 import json
+import os
+import signal
+import threading
+import time
 from pathlib import Path
 
 import pytest
 from label_volumes import write_volume
 
 from arcgym.anatomy.importing import ImportArgumentError
-from arcgym.anatomy.importing.dataset import COLUMNS, find_scans, split_of
+from arcgym.anatomy.importing.dataset import COLUMNS, find_scans, outcome, split_of, split_text
 from arcgym.cli.main import run_command
 
 METADATA = [
@@ -108,6 +112,90 @@ def test_options_after_two_dashes_go_to_the_import(tmp_path: Path) -> None:
     with pytest.raises(SystemExit, match="2"):
         run_command("import-dataset", command)
     assert "unknown flag '--voxels'" in (tmp_path / "colons" / "logs" / "tube_prone.log").read_text()
+
+
+REPORT = {
+    "made_by": "arcgym import-colon",
+    "checks": [],
+    "doubts": [],
+    "length_mm": 1500.0,
+    "lumen_radius_mm": {"p50": 20.0},
+    "orientation": {"likeness": 0.9},
+    "widened_for_head": {"share": 0.1},
+    "cleaning": {"cut": []},
+    "seconds": {"read": 1.0},
+}
+
+
+def reported(release: Path, **changes: object) -> Path:
+    """Write the report of an import of colon_001 and return the folder of the data set."""
+    folder = release.parent / "colons" / "colon_001"
+    folder.mkdir(parents=True)
+    (folder / "report.json").write_text(json.dumps(REPORT | changes))
+    return folder.parent
+
+
+@pytest.mark.parametrize(("doubts", "status", "named"), [([], "imported", 1), (["likeness 0.3"], "doubtful", 0)])
+def test_kept_but_doubtful_colons_are_in_no_split(doubts: list[str], status: str, named: int, release: Path) -> None:
+    out = reported(release, doubts=doubts)
+    row = outcome(find_scans(release)[0], out)
+    assert row is not None and row["status"] == status
+    sides = json.loads(split_text([row]))
+    assert sum(len(sides[side]) for side in ("train", "validation", "test")) == named
+
+
+def test_report_without_figures_is_named(release: Path, capsys: pytest.CaptureFixture) -> None:
+    out = reported(release, orientation={})
+    with pytest.raises(SystemExit, match="2"):
+        run_command("import-dataset", [str(release), str(out)])
+    assert "colon_001/report.json lacks figures ('likeness')" in capsys.readouterr().err
+
+
+def slow_import(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, last: str = "sleep 60") -> None:
+    """Let a script stand for import-colon, which says when it begins and is told to end."""
+    script = tmp_path / "import.sh"
+    told = f"trap 'touch {tmp_path}/told; exit 143' TERM"
+    script.write_text(f"#!/bin/bash\n{told}\ntouch {tmp_path}/begun\n{last} & wait\n")
+    script.chmod(0o755)
+    monkeypatch.setattr("arcgym.cli.import_dataset.sys.executable", str(script))
+
+
+def test_stopped_data_set_stops_its_imports(
+    release: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    slow_import(tmp_path, monkeypatch)
+
+    def stop() -> None:
+        while not (tmp_path / "begun").exists():
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=stop).start()
+    began = time.monotonic()
+    with pytest.raises(SystemExit, match="143"):
+        run_command("import-dataset", [str(release), str(tmp_path / "colons")])
+    assert time.monotonic() - began < 30.0
+    assert (tmp_path / "told").exists()
+    assert "stopped by SIGTERM" in capsys.readouterr().err
+
+
+def test_import_that_takes_too_long_is_told_to_end_and_refused(
+    release: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow_import(tmp_path, monkeypatch)
+    out = tmp_path / "colons"
+    assert run_command("import-dataset", [str(release), str(out), "--limit", "1", "--timeout", "1"]) == 1
+    assert (tmp_path / "told").exists()
+    assert "not done after 1 s" in rows(out)[0]["problem"]
+
+
+def test_import_that_is_killed_is_refused_and_the_rest_goes_on(
+    release: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow_import(tmp_path, monkeypatch, "kill -9 $$")
+    out = tmp_path / "colons"
+    assert run_command("import-dataset", [str(release), str(out)]) == 1
+    assert [("killed" in row["problem"]) for row in rows(out)] == [True, True]
 
 
 @pytest.mark.slow

@@ -23,8 +23,8 @@ from arcgym.anatomy.importing.orientation import orient
 def volume(path: Path, values: np.ndarray, spacing: float = 2.0) -> Path:
     image = sitk.GetImageFromArray(values)
     image.SetSpacing([spacing] * 3)
-    sitk.WriteImage(image, str(path))
-    return path
+    sitk.WriteImage(image, str(path.with_name(path.name.lower())))
+    return path.with_name(path.name.lower()).rename(path)
 
 
 def refused(path: Path, match: str, settings: ImportSettings | None = None) -> None:
@@ -132,7 +132,17 @@ def test_stopped_import_leaves_nothing(number: signal.Signals, tmp_path: Path) -
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["a.mha", "a.nii", "a.nii.gz", "a.nrrd"])
+def test_header_of_more_voxels_than_a_ct_has(tmp_path: Path) -> None:
+    """Found before ITK takes 100 GB for them."""
+    path = tmp_path / "a.mha"
+    path.write_text(
+        "ObjectType = Image\nNDims = 3\nDimSize = 10000 10000 1000\nElementType = MET_UCHAR\n"
+        "ElementSpacing = 1 1 1\nElementDataFile = LOCAL\n"
+    )
+    refused(path, "10000 x 10000 x 1000 voxels, 100.0 billion; the limit is 2 billion")
+
+
+@pytest.mark.parametrize("name", ["a.mha", "a.nii", "a.nii.gz", "a.nrrd", "A.NII.GZ"])
 def test_truncated_volume(name: str, tmp_path: Path) -> None:
     path = volume(tmp_path / name, np.random.default_rng(0).integers(0, 2, (40, 40, 40)).astype(np.uint8))
     path.write_bytes(path.read_bytes()[:2000])

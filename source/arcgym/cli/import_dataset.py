@@ -10,6 +10,8 @@ Any other option of import-colon is passed on after --, such as: -- --max-gap 80
 from __future__ import annotations
 
 import argparse
+import contextlib
+import signal
 import subprocess
 import sys
 import time
@@ -26,6 +28,9 @@ if TYPE_CHECKING:
     from arcgym.anatomy.importing.dataset import Scan
 
 PASSES_ON = True
+
+UNWINDING = 30.0
+"""Time that an import has to remove what it had begun, before it is killed [s]."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,14 +63,17 @@ def run(args: argparse.Namespace) -> int:
     if args.retry:
         for scan in scans:
             refusal(scan, args.out).unlink(missing_ok=True)
-    todo = [scan for scan in scans if outcome(scan, args.out) is None]
+    try:
+        todo = [scan for scan in scans if outcome(scan, args.out) is None]
+    except ImportArgumentError as error:
+        raise UsageError(str(error)) from error
     print(f"{len(scans)} files, {len(scans) - len(todo)} done before", flush=True)
     with stopped_cleanly(f"{args.out} holds what was done; the same command goes on"):
         _import_all(todo, scans, args)
-    rows = _write_tables(scans, args.out)
-    refused = [row for row in rows if row["status"] == "refused"]
-    print(f"{args.out / 'table.csv'}: {len(rows) - len(refused)} colons, {len(refused)} refused")
-    return 1 if refused else 0
+    status = [row["status"] for row in _write_tables(scans, args.out)]
+    said = [f"{status.count(kind)} {kind}" for kind in ("imported", "refused", "doubtful") if kind in status]
+    print(f"{args.out / 'table.csv'}: {', '.join(said)}")
+    return 0 if set(status) <= {"imported"} else 1
 
 
 def _make_folders(out: Path) -> None:
@@ -77,38 +85,66 @@ def _make_folders(out: Path) -> None:
 
 
 def _import_all(todo: list[Scan], scans: list[Scan], args: argparse.Namespace) -> None:
+    children: set[subprocess.Popen[bytes]] = set()
     with ThreadPoolExecutor(args.jobs) as pool:
-        running = {pool.submit(_import, scan, args): scan for scan in todo}
+        running = {pool.submit(_import, scan, args, children): scan for scan in todo}
         try:
             for number, done in enumerate(as_completed(running), 1):
                 print(f"{number}/{len(todo)} {running[done].name}: {done.result()}", flush=True)
                 _write_tables(scans, args.out)
         finally:
-            pool.shutdown(cancel_futures=True)
+            pool.shutdown(wait=False, cancel_futures=True)
+            for child in list(children):
+                child.terminate()  # it removes what it had begun
 
 
-def _import(scan: Scan, args: argparse.Namespace) -> str:
+def _import(scan: Scan, args: argparse.Namespace, children: set[subprocess.Popen[bytes]]) -> str:
     """Import one file in a process of its own, and return what came of it in a few words."""
     from arcgym.anatomy.importing.dataset import refusal
+    from arcgym.anatomy.importing.preflight import made_by_import
 
     command = [sys.executable, "-m", "arcgym", "import-colon", str(scan.path), str(args.out / scan.name)]
     command += ["--posture", scan.posture, "--patient", scan.about, "--licence", args.licence, *args.passed_on]
     log, began = args.out / "logs" / f"{scan.name}.log", time.monotonic()
     with log.open("w") as file:
-        try:
-            status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, timeout=args.timeout).returncode
-        except subprocess.TimeoutExpired:
-            status, _ = 1, file.write(f"error: not done after {args.timeout} s. Pass a longer --timeout\n")
+        with subprocess.Popen(command, stdout=file, stderr=subprocess.STDOUT) as child:
+            children.add(child)
+            status = _wait(child, args.timeout)
+            children.discard(child)
     seconds = time.monotonic() - began
     if status == 0:
         return f"imported in {seconds:.0f} s"
+    if status is None:
+        return _refuse(refusal(scan, args.out), f"error: not done after {args.timeout} s. Pass a longer --timeout")
+    if status == -signal.SIGKILL:
+        memory = "Pass fewer --jobs, or -- --voxel 1.5"
+        return _refuse(refusal(scan, args.out), f"error: killed, most likely as the memory was full. {memory}")
+    if made_by_import(args.out / scan.name / "report.json"):
+        return "doubtful, kept as --keep-doubtful says"
     if status < 0 or status > 128:
         raise SystemExit(f"{scan.name}: import-colon was stopped by a signal (status {status}), see {log}")
     lines = [line for line in log.read_text().splitlines() if "error:" in line]
     problem = lines[-1] if lines else f"error: import-colon ended with status {status}, see {log}"
     if status == 2:
         raise UsageError(problem.split("error:", 1)[1].strip())
-    refusal(scan, args.out).write_text(problem + "\n")
+    return _refuse(refusal(scan, args.out), problem)
+
+
+def _wait(child: subprocess.Popen[bytes], timeout: float) -> int | None:
+    """Return the exit status of an import; None where it took too long and was stopped."""
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        return child.wait(timeout)
+    child.terminate()
+    try:
+        child.wait(UNWINDING)
+    except subprocess.TimeoutExpired:
+        child.kill()
+    return None
+
+
+def _refuse(path: Path, problem: str) -> str:
+    """Write down why a file was refused, and return it."""
+    path.write_text(problem + "\n")
     return problem
 
 

@@ -144,7 +144,7 @@ def outcome(scan: Scan, out: Path) -> dict[str, Any] | None:
     row |= {"name": scan.name, "patient": scan.patient, "split": split_of(scan.patient), "posture": scan.posture}
     report = out / scan.name / "report.json"
     if made_by_import(report):
-        return row | _figures(json.loads(report.read_text()))
+        return row | _imported(report)
     refused = refusal(scan, out)
     if refused.is_file():
         return row | {"status": "refused", "split": "", "problem": refused.read_text().strip()}
@@ -154,6 +154,21 @@ def outcome(scan: Scan, out: Path) -> dict[str, Any] | None:
 def refusal(scan: Scan, out: Path) -> Path:
     """Return the file that says why a scan was refused."""
     return out / "refused" / f"{scan.name}.txt"
+
+
+def _imported(path: Path) -> dict[str, Any]:
+    """Return what a report says; a colon that was kept although it is doubtful is in no split.
+
+    Raises:
+        ImportArgumentError: The report lacks figures, as one of another version may.
+    """
+    report = json.loads(path.read_text())
+    try:
+        row, doubts = _figures(report), report["doubts"]
+    except (KeyError, TypeError) as error:
+        mend = f"Remove {path.parent}; it is made anew."
+        raise ImportArgumentError(f"{path} lacks figures ({error})", mend) from error
+    return row | {"status": "doubtful", "split": "", "problem": ". ".join(doubts)} if doubts else row
 
 
 def _figures(report: dict[str, Any]) -> dict[str, Any]:

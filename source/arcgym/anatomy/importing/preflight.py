@@ -18,8 +18,8 @@ _REPORT = "report.json"
 _OWN_FILES = {"colon.usda", "colon.usdc", _REPORT, "report.png", "preview.png", "snapshots"}
 """What an import, a preview and start states put into the folder, beside textures."""
 
-_OWN_TEXTURES = "mucosa_"
-"""How the names of the textures begin."""
+_OWN_TEXTURES = {"mucosa_albedo.jpg", "mucosa_detail.png"}
+"""The textures."""
 
 
 def check_paths(path: Path, out: Path, overwrite: bool) -> None:
@@ -68,7 +68,7 @@ def _check_replaceable(path: Path, out: Path, overwrite: bool) -> None:
     if not out.is_dir() or out.is_symlink():
         raise ImportArgumentError(f"{out} is not replaced: it is no folder", "Pass another folder, or remove it.")
     names = sorted(entry.name for entry in out.iterdir())
-    foreign = [name for name in names if name not in _OWN_FILES and not name.startswith(_OWN_TEXTURES)]
+    foreign = [name for name in names if name not in _OWN_FILES | _OWN_TEXTURES]
     if foreign:
         some = ", ".join(foreign[:3]) + (f" and {len(foreign) - 3} more" if len(foreign) > 3 else "")
         found = f"{out} is not replaced: {some} in it is not of an import"

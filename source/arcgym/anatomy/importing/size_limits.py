@@ -4,7 +4,10 @@
 
 from __future__ import annotations
 
+import math
 import os
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from scipy import ndimage
@@ -13,6 +16,9 @@ from arcgym.anatomy.importing.errors import ColonImportError
 
 _MOST_VOXELS = 2.5e8
 """Largest number of voxels that are worked on; a large patient at 1 mm has 1.2e8."""
+
+_MOST_FILE_VOXELS = 2.0e9
+"""Largest number of voxels that are read from a file, of one byte or more."""
 
 _BYTES = 30
 """Memory that an import takes at its peak for each voxel [B]; 28 were measured (docs/importing.md, "How well")."""
@@ -45,6 +51,25 @@ def check_voxels(extent: np.ndarray, voxel: float) -> None:
         f"{1e-9 * memory:.1f} GB are the limit",
         "Check the units (--spacing, --units), or pass a larger --voxel.",
     )
+
+
+def check_file_voxels(path: Path, size: Sequence[int]) -> None:
+    """Check that the voxels that a file's header announces can be read.
+
+    Args:
+        path: Label volume.
+        size: Voxels along each axis.
+
+    Raises:
+        ColonImportError: They are more than :data:`_MOST_FILE_VOXELS`.
+    """
+    count = math.prod(size)
+    if count > _MOST_FILE_VOXELS:
+        raise ColonImportError(
+            f"The header of {path} says {' x '.join(map(str, size))} voxels, {1e-9 * count:.1f} billion; the limit is "
+            f"{1e-9 * _MOST_FILE_VOXELS:g} billion, and a CT has up to 1024 x 1024 x 1500",
+            "Check that the file is complete, or resample it.",
+        )
 
 
 def check_filling(mask: np.ndarray) -> None:

@@ -45,7 +45,7 @@ def read_surface(path: Path, units: str, scale: tuple[float, ...] | None, voxel:
 
 def load_surface(path: Path, units: str, scale: tuple[float, ...] | None) -> tuple[np.ndarray, np.ndarray, str]:
     """Read a surface: vertices [m], triangles and the unit that was used; arguments as for :func:`read_surface`."""
-    points, faces = _load_vtk(path) if path.suffix in (".vtk", ".vtp") else _load_mesh(path)
+    points, faces = _load_vtk(path) if path.suffix.lower() in (".vtk", ".vtp") else _load_mesh(path)
     if len(faces) < 100:
         raise ColonImportError(f"{path} holds {len(faces)} triangles", "Pass a closed surface of the colon's lumen.")
     if not np.isfinite(points).all():
@@ -72,7 +72,7 @@ def _load_vtk(path: Path) -> tuple[np.ndarray, np.ndarray]:
     from vtkmodules.vtkIOLegacy import vtkPolyDataReader
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-    reader = vtkXMLPolyDataReader() if path.suffix == ".vtp" else vtkPolyDataReader()
+    reader = vtkXMLPolyDataReader() if path.suffix.lower() == ".vtp" else vtkPolyDataReader()
     reader.SetFileName(str(path))
     triangles = vtkTriangleFilter()
     triangles.SetInputConnection(reader.GetOutputPort())

@@ -17,7 +17,7 @@ import numpy as np
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.headers import check_header
-from arcgym.anatomy.importing.size_limits import check_filling, check_voxels
+from arcgym.anatomy.importing.size_limits import check_file_voxels, check_filling, check_voxels
 
 _PLAUSIBLE_SPACING = (0.2, 6.0)
 """Least and largest voxel spacing of a CT [mm]."""
@@ -67,12 +67,14 @@ def read_volume(
 def _read_image(path: Path) -> Any:
     import SimpleITK as sitk
 
-    if path.name.endswith(".nii.gz"):
+    name = path.name.lower()
+    if name.endswith(".nii.gz"):
         _check_packing(path)
-    if not path.name.endswith(".mha.gz"):
+    if not name.endswith(".mha.gz"):
         try:
+            _check_memory(path)
             image = sitk.ReadImage(str(path))
-            if path.suffix == ".nii":
+            if name.endswith(".nii"):
                 _check_size(path, image)
             return image
         except RuntimeError as error:
@@ -84,6 +86,16 @@ def _read_image(path: Path) -> Any:
         with gzip.open(path, "rb") as packed, plain.open("wb") as out:
             shutil.copyfileobj(packed, out)
         return _read_image(plain)
+
+
+def _check_memory(path: Path) -> None:
+    """Look at what the header says before voxels are read: ITK takes all the memory that it asks for."""
+    import SimpleITK as sitk
+
+    reader = sitk.ImageFileReader()
+    reader.SetFileName(str(path))
+    reader.ReadImageInformation()
+    check_file_voxels(path, reader.GetSize())
 
 
 def _check_size(path: Path, image: Any) -> None:
