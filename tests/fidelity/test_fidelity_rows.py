@@ -46,6 +46,8 @@ SLOW = [
     "indentation_solid_in_situ",
     "volume_stiff,volume_soft",
     "bend_force,bend_tip",
+    "folded_paper_force,folded_paper_tip",
+    "folded_in_situ_force,folded_in_situ_tip",
     "sigmoid_force,sigmoid_tip",
     "bend_rod_force,bend_rod_tip",
     "sigmoid_rod_force,sigmoid_rod_tip",

@@ -52,6 +52,8 @@ TABLE: tuple[Check, ...] = (
     line("straight_advance", "insertion:straight_advance", quick=True),
     line("volume_stiff volume_soft", "insertion:volume"),
     line("bend_force bend_tip", "insertion:bend"),
+    line("folded_paper_force folded_paper_tip", "folded:folded", material="paper"),
+    line("folded_in_situ_force folded_in_situ_tip", "folded:folded", material="in_situ"),
     line("sigmoid_force sigmoid_tip", "insertion:sigmoid"),
     line("sigmoid_deep_force sigmoid_deep_tip", "insertion:sigmoid_deep"),
     line("bend_rod_force bend_rod_tip", "rods:bend"),
