@@ -189,6 +189,18 @@ def test_the_page_holds_tables_and_pictures_in_one_file(tmp_path: Path) -> None:
     assert "<td>ARC-Rectum-Magnetic</td><td>time_out</td><td>1</td>" in page
 
 
+def test_a_page_of_trials_that_all_succeed(tmp_path: Path) -> None:
+    suite = read_suites()["left_colon"]
+    conditions = read_conditions(suite.conditions_path)
+    run = {**RUN, "agent": "expert", "suite": "left_colon", "conditions_sha256": conditions.sha256}
+    folder = ResultFolder(tmp_path / "a", run)
+    for trial in conditions.trials:  # 50
+        row = {"task": suite.tasks("Magnetic")[0], "agent": "expert", **vars(trial), "success": 1, "end": "success"}
+        folder.add({**row, "reward": 1.0, "seconds": 20.0, "progress": 1.0})
+    assert main(["results", "page", str(folder.path)]) == 0
+    assert "<td>100 (93–100)</td>" in (folder.path / "page.html").read_text()
+
+
 def test_a_folder_without_trials_has_no_page(tmp_path: Path) -> None:
     ResultFolder(tmp_path / "mine", RUN)
     with pytest.raises(SystemExit):

@@ -14,6 +14,14 @@ def test_wilson_interval_of_newcombe() -> None:
     assert (none.value, none.low, none.high) == pytest.approx((0.0, 0.0, 0.1611), abs=1e-4)
 
 
+def test_an_interval_holds_its_rate() -> None:
+    """Of 50 of 50 rounding made the upper end smaller than one."""
+    for trials in range(1, 201):
+        for successes in (0, trials // 3, trials):
+            rate = wilson(successes, trials)
+            assert 0.0 <= rate.low <= rate.value <= rate.high <= 1.0
+
+
 def test_a_rate_without_trials_is_refused() -> None:
     with pytest.raises(ValueError, match="got 0 of 0"):
         wilson(0, 0)

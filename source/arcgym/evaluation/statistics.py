@@ -49,7 +49,7 @@ def wilson(successes: int, trials: int) -> Interval:
     rate, z2 = successes / trials, Z * Z
     middle = (rate + z2 / (2 * trials)) / (1 + z2 / trials)
     half = Z * math.sqrt(rate * (1 - rate) / trials + z2 / (4 * trials**2)) / (1 + z2 / trials)
-    return Interval(rate, max(middle - half, 0.0), min(middle + half, 1.0))
+    return Interval(rate, min(max(middle - half, 0.0), rate), max(min(middle + half, 1.0), rate))  # no rounding beyond
 
 
 def mean(values: np.ndarray) -> np.ndarray:
