@@ -22,6 +22,7 @@ QUICK = [
     "gas_collapse",
     "abdomen_stop",
     "hand_dent,hand_push",
+    "mesentery_swing,mesentery_strain",
     "stiffening_hoop",
     "thickness_hoop",
     "relaxation_quick,relaxation_slow",

@@ -12,6 +12,7 @@ import pytest
 import torch
 
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.assets import ColonCfg
 from arcgym.utils.world_random import WorldRandom
 
 IDENTITY = [0.0, 0.0, 0.0, 1.0]
@@ -87,6 +88,7 @@ class FakeColon:
             **{name: torch.zeros(num_envs) for name in (*GAS_READOUTS, *ABDOMEN_READOUTS)},
             hand_place=torch.zeros(num_envs, 2),
         )
+        self.cfg = ColonCfg()
         self.patients = [SimpleNamespace(name="tube", bounds={"rectum": (0.0, 0.1), "sigmoid": (0.1, 0.5)})]
         self.commands: dict[str, Any] = {}
 
@@ -114,6 +116,9 @@ class FakeColon:
 
     def write_abdomen_to_sim(self, env_ids: torch.Tensor, **values: torch.Tensor) -> None:
         self.commands["abdomen"] = (values, env_ids)
+
+    def write_mesentery_to_sim(self, env_ids: torch.Tensor, **values: torch.Tensor) -> None:
+        self.commands["mesentery"] = (values, env_ids)
 
     def set_hand_pressure(self, force: torch.Tensor, place: torch.Tensor) -> None:
         self.commands["hand"] = (force.clone(), place.clone())

@@ -50,11 +50,18 @@ def test_every_world_may_have_a_body_of_its_own(env) -> None:
     assert 2.0e5 <= values["stiffness"].item() <= 5.0e5
 
 
+def test_every_world_may_have_sheets_of_its_own(env) -> None:
+    mdp.randomize_mesentery(env, torch.tensor([0, 1]), fullness=(1.2, 1.3))
+    values, _ = env.scene["colon"].commands["mesentery"]
+    assert set(values) == {"fullness"} and values["fullness"].shape == (2,)
+    assert ((values["fullness"] >= 1.2) & (values["fullness"] <= 1.3)).all()
+
+
 def test_a_task_has_a_hand_where_it_is_asked_for() -> None:
     without, pressed = configured(), configured("env.hand_pressure=commanded")
     assert not without.scene.colon.abdomen.enabled and without.actions.hand is None
     assert pressed.scene.colon.abdomen.enabled and pressed.actions.hand.force == 40.0
-    assert list(vars(pressed.actions))[-1] == "hand"
+    assert [name for name, term in vars(pressed.actions).items() if term is not None] == ["base", "hand"]
 
 
 @pytest.mark.parametrize("override", ["env.scene.colon.wall_model=solid", "env.sim.solver=newton"])

@@ -65,6 +65,13 @@ def test_efficiency_is_the_way_along_the_lumen_over_the_path_of_the_tip(env) -> 
     assert term(env).tolist() == [0.0, pytest.approx(1.0)]
 
 
+def test_sheets_are_stretched_beyond_their_length(env) -> None:
+    env.scene["colon"].cfg.mesentery.enabled = True
+    env.scene["colon"].data.mesentery_stretch = torch.tensor([[0.0, 0.01, 0.03], [0.0, 0.0, 0.0]])
+    term = mdp.mesentery_stretch(MetricsTermCfg(func=mdp.mesentery_stretch), env)
+    torch.testing.assert_close(term(env), torch.tensor([0.03, 0.0]))
+
+
 def test_a_mesentery_is_stretched_by_what_goes_beyond_its_slack(env) -> None:
     colon = env.scene["colon"]
     codes = [SEGMENTS.index(name) for name in ("rectum", "sigmoid", "sigmoid")]

@@ -42,7 +42,7 @@ def make_ball(sim: Simulation, radius: float, center: tuple[float, float, float]
 
 def forces(sim: Simulation) -> np.ndarray:
     """Return the force of the surroundings on every vertex of the first world where it is [N], shape (V, 3)."""
-    sim.surroundings.measure(sim.nodal_pos, STEP)
+    sim.surroundings.measure(sim.nodal_pos, sim.wall.tissue, STEP)
     force, x = sim.surroundings.force, sim.nodal_pos.numpy()[:, 0]
     return force.push.numpy()[:, 0] - np.einsum("vij,vj->vi", force.stiffness.numpy()[:, 0], x)
 

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 """Three worlds of different tissue, friction and motion, in reversed order on the CPU and on a GPU, plainly and with
-gas, weight in another posture each, a wall law, a graded shaft, wheels with play and a hand on the abdomen."""
+gas, weight in another posture each, a wall law, a graded shaft, wheels with play, a hand on the abdomen, and sheets."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.assets import AbdomenCfg, GasCfg, GradingCfg, WallLawCfg
+from arcgym.assets import AbdomenCfg, GasCfg, GradingCfg, MesenteryCfg, WallLawCfg
 from arcgym.sim import Simulation, WeightCfg
 
 DEVICES = ["cpu", pytest.param("cuda:0", marks=pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA"))]
@@ -27,6 +27,7 @@ def three(tiny: TinySim, effects: bool, **cfg: Any) -> Simulation:
     law = WallLawCfg(stiffening=1.5, thickness_by_diameter=True, relaxation=True, relaxing_time=(0.1, 1.0))
     scope = {"grading": GradingCfg(passive_length=0.05), "drives": {"bending": {"play": 0.1, "lag": 0.05}}}
     colon = {"youngs_modulus": 5.0e5, "gas": GasCfg(enabled=True), "wall_law": law}
+    colon["mesentery"] = MesenteryCfg(enabled=True, height={"sigmoid": 0.03})
     colon["abdomen"] = AbdomenCfg(enabled=True, gap=0.0, hand_place=(0.0, 0.0))
     return tiny(links=10, num_envs=3, colon=colon, scope=scope, weight=WeightCfg(enabled=True), **cfg)
 

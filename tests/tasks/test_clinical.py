@@ -40,6 +40,7 @@ def switches(cfg: Any) -> list[bool]:
         scope.grading.active and scope.actuators["bending"].play > 0.0 and scope.actuators["bending"].lag > 0.0,
         sim.contact.friction == 0.12 and sim.contact.static_friction == 1.4,
         colon.abdomen.enabled,
+        colon.mesentery.enabled,
     ]
 
 

@@ -17,6 +17,7 @@ from arcgym.assets.endoscope_cfg import (
 )
 from arcgym.assets.force_tiers import FORCE_TIERS, ForceTiersCfg
 from arcgym.assets.gas_cfg import GasCfg
+from arcgym.assets.mesentery_cfg import MesenteryCfg
 from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.utils.lazy import lazy_names
 
@@ -51,6 +52,7 @@ __all__ = [
     "GradingCfg",
     "IntroducerCfg",
     "MAGNETIC_CFG",
+    "MesenteryCfg",
     "PROXIMAL_CFG",
     "TipPullCfg",
     "WallLawCfg",

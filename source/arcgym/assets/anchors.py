@@ -52,7 +52,7 @@ def anchor_springs(
     rings = len(wall.ring_arc)
     spacing = np.gradient(wall.ring_arc)[wall.ring]
     around = np.maximum(np.bincount(wall.ring[outer], minlength=rings)[wall.ring], 1)
-    free = largest * np.sin(np.pi * _way_along_segment(wall))
+    free = largest * np.sin(np.pi * way_along_segment(wall))
     loose = np.minimum(tissue.anchor_loose / np.maximum(per_length, 1.0e-9), 1.0)
     return AnchorSprings(
         stiffness=np.where(outer, per_length * spacing / around, 0.0),
@@ -65,7 +65,7 @@ def _by_segment(values: dict[str, float]) -> np.ndarray:
     return np.array([values.get(name, 0.0) for name in SEGMENTS])
 
 
-def _way_along_segment(wall: WallMesh | ShellMesh) -> np.ndarray:
+def way_along_segment(wall: WallMesh | ShellMesh) -> np.ndarray:
     """0 at the first ring of the vertex's segment, 1 at the last, shape (V,): a mesentery is highest in the middle."""
     arc, out = wall.ring_arc[wall.ring], np.zeros(len(wall.ring))
     for code in np.unique(wall.segment):

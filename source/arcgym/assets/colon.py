@@ -163,7 +163,9 @@ class Colon:
     def anchor_springs(self, patient: int = 0) -> AnchorSprings:
         """Spring of each vertex of a patient to its rest position, before any factor of a world."""
         wall, cfg = self.patients[patient].wall, self.cfg
-        return anchor_springs(wall, self.tissue, cfg.anchor_stiffness, cfg.anchor_slack)
+        sheets = cfg.mesentery.height if cfg.mesentery.enabled else {}
+        stiffness = {**cfg.anchor_stiffness, **dict.fromkeys(sheets, self.tissue.anchor_loose)}
+        return anchor_springs(wall, self.tissue, stiffness, {**cfg.anchor_slack, **dict.fromkeys(sheets, 0.0)})
 
     def bind(self, sim: Simulation) -> None:
         """Connect to the arrays of a built simulation; called once by it."""
@@ -284,6 +286,28 @@ class Colon:
         """
         shape = self.data._abdomen().shape
         for array, value in ((shape.gap, gap), (shape.stiffness, stiffness)):
+            if value is not None:
+                tensor = wp.to_torch(array)
+                tensor[self._worlds(env_ids)] = value.to(tensor)
+
+    def write_mesentery_to_sim(
+        self,
+        fullness: torch.Tensor | None = None,
+        stiffness: torch.Tensor | None = None,
+        env_ids: Sequence[int] | torch.Tensor | None = None,
+    ) -> None:
+        """Set values of the mesenteries of the worlds ``env_ids`` (all by default).
+
+        Args:
+            fullness: Length of the sheets over that as imaged, shape (n,); None leaves it as it is.
+            stiffness: Young's modulus times thickness of the sheets [N/m], shape (n,).
+            env_ids: The worlds.
+
+        Raises:
+            ValueError: If the mesenteries are no sheets.
+        """
+        sheets = self.data._mesentery().sheets
+        for array, value in ((sheets.fullness, fullness), (sheets.stiffness, stiffness)):
             if value is not None:
                 tensor = wp.to_torch(array)
                 tensor[self._worlds(env_ids)] = value.to(tensor)

@@ -9,6 +9,7 @@ from typing import Any, Literal
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.abdomen_cfg import AbdomenCfg
 from arcgym.assets.gas_cfg import GasCfg
+from arcgym.assets.mesentery_cfg import MesenteryCfg
 from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.string import did_you_mean
@@ -66,6 +67,8 @@ class ColonCfg:
     """How a shell stretches: stiffening, thickness by diameter and relaxation; all off by default."""
     abdomen: AbdomenCfg = AbdomenCfg()
     """The abdomen, which stops loops, and a hand that presses on it; off by default."""
+    mesentery: MesenteryCfg = MesenteryCfg()
+    """Sheets that some segments hang on, in place of their anchors; off by default."""
     mobile_until: float | None = None
     """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from arcgym.assets.colon import Colon
     from arcgym.sim.simulation import Simulation
     from arcgym.sim.wall.abdomen import Abdomen
+    from arcgym.sim.wall.mesentery import Mesentery
 
 
 class ColonData:
@@ -121,6 +122,20 @@ class ColonData:
             ValueError: If there is no abdomen.
         """
         return wp.to_torch(self._abdomen().hand.place)
+
+    @property
+    def mesentery_stretch(self) -> torch.Tensor:
+        """How much farther from its root each ring is than its sheet is long [m], 0 without a sheet, shape (N, R).
+
+        Raises:
+            ValueError: If the mesenteries are no sheets.
+        """
+        return self._mesentery().stretch(self.centerline_pos_w)
+
+    def _mesentery(self) -> Mesentery:
+        if self._surroundings is None or self._surroundings.mesentery is None:
+            raise ValueError("The mesenteries are no sheets: set env.scene.colon.mesentery.enabled=true.")
+        return self._surroundings.mesentery
 
     def _abdomen(self) -> Abdomen:
         if self._surroundings is None or self._surroundings.abdomen is None:

@@ -228,6 +228,8 @@ class Simulation:
         self.scope_readout.collect()
         if self.wall.moves:
             self.wall_readout.measure(self.nodal_pos)
+            if self.surroundings is not None:
+                self.surroundings.read(self.nodal_pos, self.wall.tissue, self.wall_readout)
 
     def forward(self, env_mask: torch.Tensor | None = None) -> None:
         """Recompute link poses, ring centres, tip and camera after the state was written to.

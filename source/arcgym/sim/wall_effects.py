@@ -13,6 +13,7 @@ from arcgym.anatomy.shell import ShellMesh
 from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.sim.wall.abdomen import Abdomen
 from arcgym.sim.wall.lumen_gas import LumenGas
+from arcgym.sim.wall.mesentery import Mesentery
 from arcgym.sim.wall.ring_modes import RingModes
 from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_parameters import WallParameters
@@ -68,11 +69,23 @@ def _law(sim: Simulation) -> WallLawCfg | None:
 
 
 def _surroundings(sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes]) -> Surroundings | None:
-    cfg, wall = sim.colon.cfg.abdomen, sim.colon.wall
-    if not cfg.enabled:
+    cfg, device = sim.colon.cfg, sim.device
+    if not (cfg.abdomen.enabled or cfg.mesentery.enabled):
         return None
+    members = wp.array(modes[0].members, dtype=int, device=device)
+    abdomen = _abdomen(sim, walls, members) if cfg.abdomen.enabled else None
+    mesentery = _mesentery(sim, members) if cfg.mesentery.enabled else None
+    return Surroundings(walls[0].ring, members, sim.num_envs, device, abdomen, mesentery)
+
+
+def _abdomen(sim: Simulation, walls: Sequence[WallParameters], members: wp.array) -> Abdomen:
     sim.require_two_level("has no abdomen around the colon", "set env.scene.colon.abdomen.enabled=false")
+    wall = sim.colon.wall
     assert isinstance(wall, ShellMesh)  # as ColonCfg checks
-    members = wp.array(modes[0].members, dtype=int, device=sim.device)
-    abdomen = Abdomen(cfg, walls, wall.triangles, members, sim.patient, sim.device)
-    return Surroundings(walls[0].ring, members, sim.num_envs, sim.device, abdomen)
+    return Abdomen(sim.colon.cfg.abdomen, walls, wall.triangles, members, sim.patient, sim.device)
+
+
+def _mesentery(sim: Simulation, members: wp.array) -> Mesentery:
+    sim.require_two_level("has no mesenteries", "set env.scene.colon.mesentery.enabled=false")
+    meshes = [patient.wall for patient in sim.colon.patients]
+    return Mesentery(sim.colon.cfg.mesentery, meshes, members, sim.patient, sim.device)

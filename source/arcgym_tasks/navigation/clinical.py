@@ -10,7 +10,7 @@ from arcgym.utils.validation import FieldError
 
 ALL = "all"
 """Name for every effect."""
-EFFECTS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen")
+EFFECTS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen", "mesentery")
 """Names of the effects."""
 
 STIFFENING = 1.5
@@ -96,6 +96,10 @@ def _abdomen(cfg: Any) -> None:
     cfg.scene.colon.abdomen.enabled = True
 
 
+def _mesentery(cfg: Any) -> None:
+    cfg.scene.colon.mesentery.enabled = True
+
+
 def _where_default(cfg: Any, name: str, shipped: Any, value: Any) -> None:
     if getattr(cfg, name) == shipped:
         setattr(cfg, name, value)
@@ -109,4 +113,5 @@ _SWITCHES = {
     "scope": _scope,
     "friction": _friction,
     "abdomen": _abdomen,
+    "mesentery": _mesentery,
 }

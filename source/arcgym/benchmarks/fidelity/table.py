@@ -45,6 +45,7 @@ TABLE: tuple[Check, ...] = (
     line("gas_collapse", "gas:collapse", quick=True),
     line("abdomen_stop", "abdomen:stop", quick=True),
     line("hand_dent hand_push", "abdomen:hand", quick=True),
+    line("mesentery_swing mesentery_strain", "mesentery:hang", quick=True),
     line("indentation_paper", "indentation:indentation", material="paper"),
     line("indentation_in_situ", "indentation:indentation", material="in_situ"),
     line("indentation_solid_paper", "solids:indentation", material="paper"),

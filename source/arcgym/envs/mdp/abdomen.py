@@ -1,7 +1,8 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""The abdomen around the colon: an assistant's hand on it as an action and an observation, other bodies by an event."""
+"""The abdomen around the colon: an assistant's hand on it as an action and an observation, other bodies and sheets by
+events."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from arcgym.utils.validation import NON_NEGATIVE, Range, expects, require
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
-__all__ = ["HandPressureAction", "HandPressureActionCfg", "hand", "randomize_abdomen"]
+__all__ = ["HandPressureAction", "HandPressureActionCfg", "hand", "randomize_abdomen", "randomize_mesentery"]
 
 
 class HandPressureAction(VelocityAction):
@@ -105,10 +106,34 @@ def randomize_abdomen(
             choice.
         stiffness: Pressure over depth [Pa/m], 2 to 5 kPa a cm, a choice.
     """
-    given = {"gap": gap, "stiffness": stiffness}
-    drawn = {
-        name: bounds[0] + (bounds[1] - bounds[0]) * env.random.uniform(f"abdomen: {name}", env_ids=env_ids)
-        for name, bounds in given.items()
-        if bounds is not None
-    }
+    drawn = _uniform(env, env_ids, "abdomen", gap=gap, stiffness=stiffness)
     env.scene["colon"].write_abdomen_to_sim(**drawn, env_ids=env_ids)
+
+
+@expects(fullness=Range(1.0), stiffness=NON_NEGATIVE)
+def randomize_mesentery(
+    env: ManagerBasedEnv,
+    env_ids: torch.Tensor,
+    fullness: tuple[float, float] | None = (1.0, 1.4),
+    stiffness: tuple[float, float] | None = None,
+) -> None:
+    """Give each world sheets of its own, uniform between bounds; needs ``env.scene.colon.mesentery.enabled=true``.
+
+    Args:
+        fullness: Least and largest length of the sheets over that as imaged; None leaves it as it is. By default up to
+            one standard deviation of the sigmoid's height more.
+        stiffness: Young's modulus times thickness of the sheets [N/m].
+    """
+    drawn = _uniform(env, env_ids, "mesentery", fullness=fullness, stiffness=stiffness)
+    env.scene["colon"].write_mesentery_to_sim(**drawn, env_ids=env_ids)
+
+
+def _uniform(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, what: str, **bounds: tuple[float, float] | None
+) -> dict[str, torch.Tensor]:
+    """Return a number between each two bounds for some worlds, shape (n,), by name; none where there are no bounds."""
+    return {
+        name: pair[0] + (pair[1] - pair[0]) * env.random.uniform(f"{what}: {name}", env_ids=env_ids)
+        for name, pair in bounds.items()
+        if pair is not None
+    }

@@ -129,22 +129,28 @@ class path_efficiency(ManagerTermBase):
 class mesentery_stretch(ManagerTermBase):
     """Largest way of a ring of the sigmoid or transverse colon beyond its mesentery's slack [m], shape (N,).
 
-    Reduce: max. In a tissue without slack it is the ring's displacement. Pain in colonoscopy comes mainly from loops
-    that stretch the mesentery (Shah et al., Gastrointest. Endosc. 55, 2002); 79 % of 650 pain episodes in 102 patients
-    came with a loop (Shah et al., Endoscopy 34:435, 2002).
+    Reduce: max. In a tissue without slack it is the ring's displacement; with mesenteries that are sheets
+    (``MesenteryCfg``), what the way from the root exceeds the sheet's length by. Pain in colonoscopy comes mainly from
+    loops that stretch the mesentery (Shah et al., Gastrointest. Endosc. 55, 2002); 79 % of 650 pain episodes in 102
+    patients came with a loop (Shah et al., Endoscopy 34:435, 2002).
     """
 
     def __init__(self, cfg: MetricsTermCfg, env: ManagerBasedRLEnv) -> None:
         """Keep each patient's rings at rest, shape (P, R, 3), and their slack, shape (P, R)."""
         super().__init__(cfg, env)
         colon, device = env.scene["colon"], env.device
+        self._sheets = colon.cfg.mesentery.enabled
+        if self._sheets:
+            return
         rest, slack = zip(*(_mesentery(colon, index) for index in range(len(colon.patients))), strict=True)
         self._rest = torch.tensor(np.stack(rest), dtype=torch.float32, device=device)
         self._slack = torch.tensor(np.stack(slack), dtype=torch.float32, device=device)
 
     def __call__(self, env: ManagerBasedRLEnv) -> torch.Tensor:
-        """Compare the rings with where they rest."""
+        """Compare the rings with where they rest, or with the length of their sheets."""
         data = env.scene["colon"].data
+        if self._sheets:
+            return data.mesentery_stretch.amax(dim=1)
         patient = data.patient.long()
         moved = norm(data.centerline_pos_w - self._rest[patient])
         return (moved - self._slack[patient]).clamp(min=0.0).amax(dim=1)

@@ -11,14 +11,24 @@ import warp as wp
 from arcgym.sim.wall import outer_force_kernels as kernels
 from arcgym.sim.wall.abdomen import Abdomen
 from arcgym.sim.wall.band_kernels import Rings
+from arcgym.sim.wall.mesentery import Mesentery
 from arcgym.sim.wall.ring_modes import MODES
 from arcgym.sim.wall.wall_kernels import Tissue
+from arcgym.sim.wall.wall_readout import WallReadout
 
 
 class Surroundings:
     """Forces of the surroundings, measured once a step and linear within it. V vertices, R rings, W worlds."""
 
-    def __init__(self, ring: np.ndarray, members: wp.array, num_envs: int, device: str, abdomen: Abdomen | None = None):
+    def __init__(
+        self,
+        ring: np.ndarray,
+        members: wp.array,
+        num_envs: int,
+        device: str,
+        abdomen: Abdomen | None = None,
+        mesentery: Mesentery | None = None,
+    ):
         """Allocate.
 
         Args:
@@ -27,8 +37,9 @@ class Surroundings:
             num_envs: Number of worlds.
             device: Warp device.
             abdomen: The abdomen, if there is one.
+            mesentery: The mesenteries, if they are sheets.
         """
-        self.abdomen, self._members, self._device = abdomen, members, device
+        self.abdomen, self.mesentery, self._members, self._device = abdomen, mesentery, members, device
         self.force = kernels.OuterForce()
         """Their force on every vertex."""
         self.force.ring = wp.array(ring, dtype=int, device=device)
@@ -44,20 +55,30 @@ class Surroundings:
     @property
     def settings(self) -> dict[str, torch.Tensor]:
         """What may differ between worlds, by name, shape (W,) each."""
-        return {} if self.abdomen is None else self.abdomen.settings
+        return {name: value for part in self._parts() for name, value in part.settings.items()}
 
-    def measure(self, x: wp.array, dt: float) -> None:
+    def _parts(self) -> list[Abdomen | Mesentery]:
+        return [part for part in (self.abdomen, self.mesentery) if part is not None]
+
+    def measure(self, x: wp.array, tissue: Tissue, dt: float) -> None:
         """Measure the forces of a step of ``dt`` [s] at positions ``x`` [m], shape (V, W), vec3."""
         shape = self.force.near.shape
         inputs, outputs = [self._members], [self.force]
         wp.launch(kernels.clear_outer_force, shape, inputs=inputs, outputs=outputs, device=self._device)
         if self.abdomen is not None:
             self.abdomen.measure(x, dt, self.force)
+        if self.mesentery is not None:
+            self.mesentery.measure(x, tissue, self.force)
 
     def advance(self, dt: float) -> None:
         """End the step's part that takes no wall: move the hands."""
         if self.abdomen is not None:
             self.abdomen.advance(dt)
+
+    def read(self, x: wp.array, tissue: Tissue, readout: WallReadout) -> None:
+        """Add the pulls of sheets at ``x`` [m], shape (V, W), vec3, to the tensions that the readout measured there."""
+        if self.mesentery is not None:
+            self.mesentery.read(x, tissue, readout)
 
     def add_rows(self, rings: Rings, tissue: Tissue, diagonal: wp.array) -> None:
         """Add their stiffness to the rings' ``diagonal`` blocks [N/m], shape (R, W, 9, 9)."""

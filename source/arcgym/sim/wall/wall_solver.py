@@ -176,7 +176,7 @@ class WallSolver:
             self.weight.add(self.nodes, self.tissue, self.dt, self.inertial)
         self.self_contact.measure(x)
         if self.surroundings is not None:
-            self.surroundings.measure(x, self.dt)
+            self.surroundings.measure(x, self.tissue, self.dt)
             self.surroundings.advance(self.dt)
         if self.gas is not None:
             self.gas.begin(self.inertial)
@@ -253,7 +253,7 @@ class WallSolver:
         contacts = wall_contacts(contact, self.dt, x, body_q, body_q)
         self.self_contact.measure(x)
         if self.surroundings is not None:
-            self.surroundings.measure(x, self.dt)
+            self.surroundings.measure(x, self.tissue, self.dt)
         self._measure(x)
         inertial = x
         if self.weight is not None:

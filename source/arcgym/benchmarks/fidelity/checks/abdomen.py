@@ -61,31 +61,42 @@ def hand(run: Run) -> list[Row]:
 
 
 def tube_in_front(run: Run, held: float, **changes: Any) -> Any:
-    """Return a stiff tube, free but for its attachments, behind a plane front."""
-    from arcgym.anatomy import ANCHOR_FREE, write_colon
-    from arcgym.assets import CAPSULE_CFG, AbdomenCfg, ColonCfg
-    from arcgym.assets.colon import Colon
-    from arcgym.assets.endoscope import Endoscope
-    from arcgym.sim import Simulation, SimulationCfg
+    """Return a stiff tube, free but for its attachments [N/m^2], behind a plane front."""
+    from arcgym.assets import AbdomenCfg
 
-    stage = tube_stage(Tube(LENGTH, refine=2))
-    path = run.folder / "tube_in_front" / "colon.usda"
-    if not path.exists():
-        free = np.full(len(stage.wall.points), ANCHOR_FREE, np.int32)
-        write_colon(replace(stage, wall=replace(stage.wall, anchor=free)), path)
     abdomen = AbdomenCfg(
         enabled=True, squareness=10.0, hand_radius=0.3, hand_place=(0.0, 0.0), hand_time=0.05, hand_depth=0.2
     )
-    colon = ColonCfg(
-        usd_path=str(path), youngs_modulus=STIFF, density=DENSITY, anchor_stiffness={SEGMENT: held}, abdomen=abdomen
-    )
-    sim: Any = Simulation(SimulationCfg(device=run.device, **changes), Colon(colon), Endoscope(CAPSULE_CFG), 1)
+    sim = free_tube(run, {"anchor_stiffness": {SEGMENT: held}, "abdomen": abdomen}, **changes)
     front = float(sim.colon.data.nodal_pos_w[..., 1].max()) + GAP
     shape = sim.surroundings.abdomen.shape
     shape.tight.assign(np.array([[1.0, 0.1, 1.0]], np.float32))
     shape.center.assign(np.array([[0.0, front - 0.1, 0.5 * LENGTH]], np.float32))
     shape.gap.zero_()
     return sim
+
+
+def free_tube(run: Run, colon: dict[str, Any], **changes: Any) -> Any:
+    """Return a stiff, heavy tube whose ends nothing holds.
+
+    Args:
+        run: Device and folder.
+        colon: Changes of ``ColonCfg``.
+        changes: Changes of ``SimulationCfg``.
+    """
+    from arcgym.anatomy import ANCHOR_FREE, write_colon
+    from arcgym.assets import CAPSULE_CFG, ColonCfg
+    from arcgym.assets.colon import Colon
+    from arcgym.assets.endoscope import Endoscope
+    from arcgym.sim import Simulation, SimulationCfg
+
+    stage = tube_stage(Tube(LENGTH, refine=2))
+    path = run.folder / "free_tube" / "colon.usda"
+    if not path.exists():
+        free = np.full(len(stage.wall.points), ANCHOR_FREE, np.int32)
+        write_colon(replace(stage, wall=replace(stage.wall, anchor=free)), path)
+    cfg = ColonCfg(usd_path=str(path), youngs_modulus=STIFF, density=DENSITY, **colon)
+    return Simulation(SimulationCfg(device=run.device, **changes), Colon(cfg), Endoscope(CAPSULE_CFG), 1)
 
 
 def moved(sim: Any) -> float:
