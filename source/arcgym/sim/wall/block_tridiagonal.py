@@ -32,7 +32,6 @@ class BlockTridiagonalSolver:
         """``diagonal`` and ``upper`` (coupling to the next row): float, shape (R, W, M, M)."""
         self.rhs = wp.zeros((rows, num_envs, MODES), dtype=float, device=device)
         """Right-hand side, then the solution: float, shape (R, W, M)."""
-        self._copies: list[wp.array] = []
 
     def solve(self, also: wp.array | None = None) -> None:
         """Solve all systems in place.
@@ -40,25 +39,12 @@ class BlockTridiagonalSolver:
         Args:
             also: Further right-hand side, then its solution: float, shape (R, W, M); None for none.
         """
-        outputs = [self.diagonal, self.upper, self.rhs]
-        if not wp.get_device(self.device).is_cuda:
-            wp.launch(kernels.solve_rows, self.num_envs, outputs=outputs, device=self.device)
-            if also is not None:
-                inputs = [self.diagonal, self.upper]
-                wp.launch(kernels.solve_again, self.num_envs, inputs=inputs, outputs=[also], device=self.device)
+        blocks, sides = [self.diagonal, self.upper], [self.rhs] if also is None else [self.rhs, also]
+        if wp.get_device(self.device).is_cuda:
+            kernel = cuda_kernels.solve_rows if also is None else cuda_kernels.solve_rows_twice
+            shape, threads = (self.num_envs, cuda_kernels.THREADS), cuda_kernels.THREADS
+            wp.launch(kernel, shape, outputs=[*blocks, *sides], device=self.device, block_dim=threads)
             return
+        wp.launch(kernels.solve_rows, self.num_envs, outputs=[*blocks, self.rhs], device=self.device)
         if also is not None:
-            self._solve_copies(also)
-        self._solve_on_gpu(outputs)
-
-    def _solve_copies(self, rhs: wp.array) -> None:
-        """Solve for another right-hand side with copies of the systems: the factors are in the order of two warps."""
-        if not self._copies:
-            self._copies = [wp.empty_like(self.diagonal), wp.empty_like(self.upper)]
-        for copy, original in zip(self._copies, (self.diagonal, self.upper), strict=True):
-            wp.copy(copy, original)
-        self._solve_on_gpu([*self._copies, rhs])
-
-    def _solve_on_gpu(self, outputs: list[wp.array]) -> None:
-        shape, threads = (self.num_envs, cuda_kernels.THREADS), cuda_kernels.THREADS
-        wp.launch(cuda_kernels.solve_rows, shape, outputs=outputs, device=self.device, block_dim=threads)
+            wp.launch(kernels.solve_again, self.num_envs, inputs=blocks, outputs=[also], device=self.device)

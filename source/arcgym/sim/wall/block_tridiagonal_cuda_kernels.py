@@ -6,7 +6,8 @@
 One warp works its way from the first row to the middle, the other from the last; the first solves the middle row, and
 both go back. A warp holds a row of the system in registers, a column a lane: the M columns of S, the M of U, and b. So
 a column of the Cholesky factor, of W = L^-1 U and of y = L^-1 b take one multiplication and, for each row below, one
-exchange and one fused product in all lanes at once.
+exchange and one fused product in all lanes at once. Another right-hand side takes one lane more on the way down; on the
+way back the lanes of U, which are free then, find its solution beside those of S.
 """
 
 import warp as wp
@@ -20,22 +21,24 @@ THREADS = 64
 
 _SOLVE = """
 #if defined(__CUDA_ARCH__)
-    constexpr int M = MODES;  // columns 0 to M - 1 of S, M to 2 M - 1 of U, 2 M is b
+    constexpr int M = MODES;  // columns 0 to M - 1 of S, M to 2 M - 1 of U, 2 M is b, 2 M + 1 the other b
+    constexpr int SIDES = RIGHT_HAND_SIDES;
     constexpr int PADDED = (M + 3) / 4 * 4;
     constexpr unsigned ALL = 0xffffffffu;
-    static_assert(2 * M + 1 <= 32, "a row of the system has to fit a warp");
+    static_assert(2 * M + SIDES <= 32, "a row of the system has to fit a warp");
     __shared__ __align__(16) float shared[2][M * PADDED];  // W of the row at hand, a column after the other
-    __shared__ float above[M][M + 1];  // what the last rows take off the middle one
-    __shared__ float solved[M];  // x of the middle row
+    __shared__ float above[M][M + SIDES];  // what the last rows take off the middle one
+    __shared__ float solved[SIDES][M];  // x of the middle row
 
     const int lane = thread % 32, side = thread / 32;
-    const bool in_s = lane < M, in_u = lane >= M && lane < 2 * M, in_b = lane == 2 * M;
+    const bool in_s = lane < M, in_u = lane >= M && lane < 2 * M, in_other = SIDES == 2 && lane == 2 * M + 1;
+    const bool in_b = lane == 2 * M || in_other;
     const int rows = diagonal.shape[0], middle = rows / 2;
     const int step = side == 0 ? 1 : -1, count = side == 0 ? middle : rows - 1 - middle;
     const long long block = (long long)diagonal.shape[1] * M * M, row = (long long)diagonal.shape[1] * M;
     float* const d = diagonal.data + (long long)world * M * M;
     float* const u = upper.data + (long long)world * M * M - side * block;  // the last rows couple with those before
-    float* const b = rhs.data + (long long)world * M;
+    float* const b = (in_other ? OTHER.data : rhs.data) + (long long)world * M;
     float* column = in_s ? d + lane : b;  // this lane's, of the first row; the last rows' U is transposed
     int stride = in_s ? M : 1;
     if (in_u) {
@@ -76,19 +79,22 @@ _SOLVE = """
         }
         __syncwarp();
     };
-    const int own = in_s ? lane : M - 1;  // row of the solution that this lane is to find
+    const bool finds_other = SIDES == 2 && in_u, finds = in_s || finds_other;
+    const int own = in_s ? lane : finds_other ? lane - M : M - 1;  // row of the solution that this lane is to find
+    const int group = finds_other ? M : 0;  // first lane of its right-hand side
+    float* const back = (finds_other ? OTHER.data : rhs.data) + (long long)world * M;
     const float* const own_d = d + own * M;
     const float* const own_u = side == 0 ? u + own * M : u + own;
     const int stride_u = side == 0 ? 1 : M;
     auto load_back = [&](int r, float* lower, float* coupling, float& y) {
         for (int k = 0; k < M; ++k) lower[k] = own_d[r * block + k];
         for (int k = 0; k < M; ++k) coupling[k] = own_u[r * block + k * stride_u];
-        y = b[r * row + own];
+        y = back[r * row + own];
     };
     auto substitute = [&](const float* lower, float y) {  // x = L^-T y
         float x = 0.0f;
         for (int j = M - 1; j >= 0; --j) {
-            const float found = __shfl_sync(ALL, y * lower[j], j);
+            const float found = __shfl_sync(ALL, y * lower[j], group + j);
             if (own == j) x = found;
             y -= lower[j] * found;
         }
@@ -107,29 +113,29 @@ _SOLVE = """
         for (int k = 0; k < M; ++k) a[k] = in_u ? next[k] : next[k] - taken[k];
     }
     if (side == 1 && (in_s || in_b))
-        for (int k = 0; k < M; ++k) above[k][in_s ? lane : M] = taken[k];
+        for (int k = 0; k < M; ++k) above[k][in_s ? lane : M + in_other] = taken[k];
     __syncthreads();
     float lower[M], coupling[M], lower_next[M], coupling_next[M];
     float y, y_next;
     if (side == 0) {
         if (in_s || in_b)
-            for (int k = 0; k < M; ++k) a[k] -= above[k][in_s ? lane : M];
+            for (int k = 0; k < M; ++k) a[k] -= above[k][in_s ? lane : M + in_other];
         factor();
         store(middle);
         __syncwarp();
         for (int k = 0; k < M; ++k) lower[k] = own_d[middle * block + k];
-        const float x = substitute(lower, b[middle * row + own]);
-        if (in_s) solved[lane] = b[middle * row + lane] = x;
+        const float x = substitute(lower, back[middle * row + own]);
+        if (finds) solved[finds_other][own] = back[middle * row + own] = x;
     }
     __syncthreads();
-    float x = solved[own];
+    float x = solved[finds_other][own];
     if (count > 0) load_back(middle - step, lower, coupling, y);
     for (int n = 1; n <= count; ++n) {
         r = middle - n * step;
         if (n < count) load_back(r - step, lower_next, coupling_next, y_next);
-        for (int k = 0; k < M; ++k) y -= coupling[k] * __shfl_sync(ALL, x, k);
+        for (int k = 0; k < M; ++k) y -= coupling[k] * __shfl_sync(ALL, x, group + k);
         x = substitute(lower, y);
-        if (in_s) b[r * row + lane] = x;
+        if (finds) back[r * row + own] = x;
         for (int k = 0; k < M; ++k) {
             lower[k] = lower_next[k];
             coupling[k] = coupling_next[k];
@@ -140,9 +146,22 @@ _SOLVE = """
 """.replace("MODES", str(MODES)).replace("SMALLEST_PIVOT", f"{float(SMALLEST_PIVOT)}f")
 
 
-@wp.func_native(_SOLVE)
+@wp.func_native(_SOLVE.replace("RIGHT_HAND_SIDES", "1").replace("OTHER", "rhs"))
 def solve_world(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], world: int, thread: int):
     """Solve the system of ``world``; all threads of a block have to call it."""
+    ...
+
+
+@wp.func_native(_SOLVE.replace("RIGHT_HAND_SIDES", "2").replace("OTHER", "other"))
+def solve_world_twice(
+    diagonal: wp.array4d[float],
+    upper: wp.array4d[float],
+    rhs: wp.array3d[float],
+    other: wp.array3d[float],
+    world: int,
+    thread: int,
+):
+    """Solve the system of ``world`` for two right-hand sides; all threads of a block have to call it."""
     ...
 
 
@@ -157,3 +176,19 @@ def solve_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.ar
     """
     world, thread = wp.tid()
     solve_world(diagonal, upper, rhs, world, thread)
+
+
+@wp.kernel(launch_bounds=(THREADS, 8), module="unique")
+def solve_rows_twice(
+    diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], other: wp.array3d[float]
+):
+    """Solve every world's system for two right-hand sides. Launch (W, ``THREADS``) in blocks of ``THREADS``.
+
+    Args:
+        diagonal: Blocks D, shape (R, W, M, M); overwritten.
+        upper: Couplings U to the next row, shape (R, W, M, M); overwritten.
+        rhs: Right-hand side b, shape (R, W, M); the solution x afterwards.
+        other: The other right-hand side, likewise.
+    """
+    world, thread = wp.tid()
+    solve_world_twice(diagonal, upper, rhs, other, world, thread)
