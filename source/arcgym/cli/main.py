@@ -44,6 +44,7 @@ COMMANDS = {
     "bench throughput": ("arcgym.cli.bench_throughput", "measure how fast a task runs"),
     "bench fidelity": ("arcgym.cli.bench_fidelity", "compare the physics with theory and references"),
     "bench experts": ("arcgym.cli.bench_experts", "measure how far scripted experts get in many patients"),
+    "bench clinical": ("arcgym.cli.bench_clinical", "compare scripted insertions with published ones"),
     "bench soak": ("arcgym.cli.bench_soak", "drive the robots for a long time and look for faults"),
     "bench camera": ("arcgym.cli.bench_camera", "measure how many pictures the camera draws"),
     "bench learner": ("arcgym.cli.bench_learner", "measure how long agents take for an update"),

@@ -34,6 +34,7 @@ from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
+    from arcgym.scene import InteractiveScene
 
 __all__ = ["LOOPS", "loop_rate", "loop_type", "mesentery_stretch", "paradoxical_motion", "path_efficiency"]
 
@@ -54,7 +55,7 @@ def loop_type(env: ManagerBasedRLEnv) -> torch.Tensor:
     """
     step, kinds = _CACHE.get(env, (-1, None))
     if kinds is None or step != env.common_step_counter:
-        kinds = _find_loops(env)
+        kinds = find_loops(env.scene)
         _CACHE[env] = (env.common_step_counter, kinds)
     return kinds
 
@@ -168,17 +169,17 @@ def _mesentery(colon: Any, patient: int) -> tuple[np.ndarray, np.ndarray]:
     return center / np.bincount(wall.ring[inner])[:, None], slack
 
 
-def _find_loops(env: ManagerBasedRLEnv) -> torch.Tensor:
-    """Return the kind of loop in each world, shape (N,), int32."""
+def find_loops(scene: InteractiveScene) -> torch.Tensor:
+    """Return the kind of loop of the shaft in each world of a scene, index into :data:`LOOPS`, shape (N,), int32."""
     wp.init()  # for tensors without a simulation
-    scope, colon = env.scene["endoscope"].data, env.scene["colon"].data
-    links, num_envs = scope.body_pos_w.contiguous(), env.num_envs
-    kinds = torch.zeros(num_envs, dtype=torch.int32, device=env.device)
+    scope, colon = scene["endoscope"].data, scene["colon"].data
+    links, num_envs = scope.body_pos_w.contiguous(), len(scope.body_pos_w)
+    kinds = torch.zeros(num_envs, dtype=torch.int32, device=links.device)
     if links.shape[1] < 3:
         return kinds
     last = colon.segment_spans[:, SEGMENTS.index("descending"), 1].contiguous()
-    counts = torch.zeros(num_envs, links.shape[1], dtype=torch.bool, device=env.device)
-    first = torch.full((num_envs,), int(shaft_kernels.NO_CROSSING), dtype=torch.int32, device=env.device)
+    counts = torch.zeros(num_envs, links.shape[1], dtype=torch.bool, device=links.device)
+    first = torch.full((num_envs,), int(shaft_kernels.NO_CROSSING), dtype=torch.int32, device=links.device)
     positions, marks, crossing = wp.from_torch(links, dtype=wp.vec3), wp.from_torch(counts), wp.from_torch(first)
     rings = wp.from_torch(colon.centerline_pos_w.contiguous(), dtype=wp.vec3)
     device = positions.device

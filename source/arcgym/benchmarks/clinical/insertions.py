@@ -1,0 +1,114 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Drives the pushed colonoscope up several patients at once and keeps the history of one insertion of each."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from arcgym.benchmarks.clinical.record import FIELDS, RecordedPushExpert
+from arcgym.benchmarks.worlds import load_env_cfg
+from arcgym.scene import InteractiveSceneCfg
+from arcgym.scene.interactive_scene import InteractiveScene
+from arcgym.start_states import Drive
+from arcgym.start_states.route import what_holds
+from arcgym.start_states.settling import CONTROL_STEP
+from arcgym.utils.configclass import replace, validate
+
+TASK = "ARC-Cecum-Proximal"
+"""Task whose scene is taken."""
+OUT_OF_TIME = "no computing time left"
+"""Problem of a patient in which the drive was stopped from outside."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Insertions with one set of overrides."""
+
+    name: str
+    """Name in the table."""
+    overrides: tuple[str, ...]
+    """Overrides of the task, such as ``env.clinical=[all]``."""
+    worlds: int
+    """Worlds for each patient, which work together; one alone keeps the expert's shipped settings."""
+    max_time: float
+    """Simulated time after which an insertion is given up [s]."""
+    patience: float
+    """Simulated time without progress after which it is given up [s]."""
+    device: str
+    """Device of the simulation."""
+    seed: int = 0
+    """Seed of the experts' settings."""
+    deadline: float = float("inf")
+    """Time of :func:`time.monotonic` at which those under way are given up [s]."""
+
+
+def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], None]) -> None:
+    """Drive up all patients and write ``NAME/PATIENT.npz`` of each: ``steps`` (T, F) by ``FIELDS``, and ``about``.
+
+    The insertion of a patient is that of the world that got furthest, see :class:`.record.RecordedPushExpert`.
+
+    Args:
+        plan: What drives, and how long.
+        stages: Stages of the patients.
+        out: Folder.
+        tell: Called with a line about all of them every 10 simulated seconds.
+    """
+    scene = build(plan, stages)
+    drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
+    expert = drive.expert
+    if not isinstance(expert, RecordedPushExpert):
+        raise TypeError(f"The drive has a {type(expert).__name__}, expected a RecordedPushExpert.")
+    began, ends = time.monotonic(), dict[int, int]()
+
+    def report(drive: Drive) -> None:
+        for patient, route in enumerate(drive.routes):
+            if route.running and time.monotonic() > plan.deadline:
+                route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
+            if not route.running and patient not in ends:
+                ends[patient] = expert.entry(drive.foremost[patient])
+                name = scene.colon.patients[patient].name
+                tell(f"{plan.name}, {name}: {route.arc:.2f} m, {route.failure or 'arrived'}")
+        if round(drive.time / CONTROL_STEP) % 100 == 0:
+            arcs = " ".join(f"{route.arc:.2f}" for route in drive.routes)
+            tell(f"{plan.name}, {drive.time:.0f} s simulated in {time.monotonic() - began:.0f} s, tips at [m] {arcs}")
+
+    try:
+        drive.run("cecum", report, settled=False)
+    finally:
+        last = [ends.get(patient, expert.entry(world)) for patient, world in enumerate(drive.foremost)]
+        for patient, steps in enumerate(expert.histories(last)):
+            _write(plan, drive, patient, steps, out)
+
+
+def build(plan: Plan, stages: Sequence[Path]) -> InteractiveScene:
+    """Return the task's worlds, some for each patient, without a camera."""
+    cfg = load_env_cfg(TASK, plan.overrides, plan.seed, device=plan.device)
+    validate(cfg)
+    cfg.resolve()
+    colon = replace(cfg.scene.colon, usd_path=[str(stage) for stage in stages], num_patients=None)
+    endoscope = replace(cfg.scene.endoscope, expert=RecordedPushExpert)
+    count = plan.worlds * len(stages)
+    return InteractiveScene(InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=endoscope), cfg.sim)
+
+
+def _write(plan: Plan, drive: Drive, patient: int, steps: np.ndarray, out: Path) -> None:
+    """Write the file of one insertion."""
+    route, of = drive.routes[patient], drive.scene.colon.patients[patient]
+    about: dict[str, Any] = {"patient": of.name, "name": plan.name, "overrides": plan.overrides, "worlds": plan.worlds}
+    about |= {"seed": plan.seed, "bounds": route.bounds, "arrived": "cecum" in route.entries, "reached": route.arc}
+    about |= {"problem": route.problem, "held_by": route.held_by}
+    about |= {"entries": {name: asdict(entry) for name, entry in route.entries.items()}, "fields": FIELDS}
+    folder = out / plan.name
+    folder.mkdir(parents=True, exist_ok=True)
+    part = folder / f"{of.name}.part"
+    with open(part, "wb") as file:
+        np.savez_compressed(file, steps=steps.astype(np.float32), about=np.array(json.dumps(about)))
+    part.replace(folder / f"{of.name}.npz")
