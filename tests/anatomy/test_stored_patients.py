@@ -15,10 +15,11 @@ from arcgym.assets.patient_files import find_stages
 
 PYTHON = sys.executable
 WORKER = """
-import sys
+import os, sys
 from pathlib import Path
-folder, *seeds = sys.argv[3:]
-for seed in map(int, seeds):
+(folder,) = sys.argv[3:]
+while record := os.read(0, 32):
+    seed = int(record)
     if seed == {bad}:
         sys.exit("Traceback\\nAnatomyError: seed 10001 gave no usable anatomy")
     out = Path(folder) / f"patient_{{seed:05d}}"

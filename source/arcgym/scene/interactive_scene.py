@@ -13,6 +13,7 @@ from arcgym.assets.colon import Colon
 from arcgym.assets.endoscope import Endoscope
 from arcgym.scene.interactive_scene_cfg import InteractiveSceneCfg
 from arcgym.sensors import SensorBase
+from arcgym.sim.patient_preparation import prepare_patients
 from arcgym.sim.simulation import Simulation
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.utils.class_type import construct
@@ -37,6 +38,7 @@ class InteractiveScene:
             StageError: If a stage cannot be used; before anything is allocated on the device.
         """
         self.cfg = cfg
+        prepare_patients(cfg.colon)
         self.colon: Colon = construct(cfg.colon)
         self.endoscope: Endoscope = construct(cfg.endoscope)
         self.sensors: dict[str, SensorBase] = _build_sensors(cfg)

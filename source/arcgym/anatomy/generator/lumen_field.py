@@ -8,6 +8,7 @@ distance. Where the colon turns back on itself a wall is kept between its two le
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,9 @@ _LEGS = 1.0, 2.0
 
 _OPEN = 0.010
 """How far two places overlap before the wall between them begins, where they are not yet two legs [m]."""
+
+_FAR_LEG = 0.022
+"""Way beyond another leg's reach from which on it cannot cut into a wall [m]: folds stand out less."""
 
 _NEAR_WALL = -0.005, 0.010
 """Distances out of and into the plain tube between which another leg may cut into it [m]."""
@@ -127,7 +131,7 @@ class LumenField:
         half = 0.5 * np.sqrt(3.0) * (edge - spacing)
         farthest = float(self._radius.max()) - _BAND[0] + half
         distance, near = self._tree.query(
-            origin + edge * index + 0.5 * (edge - spacing), distance_upper_bound=farthest, workers=2
+            origin + edge * index + 0.5 * (edge - spacing), distance_upper_bound=farthest, workers=_threads()
         )
         plain = np.r_[self._radius, 0.0][near] - distance
         meets = (plain > _BAND[0] - half) & (plain < _BAND[1] + half)
@@ -141,7 +145,7 @@ class LumenField:
 
     def _evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the field, and how far each point is on the inside of a bend where its crease is rounded (0 to 1)."""
-        distance, near = self._tree.query(points, workers=2)
+        distance, near = self._tree.query(points, workers=_threads())
         plain = self._radius[near] - distance
         value, crease = plain.copy(), np.zeros(len(points))
         band = np.flatnonzero((plain > _BAND[0]) & (plain < _BAND[1]))
@@ -160,6 +164,11 @@ class LumenField:
         return self._surface.radius(s, np.mod(angle, 2 * np.pi), crease=crease) - distance, crease
 
 
+def _threads() -> int:
+    """Return how many threads look for places: one where each core has a process of its own."""
+    return 1 if os.environ.get("OMP_NUM_THREADS") == "1" else 2
+
+
 class _Chunks:
     """Pieces of the centreline, by which the other leg at a point is found."""
 
@@ -173,6 +182,7 @@ class _Chunks:
         size = 0.5 * _CHUNK + np.array(
             [radius[a:b].max() for a, b in zip(self._bounds[:-1], self._bounds[1:], strict=True)]
         )
+        self._middle, self._reach = middle, size + septum + _FAR_LEG
         gap = np.linalg.norm(middle[:, None] - middle[None], axis=2) - size[:, None] - size[None]
         apart = (
             np.abs(np.subtract.outer(np.arange(count), np.arange(count))) * _CHUNK > size[:, None] + size[None] - _CHUNK
@@ -189,8 +199,9 @@ class _Chunks:
             here = order[first[a] : first[a + 1]]
             if not len(others) or not len(here):
                 continue
-            here = here[(plain[here] > _NEAR_WALL[0]) & (plain[here] < _NEAR_WALL[1])]
+            wall = here[(plain[here] > _NEAR_WALL[0]) & (plain[here] < _NEAR_WALL[1])]
             for b in others:
+                here = wall[((points[wall] - self._middle[b]) ** 2).sum(1) < self._reach[b] ** 2]
                 distance, index = self._trees[b].query(points[here], distance_upper_bound=0.08)
                 index = np.minimum(index, self._bounds[b + 1] - self._bounds[b] - 1) + self._bounds[b]
                 ways = np.abs(self._s[index] - self._s[near[here]]) / (self._radius[index] + self._radius[near[here]])

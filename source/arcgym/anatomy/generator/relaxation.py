@@ -66,7 +66,7 @@ def relax(
     """
     points, arc = route.copy(), np.r_[0.0, np.cumsum(edge)]
     need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + max(_LOOP_GAP, spec.clearance)
-    other_loop = np.abs(arc[:, None] - arc[None]) > 1.9 * need
+    other_loop, listed = np.abs(arc[:, None] - arc[None]) > 1.9 * need, (need + _NEIGHBOR_REACH) ** 2
     sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
     canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
     made, drawn = None, rng.uniform(size=(_MOST_BENDS, 2))
@@ -76,8 +76,9 @@ def relax(
             places = choose_bends(points, spacing, radius, spec) if bends is None else bends
             made = make_bends(places, spacing, radius, spec, drawn)
         if k % _NEIGHBOR_AGE == 0:
-            a, b = np.nonzero(other_loop & (_square_distances(points) < (need + _NEIGHBOR_REACH) ** 2))
-        points += _push_apart(points, a, b, need[a, b])
+            a, b = np.nonzero(other_loop & (_square_distances(points) < listed))
+            gap = need[a, b]
+        points += _push_apart(points, a, b, gap)
         points += hold[:, None] * (route - points)
         if made:
             points += made.pull(points)
@@ -91,7 +92,12 @@ def relax(
 
 def _square_distances(points: np.ndarray) -> np.ndarray:
     """Return squared distances [m^2], shape (n, n); a matrix product is slow on busy cores."""
-    return sum((x[:, None] - x[None]) ** 2 for x in points.T)  # type: ignore[return-value]
+    total, square = np.zeros((2, len(points), len(points)))
+    for x in points.T:
+        np.subtract(x[:, None], x[None], out=square)
+        square *= square
+        total += square
+    return total
 
 
 def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:

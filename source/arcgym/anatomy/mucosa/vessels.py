@@ -93,7 +93,7 @@ def _grow(
     steps = int(outside.argmax()) if outside.any() else branch.steps
     children: list[_Branch] = []
     for k in range(4, steps - 2):
-        if rng.uniform() < branching:
+        if rng.random() < branching:
             children += _side(rng, branch, path[k], angle[k], rng.uniform(0.15, 0.45), k / branch.steps)
     if steps < branch.steps:
         return path[:steps], children
