@@ -145,6 +145,9 @@ class FakeCamera:
     def write_texture_offset(self, offset: torch.Tensor, env_ids: torch.Tensor) -> None:
         self.commands["texture"] = (offset.clone(), env_ids)
 
+    def write_preparation(self, scores: torch.Tensor, seed: torch.Tensor, env_ids: torch.Tensor) -> None:
+        self.commands["preparation"] = ((scores.clone(), seed.clone()), env_ids)
+
 
 class FakeEnv:
     """What terms read of an environment: two worlds, three links, 10 Hz."""

@@ -99,6 +99,18 @@ def test_randomization_stays_in_its_bounds(env, name, entity, command, shape, bo
     assert bool((value >= bounds[0]).all()) and bool((value <= bounds[1]).all())
 
 
+def test_preparation_is_scored_as_often_as_published(many) -> None:
+    mdp.randomize_preparation(many, torch.arange(2001))
+    (scores, seed), env_ids = many.scene["camera"].commands["preparation"]
+    total = scores.sum(dim=1)
+    assert scores.shape == (2001, 3) and seed.shape == (2001,) and env_ids.tolist() == list(range(2001))
+    assert int(scores.min()) == 1 and int(scores.max()) == 3
+    assert (scores.amax(dim=1) - scores.amin(dim=1)).max() == 1
+    shares = [float((total == each).float().mean()) for each in (5, 6)] + [float((total >= 7).float().mean())]
+    assert shares == pytest.approx([0.1, 0.2, 0.7], abs=0.03)
+    assert float((total == 8).float().mean()) == pytest.approx(0.7 / 3, abs=0.03)
+
+
 @pytest.mark.parametrize(
     ("name", "entity", "command", "bounds"),
     [

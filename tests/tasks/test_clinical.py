@@ -14,7 +14,7 @@ from arcgym.utils.coerce import to_plain
 from arcgym.utils.configclass import validate
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import load_cfg_from_registry
-from arcgym_tasks.navigation.clinical import EFFECTS, make_clinical
+from arcgym_tasks.navigation.clinical import CAMERA, EFFECTS, make_clinical
 
 ALL = "env.clinical=[all]"
 
@@ -31,7 +31,7 @@ def configured(*overrides: str, task: str = "ARC-Sigmoid-Proximal") -> Any:
 def switches(cfg: Any) -> list[bool]:
     """Return whether each of :data:`EFFECTS` is on."""
     colon, sim, scope = cfg.scene.colon, cfg.sim, cfg.scene.endoscope
-    law = colon.wall_law
+    law, camera = colon.wall_law, cfg.scene.camera
     return [
         colon.material == "clinical" and law.stiffening == 1.5 and law.thickness_by_diameter,
         law.relaxation,
@@ -41,6 +41,10 @@ def switches(cfg: Any) -> list[bool]:
         sim.contact.friction == 0.12 and sim.contact.static_friction == 1.4,
         colon.abdomen.enabled,
         colon.mesentery.enabled,
+        camera.latency == 0.08,
+        camera.exposure.shutter == (1 / 200, 1 / 60) and camera.exposure.lag == 0.6,
+        camera.lighting.concentration == 2.77 and camera.lighting.lamp is not None and camera.exposure.gamma == 2.2,
+        camera.preparation.scores == (2, 3, 3) and cfg.events.preparation is not None,
     ]
 
 
@@ -55,6 +59,10 @@ def test_all_of_them() -> None:
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_one_of_them_alone(effect: str) -> None:
     assert switches(configured(f"env.clinical=[{effect}]")) == [name == effect for name in EFFECTS]
+
+
+def test_a_group_of_them() -> None:
+    assert switches(configured("env.clinical=[camera]")) == [name in CAMERA for name in EFFECTS]
 
 
 def test_again_it_changes_nothing_more() -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from arcgym.sensors.endoscope_camera_cfg import EndoscopeCameraCfg
 from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
+from arcgym.sensors.preparation_cfg import PreparationCfg
 from arcgym.sensors.sensor_base_cfg import SensorBaseCfg
 from arcgym.utils.lazy import lazy_names
 
@@ -27,6 +28,7 @@ __all__ = [
     "EndoscopeCameraData",
     "ExposureCfg",
     "LightingCfg",
+    "PreparationCfg",
     "SensorBase",
     "SensorBaseCfg",
     "SkinnedSurface",

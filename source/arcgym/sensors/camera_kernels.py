@@ -8,7 +8,7 @@ Launch dimensions: N worlds, H rows, W columns, S samples a pixel.
 
 import warp as wp
 
-from arcgym.sensors.shading_kernels import Lighting, SurfaceView, covered_radiance, shade, surface_hit
+from arcgym.sensors.shading_kernels import Lighting, SurfaceView, covered_radiance, shade, shade_measured, surface_hit
 from arcgym.utils import warp_setup  # noqa: F401
 
 PROBES = wp.constant(14)
@@ -61,55 +61,64 @@ def find_covered(
     covered[world] = balance < 0
 
 
-@wp.kernel
-def cast_rays(
-    surface: SurfaceView,
-    lighting: Lighting,
-    drawn: wp.array[wp.bool],
-    poses: wp.array[wp.transform],
-    rays: wp.array3d[wp.vec3],
-    texture_offset: wp.array[wp.vec2],
-    covered: wp.array[wp.bool],
-    near: float,
-    far: float,
-    radiance: wp.array3d[wp.vec3],
-    depth: wp.array3d[float],
-):
-    """Trace radiance (mean of the samples) and distance (nearest of the samples) of every pixel. Launch (N, H, W).
+def make_cast_rays(shade: wp.Function) -> wp.Kernel:
+    """Return the kernel that traces the rays, for a function of the radiance from a hit."""
 
-    Args:
-        surface: Surface of all worlds.
-        lighting: Lights and mucosa.
-        drawn: Worlds to draw, shape (N,).
-        poses: Camera poses, shape (N,).
-        rays: Directions in the camera's frame, shape (H, W, S).
-        texture_offset: Shift of the texture in fractions of its size, shape (N,).
-        covered: Worlds whose lens is covered, shape (N,).
-        near: Distance given where the lens is covered [m].
-        far: Farthest distance seen [m].
-        radiance: Linear radiance, shape (N, H, W); written.
-        depth: Distance along the ray [m], shape (N, H, W); written.
-    """
-    world, row, column = wp.tid()
-    if not drawn[world]:
-        return
-    if covered[world]:
-        radiance[world, row, column] = covered_radiance(lighting, surface.albedo[surface.patient[world]])
-        depth[world, row, column] = near
-        return
-    camera = poses[world]
-    origin = wp.transform_get_translation(camera)
-    total = wp.vec3(0.0)
-    nearest = far
-    for sample in range(rays.shape[2]):
-        direction = wp.transform_vector(camera, rays[row, column, sample])
-        query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
-        if query.result:
-            hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
-            total += shade(surface, lighting, world, hit, camera, direction, query.t, texture_offset[world])
-            nearest = wp.min(nearest, query.t)
-    radiance[world, row, column] = total / float(rays.shape[2])
-    depth[world, row, column] = nearest
+    @wp.kernel
+    def cast_rays(
+        surface: SurfaceView,
+        lighting: Lighting,
+        drawn: wp.array[wp.bool],
+        poses: wp.array[wp.transform],
+        rays: wp.array3d[wp.vec3],
+        texture_offset: wp.array[wp.vec2],
+        covered: wp.array[wp.bool],
+        near: float,
+        far: float,
+        radiance: wp.array3d[wp.vec3],
+        depth: wp.array3d[float],
+    ):
+        """Trace radiance (mean of the samples) and distance (nearest of the samples) of every pixel. Launch (N, H, W).
+
+        Args:
+            surface: Surface of all worlds.
+            lighting: Lights and mucosa.
+            drawn: Worlds to draw, shape (N,).
+            poses: Camera poses, shape (N,).
+            rays: Directions in the camera's frame, shape (H, W, S).
+            texture_offset: Shift of the texture in fractions of its size, shape (N,).
+            covered: Worlds whose lens is covered, shape (N,).
+            near: Distance given where the lens is covered [m].
+            far: Farthest distance seen [m].
+            radiance: Linear radiance, shape (N, H, W); written.
+            depth: Distance along the ray [m], shape (N, H, W); written.
+        """
+        world, row, column = wp.tid()
+        if not drawn[world]:
+            return
+        if covered[world]:
+            radiance[world, row, column] = covered_radiance(lighting, surface.albedo[surface.patient[world]])
+            depth[world, row, column] = near
+            return
+        camera = poses[world]
+        origin = wp.transform_get_translation(camera)
+        total = wp.vec3(0.0)
+        nearest = far
+        for sample in range(rays.shape[2]):
+            direction = wp.transform_vector(camera, rays[row, column, sample])
+            query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+            if query.result:
+                hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
+                total += shade(surface, lighting, world, hit, camera, direction, query.t, texture_offset[world])
+                nearest = wp.min(nearest, query.t)
+        radiance[world, row, column] = total / float(rays.shape[2])
+        depth[world, row, column] = nearest
+
+    return cast_rays
+
+
+cast_rays = make_cast_rays(shade)
+cast_rays_measured = make_cast_rays(shade_measured)
 
 
 @wp.kernel
@@ -173,44 +182,66 @@ def expose(
 
 
 @wp.func
-def response(radiance: float, edge: float, contrast: float) -> wp.uint8:
-    """Return the camera response as a byte: saturating, gamma 2, then an S-curve."""
-    level = wp.sqrt(1.0 - wp.exp(-radiance)) * edge
-    curve = level * level * (3.0 - 2.0 * level)
-    return wp.uint8(255.0 * (level + contrast * (curve - level)) + 0.5)
+def square_root(light: float, gamma: float) -> float:
+    """Return the brightness of a light for gamma 2."""
+    return wp.sqrt(light)
 
 
-@wp.kernel
-def develop(
-    radiance: wp.array3d[wp.vec3],
-    gain: wp.array[float],
-    light_gain: wp.array[float],
-    color_gain: wp.array[wp.vec3],
-    rays: wp.array3d[wp.vec3],
-    vignette: float,
-    contrast: float,
-    drawn: wp.array[wp.bool],
-    rgb: wp.array4d[wp.uint8],
-):
-    """Convert exposed radiance to bytes. Launch (N, H, W).
+@wp.func
+def any_root(light: float, gamma: float) -> float:
+    """Return the brightness of a light for any gamma."""
+    return wp.pow(light, 1.0 / gamma)
 
-    Args:
-        radiance: Linear radiance, shape (N, H, W).
-        gain: Gain of the exposure, shape (N,).
-        light_gain: Brightness relative to it, shape (N,).
-        color_gain: Gain of red, green and blue, shape (N,).
-        rays: Directions in the camera's frame, shape (H, W, S).
-        vignette: Darkening towards the rim, 0 to 1.
-        contrast: Strength of the S-curve, 0 to 1.
-        drawn: Worlds to draw, shape (N,).
-        rgb: Picture, shape (N, H, W, 3); written.
-    """
-    world, row, column = wp.tid()
-    if not drawn[world]:
-        return
-    exposed = wp.cw_mul(radiance[world, row, column], color_gain[world]) * (gain[world] * light_gain[world])
-    cosine = wp.max(-rays[row, column, 0][2], 0.0)
-    edge = 1.0 - vignette * (1.0 - cosine)
-    rgb[world, row, column, 0] = response(exposed[0], edge, contrast)
-    rgb[world, row, column, 1] = response(exposed[1], edge, contrast)
-    rgb[world, row, column, 2] = response(exposed[2], edge, contrast)
+
+def make_develop(root: wp.Function) -> wp.Kernel:
+    """Return the kernel that makes bytes of radiance, for a function of the brightness of a light."""
+
+    @wp.func
+    def response(radiance: float, edge: float, contrast: float, gamma: float) -> wp.uint8:
+        """Return the camera response as a byte: saturating, gamma, then an S-curve."""
+        level = root(1.0 - wp.exp(-radiance), gamma) * edge
+        curve = level * level * (3.0 - 2.0 * level)
+        return wp.uint8(255.0 * (level + contrast * (curve - level)) + 0.5)
+
+    @wp.kernel
+    def develop(
+        radiance: wp.array3d[wp.vec3],
+        gain: wp.array[float],
+        light_gain: wp.array[float],
+        color_gain: wp.array[wp.vec3],
+        rays: wp.array3d[wp.vec3],
+        vignette: float,
+        contrast: float,
+        gamma: float,
+        drawn: wp.array[wp.bool],
+        rgb: wp.array4d[wp.uint8],
+    ):
+        """Convert exposed radiance to bytes. Launch (N, H, W).
+
+        Args:
+            radiance: Linear radiance, shape (N, H, W).
+            gain: Gain of the exposure, shape (N,).
+            light_gain: Brightness relative to it, shape (N,).
+            color_gain: Gain of red, green and blue, shape (N,).
+            rays: Directions in the camera's frame, shape (H, W, S).
+            vignette: Darkening towards the rim, 0 to 1.
+            contrast: Strength of the S-curve, 0 to 1.
+            gamma: Root by which light becomes brightness.
+            drawn: Worlds to draw, shape (N,).
+            rgb: Picture, shape (N, H, W, 3); written.
+        """
+        world, row, column = wp.tid()
+        if not drawn[world]:
+            return
+        exposed = wp.cw_mul(radiance[world, row, column], color_gain[world]) * (gain[world] * light_gain[world])
+        cosine = wp.max(-rays[row, column, 0][2], 0.0)
+        edge = 1.0 - vignette * (1.0 - cosine)
+        rgb[world, row, column, 0] = response(exposed[0], edge, contrast, gamma)
+        rgb[world, row, column, 1] = response(exposed[1], edge, contrast, gamma)
+        rgb[world, row, column, 2] = response(exposed[2], edge, contrast, gamma)
+
+    return develop
+
+
+develop = make_develop(square_root)
+develop_gamma = make_develop(any_root)

@@ -11,7 +11,9 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sensors.camera_view import CameraView
 from arcgym.sensors.mucosa_textures import MucosaTextures, load_textures, read_images
+from arcgym.sensors.preparation import Preparation
 from arcgym.sensors.sensor_base import SensorBase
 from arcgym.sensors.skinned_surface import SkinnedSurface
 from arcgym.sensors.surface_renderer import Optics, SurfaceRenderer, WorldLooks
@@ -74,6 +76,14 @@ class EndoscopeCamera(SensorBase):
         self._renderer = SurfaceRenderer(surface, visuals, textures, self._optics(), size, self.cfg.samples)
         self._fine_patient: Patient | None = None
         self._snapshots: dict[tuple[int, int], SurfaceRenderer] = {}
+        self._view: CameraView | None = None
+        if self.cfg.latency > 0.0 or self.cfg.exposure.shutter is not None:
+            self._view = CameraView(scene, self.cfg.latency)
+        self._stepped = False
+        self._preparation: Preparation | None = None
+        if self.cfg.preparation.scores is not None:
+            self._preparation = Preparation(self.cfg.preparation, scene)
+            self._preparation.cover(self._renderer, patients, visuals)
         self._data = self._make_data()
 
     @property
@@ -116,27 +126,47 @@ class EndoscopeCamera(SensorBase):
             self._drawn.fill_(True)
         else:
             wp.copy(self._drawn, wp.from_torch(env_mask, dtype=wp.bool))
-        self._renderer.surface.update(self._colon.nodal_pos_wp, self._drawn)
+        if self._view is not None:
+            self._view.refresh(self._drawn, self._stepped)
+        late = None if self._view is None else self._view.shot.wall
+        self._renderer.surface.update(self._colon.nodal_pos_wp if late is None else late, self._drawn)
         self.draw()
 
+    def advance(self, dt: float) -> None:
+        """Let `dt` seconds pass, a control step, and draw all worlds when the update period is over."""
+        self._stepped = True
+        try:
+            super().advance(dt)
+        finally:
+            self._stepped = False
+
     def draw(self) -> None:
-        """Draw the worlds of the last update again from the present camera poses, without moving the wall."""
-        self._renderer.draw(self._endoscope.camera_pose_wp, self._looks, self._drawn)
+        """Draw the worlds of the last update again from the camera poses, without moving the wall."""
+        motion = None if self._view is None else self._view.shot.motion
+        self._renderer.draw(self.poses_wp, self._looks, self._drawn, motion)
         self._data.frame += 1
+
+    @property
+    def poses_wp(self) -> wp.array:
+        """Camera poses that the next picture is drawn from, shape (N,), transform: late by the latency."""
+        return self._endoscope.camera_pose_wp if self._view is None else self._view.shot.pose
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Let the exposure of the worlds start anew with their next picture."""
         fill_worlds(wp.to_torch(self._renderer.gain), env_ids, 0.0)
 
     def world_settings(self) -> dict[str, torch.Tensor]:
-        """Return the looks of all worlds: ``light_gain`` (N,), ``color_gain`` (N, 3), ``texture_offset`` (N, 2)."""
+        """Return the looks of all worlds: ``light_gain`` (N,), ``color_gain`` (N, 3), ``texture_offset`` (N, 2); with a
+        preparation its ``scores`` (N, 3) and ``seed`` (N,) too."""
         names = ("light_gain", "color_gain", "texture_offset")
-        return {name: wp.to_torch(getattr(self._looks, name)) for name in names}
+        looks = {name: wp.to_torch(getattr(self._looks, name)) for name in names}
+        return looks | ({} if self._preparation is None else self._preparation.settings)
 
     def memory(self) -> dict[str, torch.Tensor]:
         """Return the last pictures, where they were taken, and the gain that the next exposure starts from."""
         names = ("rgb", "depth", "radiance", "covered", "gain", "drawn_from")
-        return {name: wp.to_torch(getattr(self._renderer, name)) for name in names}
+        arrays = {name: wp.to_torch(getattr(self._renderer, name)) for name in names}
+        return arrays | ({} if self._view is None else self._view.memory)
 
     def write_light_gain(self, gain: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
         """Set the brightness of the picture relative to the exposure's aim, shape (n,); 1 is neutral."""
@@ -150,9 +180,28 @@ class EndoscopeCamera(SensorBase):
         """Shift the mucosa texture by fractions of its size along u and v, shape (n, 2)."""
         wp.to_torch(self._looks.texture_offset)[slice(None) if env_ids is None else env_ids] = offset
 
+    def write_preparation(self, scores: torch.Tensor, seed: torch.Tensor, env_ids: torch.Tensor | None = None) -> None:
+        """Set how clean the colon is and where what is left lies.
+
+        Args:
+            scores: Boston bowel preparation scores, 0 to 3, of right, transverse and left colon, shape (n, 3).
+            seed: Number that places stool, shape (n,).
+            env_ids: The worlds; all by default.
+
+        Raises:
+            ValueError: If the camera shows no stool and fluid.
+        """
+        if self._preparation is None:
+            raise ValueError("The camera shows no stool and fluid: set env.scene.camera.preparation.scores=[2,3,3].")
+        self._preparation.write(scores, seed, env_ids)
+
     def another_renderer(self, size: tuple[int, int], samples: int = 1) -> SurfaceRenderer:
         """Return a renderer of the same surface for pictures of another size (width, height) [px]."""
-        return SurfaceRenderer(self.surface, self._visuals, self._renderer.textures, self._optics(), size, samples)
+        textures, optics = self._renderer.textures, self._optics()
+        renderer = SurfaceRenderer(self.surface, self._visuals, textures, optics, size, samples)
+        if self._preparation is not None:
+            self._preparation.cover(renderer, self._colon.patients, self._visuals)
+        return renderer
 
     @property
     def looks(self) -> WorldLooks:
@@ -163,7 +212,7 @@ class EndoscopeCamera(SensorBase):
         """Draw one world large, from the fine surface, for people to look at.
 
         The fine surface is made at the first call and kept until a world with another patient is drawn. Exposure has no
-        lag here.
+        lag here, and the picture is sharp and of the present whatever the camera's latency.
 
         Args:
             env_id: World to draw, as it is now.
@@ -174,7 +223,7 @@ class EndoscopeCamera(SensorBase):
             Colour, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
         """
         self._show(env_id)
-        renderer = self._snapshot_renderer(size, samples)
+        renderer = self._snapshot_renderer(size, samples, env_id)
         renderer.gain.zero_()
         renderer.surface.update(self._colon.nodal_pos_wp[:, env_id : env_id + 1])
         pose = self._endoscope.camera_pose_wp[env_id : env_id + 1]
@@ -194,12 +243,15 @@ class EndoscopeCamera(SensorBase):
             self._fine_patient, self._fine = patient, self._fine_surface(patient)
             self._snapshots.clear()
 
-    def _snapshot_renderer(self, size: int, samples: int) -> SurfaceRenderer:
+    def _snapshot_renderer(self, size: int, samples: int, env_id: int) -> SurfaceRenderer:
         """Return the renderer of one world's fine surface at this size, making it at first use."""
         key = (size, samples)
         if key not in self._snapshots:
             visual, surface, textures = self._fine
             self._snapshots[key] = SurfaceRenderer(surface, [visual], [textures], self._optics(), (size, size), samples)
+        if self._preparation is not None:
+            patients = [self._colon.patient_of(env_id)]
+            self._preparation.cover(self._snapshots[key], patients, [self._fine[0]], env_id)
         return self._snapshots[key]
 
     def _fine_surface(self, patient: Patient) -> tuple[VisualMesh, SkinnedSurface, MucosaTextures]:
@@ -212,7 +264,8 @@ class EndoscopeCamera(SensorBase):
     def _optics(self) -> Optics:
         """Gather what the endoscope's stage and the configuration say about camera and lights."""
         stage = self._endoscope.stage
-        lights = lights_in_camera(stage.lights, stage.camera)
+        lamp = self.cfg.lighting.lamp
+        lights = lights_in_camera(stage.lights, stage.camera) if lamp is None else np.array([lamp, lamp])
         near = float(stage.camera.clipping[0])
         return Optics(self.field_of_view, lights, near, self.cfg.far, self.cfg.lighting, self.cfg.exposure)
 

@@ -8,6 +8,7 @@ import math
 from typing import Any
 
 from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
+from arcgym.sensors.preparation_cfg import PreparationCfg
 from arcgym.sensors.sensor_base_cfg import SensorBaseCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import Range, require, require_at_least, require_positive
@@ -42,7 +43,15 @@ class EndoscopeCameraCfg(SensorBaseCfg):
     """Tip lights and wet mucosa."""
 
     exposure: ExposureCfg = ExposureCfg()
-    """Automatic exposure and response curve."""
+    """Automatic exposure, shutter and response curve."""
+
+    latency: float = 0.0
+    """Age of a picture when it is seen [s], as of video processor and screen: camera and wall are drawn as they were at
+    the nearest physics step. 0 draws the present; 0.08 is a colonoscope's, see ``env.clinical=[latency]``. What is
+    computed from the picture and its depth, rewards and metrics of the view among them, is as late."""
+
+    preparation: PreparationCfg = PreparationCfg()
+    """Stool and fluid by how well the bowel was prepared."""
 
     def validate_config(self) -> None:
         """Check bounds.
@@ -57,3 +66,4 @@ class EndoscopeCameraCfg(SensorBaseCfg):
         require_at_least(self, 1, "samples")
         require(self, "data_types", ("rgb", "depth"))
         require_positive(self, "far", unit="m")
+        require(self, "latency", Range(0.0, 1.0), unit="s")

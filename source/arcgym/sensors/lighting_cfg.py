@@ -22,6 +22,14 @@ class LightingCfg:
     beam: float = 0.3
     """How much the lights favour the axis: 0 is a bare (Lambertian) diode, 1 falls with the squared cosine."""
 
+    concentration: float | None = None
+    """Fall-off of a measured light with the angle from its axis, in place of :attr:`beam`: exp(-c (1 - cos)). None by
+    default; 2.77 was measured on a real colonoscope (EndoMapper's calibration; ``env.clinical=[light]``)."""
+
+    lamp: tuple[float, float, float] | None = None
+    """Place of one light as bright as both, in the frame of the camera, which looks along -Z with +Y up [m]. None takes
+    the two lights of the endoscope's stage."""
+
     wrap: tuple[float, float, float] = (0.34, 0.16, 0.12)
     """Light scattered under the surface past the terminator, red, green, blue. Raise for a softer, waxier wall."""
 
@@ -54,6 +62,8 @@ class LightingCfg:
         require_non_negative(self, "scatter", "bump", "gloss")
         require(self, "roughness", Range(0.0, 1.0, above=True))
         require_positive(self, "min_distance", unit="m")
+        require(self, "concentration", Range(0.0, 50.0))
+        require(self, "lamp", Range(-0.1, 0.1), unit="m")
 
 
 @configclass
@@ -82,6 +92,16 @@ class ExposureCfg:
     contrast: float = 0.45
     """Strength of the S-curve that darkens shadows and lifts lights: 0 none, 1 full."""
 
+    gamma: float = 2.0
+    """Root by which light becomes brightness. 2.2 with no contrast and no vignette is a calibrated endoscope's."""
+
+    shutter: tuple[float, float] | None = None
+    """Shortest and longest time that a picture collects light [s], over which what moves is blurred; None, the default,
+    for sharp pictures. The time is the longest at :attr:`longest_gain` and falls with the gain: shorter near a wall."""
+
+    longest_gain: float = 1.2e-3
+    """Gain from which on the shutter is open longest. Raise it for shorter times, such as with a brighter lamp."""
+
     def validate_config(self) -> None:
         """Check bounds.
 
@@ -92,3 +112,8 @@ class ExposureCfg:
         require_ascending(self, "gain_range")
         require(self, "lag", Range(0.0, 1.0, below=True))
         require_fraction(self, "vignette", "contrast")
+        require(self, "gamma", Range(1.0, 4.0))
+        require_positive(self, "longest_gain")
+        if self.shutter is not None:
+            require(self, "shutter", Range(0.0, 0.2, above=True), unit="s")
+            require_ascending(self, "shutter")

@@ -30,6 +30,7 @@ class Lighting:
     right: wp.vec3
     wrap: wp.vec3
     beam: float
+    concentration: float
     scatter: float
     bump: float
     film: float
@@ -135,34 +136,54 @@ def highlight(cosine: float, alpha_sq: float) -> float:
 
 
 @wp.func
-def lit_by(
-    lamp: wp.vec3,
-    hit: Hit,
-    relief: wp.vec3,
-    film: wp.vec3,
-    direction: wp.vec3,
-    axis: wp.vec3,
-    color: wp.vec3,
-    gloss: float,
-    alpha_sq: float,
-    lighting: Lighting,
-) -> wp.vec3:
-    """Return the radiance to the camera from one light: wrapped diffuse reflection and the highlight on the film."""
-    incoming = lamp - hit.position
-    distance_sq = wp.length_sq(incoming)
-    incoming = incoming / wp.sqrt(distance_sq)
-    cosine = wp.max(-wp.dot(incoming, axis), 0.02)
-    power = 0.5 * cosine * (1.0 - lighting.beam + lighting.beam * cosine)
-    power = power / wp.max(distance_sq, lighting.min_distance_sq)
-    falling = wp.dot(relief, incoming)
-    diffuse = wp.vec3(
-        wp.max((falling + lighting.wrap[0]) / (1.0 + lighting.wrap[0]), 0.0),
-        wp.max((falling + lighting.wrap[1]) / (1.0 + lighting.wrap[1]), 0.0),
-        wp.max((falling + lighting.wrap[2]) / (1.0 + lighting.wrap[2]), 0.0),
-    )
-    mirror = wp.max(wp.dot(film, wp.normalize(incoming - direction)), 0.0)
-    glint = gloss * highlight(mirror, alpha_sq)
-    return (wp.cw_mul(color, diffuse) + wp.vec3(glint, glint, glint)) * power
+def beam_power(cosine: float, lighting: Lighting) -> float:
+    """Return the power of one of two lights in a direction by its angle to the axis: a diode, or a beam."""
+    c = wp.max(cosine, 0.02)
+    return 0.5 * c * (1.0 - lighting.beam + lighting.beam * c)
+
+
+@wp.func
+def measured_power(cosine: float, lighting: Lighting) -> float:
+    """Return the same of a light whose fall-off was measured."""
+    return 0.5 * wp.exp(-lighting.concentration * (1.0 - cosine))
+
+
+def make_lit_by(lamp_power: wp.Function) -> wp.Function:
+    """Return the function of what one light adds, for a law of its power. A branch would round otherwise."""
+
+    @wp.func
+    def lit_by(
+        lamp: wp.vec3,
+        hit: Hit,
+        relief: wp.vec3,
+        film: wp.vec3,
+        direction: wp.vec3,
+        axis: wp.vec3,
+        color: wp.vec3,
+        gloss: float,
+        alpha_sq: float,
+        lighting: Lighting,
+    ) -> wp.vec3:
+        """Return the radiance to the camera from one light: wrapped diffuse reflection and the film's highlight."""
+        incoming = lamp - hit.position
+        distance_sq = wp.length_sq(incoming)
+        incoming = incoming / wp.sqrt(distance_sq)
+        power = lamp_power(-wp.dot(incoming, axis), lighting)
+        power = power / wp.max(distance_sq, lighting.min_distance_sq)
+        falling = wp.dot(relief, incoming)
+        diffuse = wp.vec3(
+            wp.max((falling + lighting.wrap[0]) / (1.0 + lighting.wrap[0]), 0.0),
+            wp.max((falling + lighting.wrap[1]) / (1.0 + lighting.wrap[1]), 0.0),
+            wp.max((falling + lighting.wrap[2]) / (1.0 + lighting.wrap[2]), 0.0),
+        )
+        mirror = wp.max(wp.dot(film, wp.normalize(incoming - direction)), 0.0)
+        glint = gloss * highlight(mirror, alpha_sq)
+        return (wp.cw_mul(color, diffuse) + wp.vec3(glint, glint, glint)) * power
+
+    return lit_by
+
+
+lit_by = make_lit_by(beam_power)
 
 
 @wp.func
@@ -172,34 +193,43 @@ def covered_radiance(lighting: Lighting, albedo: wp.Texture2D) -> wp.vec3:
     return wp.cw_mul(color, color) / lighting.min_distance_sq
 
 
-@wp.func
-def shade(
-    surface: SurfaceView,
-    lighting: Lighting,
-    world: int,
-    hit: Hit,
-    camera: wp.transform,
-    direction: wp.vec3,
-    distance: float,
-    texture_offset: wp.vec2,
-) -> wp.vec3:
-    """Return the radiance that a hit sends back along the ray."""
-    p = surface.patient[world]
-    uv = hit.uv + texture_offset
-    texel = wp.texture_sample(surface.albedo[p], uv, dtype=wp.vec4f, lod=hit.level)
-    relief_texel = wp.texture_sample(surface.detail[p], uv, dtype=wp.vec4f, lod=hit.level + 1.0)
-    color = mucosa_color(texel, hit.tint)
-    slope = wp.vec2(2.0 * relief_texel[0] - 1.0, 2.0 * relief_texel[1] - 1.0)
-    relief = relief_normal(hit, slope, surface.texture_size[p], lighting.bump)
-    film = wp.normalize(hit.normal + (relief - hit.normal) * lighting.film)
-    open_sky = wp.clamp(1.0 + 0.85 * hit.tint, 0.15, 1.0)
-    gloss = lighting.gloss * (0.25 + 0.75 * relief_texel[3]) * open_sky
-    alpha_sq = lighting.roughness_sq + 0.25 * lighting.pixel_angle * lighting.pixel_angle
+def make_shade(lit_by: wp.Function) -> wp.Function:
+    """Return the function of the radiance from a hit, for what one light adds."""
 
-    axis = wp.transform_vector(camera, wp.vec3(0.0, 0.0, -1.0))
-    left = wp.transform_point(camera, lighting.left)
-    right = wp.transform_point(camera, lighting.right)
-    radiance = lit_by(left, hit, relief, film, direction, axis, color, gloss, alpha_sq, lighting)
-    radiance += lit_by(right, hit, relief, film, direction, axis, color, gloss, alpha_sq, lighting)
-    bounce = lighting.scatter / wp.max(distance * distance, lighting.min_distance_sq)
-    return (radiance + wp.cw_mul(color, color) * bounce) * open_sky
+    @wp.func
+    def shade(
+        surface: SurfaceView,
+        lighting: Lighting,
+        world: int,
+        hit: Hit,
+        camera: wp.transform,
+        direction: wp.vec3,
+        distance: float,
+        texture_offset: wp.vec2,
+    ) -> wp.vec3:
+        """Return the radiance that a hit sends back along the ray."""
+        p = surface.patient[world]
+        uv = hit.uv + texture_offset
+        texel = wp.texture_sample(surface.albedo[p], uv, dtype=wp.vec4f, lod=hit.level)
+        relief_texel = wp.texture_sample(surface.detail[p], uv, dtype=wp.vec4f, lod=hit.level + 1.0)
+        color = mucosa_color(texel, hit.tint)
+        slope = wp.vec2(2.0 * relief_texel[0] - 1.0, 2.0 * relief_texel[1] - 1.0)
+        relief = relief_normal(hit, slope, surface.texture_size[p], lighting.bump)
+        film = wp.normalize(hit.normal + (relief - hit.normal) * lighting.film)
+        open_sky = wp.clamp(1.0 + 0.85 * hit.tint, 0.15, 1.0)
+        gloss = lighting.gloss * (0.25 + 0.75 * relief_texel[3]) * open_sky
+        alpha_sq = lighting.roughness_sq + 0.25 * lighting.pixel_angle * lighting.pixel_angle
+
+        axis = wp.transform_vector(camera, wp.vec3(0.0, 0.0, -1.0))
+        left = wp.transform_point(camera, lighting.left)
+        right = wp.transform_point(camera, lighting.right)
+        radiance = lit_by(left, hit, relief, film, direction, axis, color, gloss, alpha_sq, lighting)
+        radiance += lit_by(right, hit, relief, film, direction, axis, color, gloss, alpha_sq, lighting)
+        bounce = lighting.scatter / wp.max(distance * distance, lighting.min_distance_sq)
+        return (radiance + wp.cw_mul(color, color) * bounce) * open_sky
+
+    return shade
+
+
+shade = make_shade(lit_by)
+shade_measured = make_shade(make_lit_by(measured_power))

@@ -12,8 +12,17 @@ import numpy as np
 import warp as wp
 
 from arcgym.anatomy.stage.types import TEXTURE_LENGTH
-from arcgym.sensors.camera_kernels import cast_rays, develop, expose, find_covered, row_brightness
+from arcgym.sensors.camera_kernels import (
+    cast_rays,
+    cast_rays_measured,
+    develop,
+    develop_gamma,
+    expose,
+    find_covered,
+    row_brightness,
+)
 from arcgym.sensors.camera_rays import fisheye_rays, pixel_angle
+from arcgym.sensors.motion_kernels import smear
 from arcgym.sensors.shading_kernels import Lighting, SurfaceView
 from arcgym.sensors.texture_density import texel_density
 from arcgym.utils import warp_setup  # noqa: F401
@@ -23,6 +32,10 @@ if TYPE_CHECKING:
     from arcgym.sensors.lighting_cfg import ExposureCfg, LightingCfg
     from arcgym.sensors.mucosa_textures import MucosaTextures
     from arcgym.sensors.skinned_surface import SkinnedSurface
+
+
+GAMMA = 2.0
+"""Gamma of the plain kernel."""
 
 
 @dataclass(frozen=True)
@@ -101,10 +114,18 @@ class SurfaceRenderer:
         self.view = _surface_view(surface, visuals, textures)
         self.overlay: Callable[[wp.array], None] | None = None
         """Called with the camera poses once the wall's radiance is there, to put more into it before the exposure."""
-        self.lighting = _lighting(optics, pixel_angle(width, height, optics.field_of_view) / samples**0.5)
+        self.soil: Callable[[wp.array, wp.array], None] | None = None
+        """Called before that with the camera poses and the worlds drawn, to lay stool and fluid on the wall."""
+        self._smeared: wp.array | None = None
+        self._pixel_angle = pixel_angle(width, height, optics.field_of_view)
+        self.lighting = _lighting(optics, self._pixel_angle / samples**0.5)
 
-    def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array) -> None:
-        """Draw the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform."""
+    def draw(self, poses: wp.array, looks: WorldLooks, drawn: wp.array, motion: wp.array | None = None) -> None:
+        """Draw the worlds marked in `drawn` (num_envs,), bool, from the camera poses (num_envs,), transform.
+
+        `motion` (num_envs,), spatial_vector, is the velocity [m/s] and spin [rad/s] of the camera in its own frame, by
+        which a picture with a shutter is blurred; None draws it sharp.
+        """
         wp.launch(
             find_covered,
             self.shape[0],
@@ -113,7 +134,7 @@ class SurfaceRenderer:
             device=self.device,
         )
         wp.launch(
-            cast_rays,
+            cast_rays if self.optics.lighting.concentration is None else cast_rays_measured,
             self.shape,
             inputs=[
                 self.view,
@@ -129,25 +150,42 @@ class SurfaceRenderer:
             outputs=[self.radiance, self.depth],
             device=self.device,
         )
+        if self.soil is not None:
+            self.soil(poses, drawn)
         if self.overlay is not None:
             self.overlay(poses)
         self._expose(poses, drawn)
+        radiance = self.radiance if motion is None else self._smear(motion, drawn)
         wp.launch(
-            develop,
+            develop if self.optics.exposure.gamma == GAMMA else develop_gamma,
             self.shape,
             inputs=[
-                self.radiance,
+                radiance,
                 self.gain,
                 looks.light_gain,
                 looks.color_gain,
                 self.rays,
                 self.optics.exposure.vignette,
                 self.optics.exposure.contrast,
+                self.optics.exposure.gamma,
                 drawn,
             ],
             outputs=[self.rgb],
             device=self.device,
         )
+
+    def _smear(self, motion: wp.array, drawn: wp.array) -> wp.array:
+        """Return the radiance that the open shutter collects of a picture with a camera that moves."""
+        cfg = self.optics.exposure
+        if cfg.shutter is None:
+            return self.radiance
+        if self._smeared is None:
+            self._smeared = wp.zeros_like(self.radiance)
+        shutter = wp.vec3(*cfg.shutter, cfg.longest_gain)
+        seen = [self.radiance, self.depth, self.rays, self.covered]
+        inputs = [*seen, motion, self.gain, shutter, 1.0 / self._pixel_angle, drawn]
+        wp.launch(smear, self.shape, inputs=inputs, outputs=[self._smeared], device=self.device)
+        return self._smeared
 
     def _expose(self, poses: wp.array, drawn: wp.array) -> None:
         """Find the gain of every world."""
@@ -201,6 +239,7 @@ def _lighting(optics: Optics, angle: float) -> Lighting:
     lighting.wrap = wp.vec3(*cfg.wrap)
     for name in ("beam", "scatter", "bump", "film", "gloss"):
         setattr(lighting, name, getattr(cfg, name))
+    lighting.concentration = cfg.concentration or 0.0
     lighting.roughness_sq = cfg.roughness**2
     lighting.min_distance_sq = cfg.min_distance**2
     lighting.pixel_angle = angle

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import torch
@@ -89,6 +89,9 @@ class Simulation:
         self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=self.device)
         self._graph: wp.Graph | None = None
         self._eager_steps = 0
+        self.watchers: list[Callable[[int, int], None]] = []
+        """Called before each physics step of :meth:`step` with how many are left, this one counted, and how many there
+        are in all: for sensors that look between control steps. Launches only."""
         colon.bind(self)
         endoscope.bind(self)
         self.forward()
@@ -200,7 +203,9 @@ class Simulation:
         self.wall_readout.clear()
         if self.gas is not None:
             self.gas.clear()
-        for _ in range(n):
+        for left in range(n, 0, -1):
+            for watch in self.watchers:
+                watch(left, n)
             self._step_once()
         for array in averages:
             wp.to_torch(array).mul_(1.0 / n)

@@ -6,12 +6,18 @@ from __future__ import annotations
 
 from typing import Any
 
+from arcgym.envs import mdp
+from arcgym.managers import EventTermCfg
 from arcgym.utils.validation import FieldError
 
-ALL = "all"
-"""Name for every effect."""
-EFFECTS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen", "mesentery")
+PHYSICS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen", "mesentery")
+"""Effects on what is simulated."""
+CAMERA = ("latency", "exposure", "light", "preparation")
+"""Effects on what the camera sees."""
+EFFECTS = (*PHYSICS, *CAMERA)
 """Names of the effects."""
+GROUPS = {"all": EFFECTS, "camera": CAMERA}
+"""Names that stand for several effects."""
 
 STIFFENING = 1.5
 """Factor of stiffening that goes with the modulus of the tissue ``clinical``."""
@@ -21,11 +27,24 @@ PLAY, LAG = 0.26, 0.05
 """Play of the wheels [rad] and lag of the bending section [s]; choices, see ``BendingDriveCfg``."""
 FRICTION, STATIC_FRICTION = 0.12, 1.4
 """Friction on human mucosa (Watanabe 2024), and that at rest over it (a choice)."""
+LATENCY = 0.08
+"""Age of a picture when it is seen [s]; of robots' video chains 62 ms were measured, and 147 through a computer."""
+SHUTTER, EXPOSURE_LAG = (1.0 / 200.0, 1.0 / 60.0), 0.6
+"""Shortest and longest exposure [s] of a picture at 50 to 60 Hz, and share of the last gain that is kept in 0.1 s;
+choices."""
+CONCENTRATION, GAMMA = 2.77, 2.2
+"""Fall-off of a colonoscope's light with the angle, and its camera's gamma (EndoMapper's calibration of one scope)."""
+LAMP = (0.0011, 0.0, 0.0036)
+"""Middle of that light, 1.1 mm beside and 3.6 mm behind the camera's center, in the camera's frame [m]; to which side
+is a choice."""
+SCORES = (2, 3, 3)
+"""Boston bowel preparation scores where none are drawn: right, transverse and left colon; a choice."""
 
 
 def chosen(names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the effects that some names stand for."""
-    return EFFECTS if ALL in names else tuple(names)
+    meant = {effect for name in names for effect in GROUPS.get(name, (name,))}
+    return tuple(effect for effect in EFFECTS if effect in meant)
 
 
 def check(cfg: Any) -> None:
@@ -39,7 +58,7 @@ def check(cfg: Any) -> None:
         raise FieldError(
             cfg, "clinical", f"is {list(cfg.clinical)}, which needs env.scene.colon.wall_model=shell; it is 'solid'."
         )
-    if on - {"scope"} and cfg.sim.solver != "two_level":
+    if on & set(PHYSICS) - {"scope"} and cfg.sim.solver != "two_level":
         raise FieldError(cfg, "clinical", f"is {list(cfg.clinical)}, which needs env.sim.solver=two_level.")
 
 
@@ -52,7 +71,8 @@ def make_clinical(cfg: Any) -> None:
         cfg: :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg`.
     """
     for name in chosen(cfg.clinical):
-        _SWITCHES[name](cfg)
+        if name not in CAMERA or getattr(cfg.scene, "camera", None) is not None:
+            _SWITCHES[name](cfg)
 
 
 def _tissue(cfg: Any) -> None:
@@ -100,6 +120,30 @@ def _mesentery(cfg: Any) -> None:
     cfg.scene.colon.mesentery.enabled = True
 
 
+def _latency(cfg: Any) -> None:
+    _where_default(cfg.scene.camera, "latency", 0.0, LATENCY)
+
+
+def _exposure(cfg: Any) -> None:
+    exposure = cfg.scene.camera.exposure
+    _where_default(exposure, "shutter", None, SHUTTER)
+    _where_default(exposure, "lag", 0.0, EXPOSURE_LAG)
+
+
+def _light(cfg: Any) -> None:
+    """Take a measured light and camera response, in which vignette and contrast are contained already."""
+    lighting, exposure = cfg.scene.camera.lighting, cfg.scene.camera.exposure
+    _where_default(lighting, "concentration", None, CONCENTRATION)
+    _where_default(lighting, "lamp", None, LAMP)
+    for name, value in {"gamma": GAMMA, "vignette": 0.0, "contrast": 0.0}.items():
+        _where_default(exposure, name, getattr(type(exposure)(), name), value)
+
+
+def _preparation(cfg: Any) -> None:
+    _where_default(cfg.scene.camera.preparation, "scores", None, SCORES)
+    _where_default(cfg.events, "preparation", None, EventTermCfg(func=mdp.randomize_preparation, mode="reset"))
+
+
 def _where_default(cfg: Any, name: str, shipped: Any, value: Any) -> None:
     if getattr(cfg, name) == shipped:
         setattr(cfg, name, value)
@@ -114,4 +158,8 @@ _SWITCHES = {
     "friction": _friction,
     "abdomen": _abdomen,
     "mesentery": _mesentery,
+    "latency": _latency,
+    "exposure": _exposure,
+    "light": _light,
+    "preparation": _preparation,
 }

@@ -104,6 +104,8 @@ class EventsCfg:
     texture = EventTerm(func=mdp.randomize_texture, mode="reset")
     stiffness = EventTerm(func=mdp.randomize_tissue_stiffness, mode="reset", params={"scale": (0.7, 1.4)})
     friction = EventTerm(func=mdp.randomize_friction, mode="reset", params={"friction": (0.05, 0.15)})
+    preparation: EventTerm | None = None
+    """Off unless ``env.clinical`` has ``preparation``: how clean the colon is, drawn for every episode."""
 
 
 @configclass
@@ -237,8 +239,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     clinical: tuple[str, ...] = ()
     """Effects of a living colon and a used scope to switch on: ``[all]``, or some of ``tissue``, ``relaxation``,
-    ``gas``, ``weight``, ``scope``, ``friction``, ``abdomen`` and ``mesentery``; see docs/physics.md, Clinical. None in
-    every benchmark."""
+    ``gas``, ``weight``, ``scope``, ``friction``, ``abdomen``, ``mesentery``, and of the camera's, together ``camera``,
+    ``latency``, ``exposure``, ``light`` and ``preparation``; see docs/physics.md, Clinical. None in every benchmark."""
 
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""
@@ -286,7 +288,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         require(self, "reward", ("shaped", "paper", *ABLATED))
         require(self, "extra_observations", tuple(EXTRA_OBSERVATIONS))
         require(self, "robustness", (NONE, *VARIANTS))
-        require(self, "clinical", (clinical.ALL, *clinical.EFFECTS))
+        require(self, "clinical", (*clinical.GROUPS, *clinical.EFFECTS))
         clinical.check(self)
         check_gas(self)
         check_hand(self)

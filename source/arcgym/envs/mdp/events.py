@@ -30,6 +30,7 @@ __all__ = [
     "randomize_friction",
     "randomize_light",
     "randomize_patient",
+    "randomize_preparation",
     "randomize_rigidity",
     "randomize_texture",
     "randomize_tissue",
@@ -144,6 +145,28 @@ def randomize_color(env: ManagerBasedEnv, env_ids: torch.Tensor, gain: tuple[flo
 def randomize_texture(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
     """Shift the mucosa texture by a uniform offset in both directions, so that vessels are no landmarks."""
     env.scene["camera"].write_texture_offset(env.random.uniform("texture", 2, env_ids=env_ids), env_ids)
+
+
+def randomize_preparation(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, shares: tuple[float, float, float] = (0.1, 0.2, 0.7)
+) -> None:
+    """Draw how clean the colon is: Boston bowel preparation scores of right, transverse and left colon.
+
+    The sum of the three is 5, 6, or evenly 7, 8 or 9, and is shared out as evenly as it can be, the rest at random.
+    Where what is left lies is drawn anew. Of 2352 adequate preparations 22 % scored 6 and 78 % 7 to 9; that a tenth is
+    less is an estimate.
+
+    Args:
+        shares: Share of worlds with a sum of 5, of 6 and of 7 to 9; they sum up to one.
+    """
+    low, middle, high = shares
+    draw = env.random.uniform("preparation", 5, env_ids=env_ids)
+    above = (draw[:, 0] - low - middle).clamp(min=0.0) / max(high, 1.0e-9)
+    good = 7 + (3.0 * above).long().clamp(max=2)
+    total = torch.where(draw[:, 0] < low, 5, torch.where(draw[:, 0] < low + middle, 6, good))
+    rank = draw[:, 1:4].argsort(dim=1).argsort(dim=1)
+    scores = total[:, None] // 3 + (rank < total[:, None] % 3)
+    env.scene["camera"].write_preparation(scores, (draw[:, 4] * 2**24).int(), env_ids)
 
 
 @expects(scale=POSITIVE, factor=POSITIVE)

@@ -43,7 +43,7 @@ class PostStepImagesRecorder(RecorderTerm):
 
     def record_post_step(self) -> Record:
         """Return the pictures of the state after the step."""
-        images = self._truth.draw(self._env.scene["endoscope"].camera_pose_wp)
+        images = self._truth.draw(self._env.scene[self.cfg.camera].poses_wp)
         values = {
             "rgb": images["rgb"],
             "depth": (images["depth"] / DEPTH_UNIT).round().clamp(0, 65535).to(torch.uint16),
