@@ -92,6 +92,7 @@ def test_what_the_parts_changed_is_known_of_the_whole(tmp_path: Path, capsys) ->
     ("changes", "message"),
     [
         ({"seed": 5}, "another patient, seed or group"),
+        ({"task": "ARC-Rectum-Magnetic:easy"}, "ARC-Rectum-Magnetic:easy is no task of the suite"),
         ({"end": "time_out"}, "says success 1 and end 'time_out'"),
         ({"progress": 0.5}, "succeeded with a progress of 0.5"),
         ({"trial": 1}, "is there twice"),

@@ -169,8 +169,11 @@ def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:
 
 
 def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
-    robots = {split_task(row["task"])[0].split("-")[-1] for row in rows if "task" in row}
-    found = []
+    """Return a problem for each task that is not the suite's, or that lacks trials."""
+    named = {row["task"] for row in rows if "task" in row}
+    robots = {split_task(task)[0].split("-")[-1] for task in named}
+    others = sorted(named - {task for robot in robots for task in suite.tasks(robot)})
+    found = [f"{task} is no task of the suite" for task in others]
     for robot in sorted(robots):
         for task in suite.tasks(robot):
             done = {row["trial"] for row in rows if row["task"] == task}
