@@ -45,12 +45,12 @@ def without_small_bowel(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray,
         nodes: Path from the anus, shape (n,).
 
     Returns:
-        The path, and the tail if there was one.
+        The path, and the tail if there was one; what is shorter than its lumen's radius is none.
     """
     points, clearance = tree.points[nodes], tree.clearance[nodes]
     arc, radius = arc_lengths(points), caliber(clearance, points)
     start = thin_tail(arc, radius, SETTINGS.tail_share, SETTINGS.tail_radius)
-    if start is None or arc[start] < (1.0 - ATTACHED.largest_cut) * arc[-1]:
+    if start is None or arc[start] < (1.0 - ATTACHED.largest_cut) * arc[-1] or arc[-1] - arc[start] < radius[start]:
         return nodes, []
     kept = nodes[: start + 1]
     stub = _other_end(tree, kept, nodes[start:], radius)
@@ -62,7 +62,7 @@ def without_small_bowel(tree: LumenTree, nodes: np.ndarray) -> tuple[np.ndarray,
 
 
 def _other_end(tree: LumenTree, kept: np.ndarray, cut: np.ndarray, radius: np.ndarray) -> np.ndarray | None:
-    """Return the path to the tip that leaves the kept path near its end and is as wide, if there is one."""
+    """Return the path to the tip that leaves the kept path near its end and is as wide to its end, if there is one."""
     removed, farthest = set(cut[1:].tolist()), 0.0
     arc = arc_lengths(tree.points[kept])
     wide = float(radius[: len(kept)][arc > arc[-1] - ATTACHED.look_back].max())
@@ -76,6 +76,15 @@ def _other_end(tree: LumenTree, kept: np.ndarray, cut: np.ndarray, radius: np.nd
         if arc[leaves] < arc[-1] - SETTINGS.pole_reach or not len(beyond):
             continue
         length = arc[leaves] + float(tree.step[beyond].sum())
-        if tree.clearance[beyond].max() >= SETTINGS.pole_share * wide and length > farthest:
+        if tree.clearance[beyond].max() < SETTINGS.pole_share * wide or length <= farthest:
+            continue
+        if not _ends_in_small_bowel(tree, nodes):
             best, farthest = nodes, length
     return best
+
+
+def _ends_in_small_bowel(tree: LumenTree, nodes: np.ndarray) -> bool:
+    points = tree.points[nodes]
+    arc, radius = arc_lengths(points), caliber(tree.clearance[nodes], points)
+    start = thin_tail(arc, radius, SETTINGS.tail_share, SETTINGS.tail_radius)
+    return start is not None and is_long(arc[-1] - arc[start], float(np.median(radius[start:])))
