@@ -40,7 +40,7 @@ class PushExpert(ExpertBase):
         "gain": (0.1, 0.5),
         "largest": (1.5, LARGEST_BENDING),
         "jiggle": (0.0, 0.03),
-        "twist": (0.0, 2.0),
+        "twist": (0.0, 9.0),
         "least_pace": (0.15, 0.8),
         "patience": (25.0, 120.0),
         "slack": (0.04, 0.4),
@@ -72,7 +72,8 @@ class PushExpert(ExpertBase):
             gain: Share of the angle to it by which the command changes each step.
             largest: Largest bending commanded [rad].
             jiggle: Amplitude of a to and fro of the shaft while it is pushed [m/s].
-            twist: Amplitude of turning the shaft to and fro [rad/s]: a shaft that turns slides with less friction.
+            twist: Amplitude of turning the shaft to and fro [rad/s]: a shaft that turns slides with less friction along
+                its way. 8 rad/s, 150 degrees to either side, frees scopes that 43 N do not move (docs/benchmarks.md).
             least_pace: Share of the speed at which it is pushed where the way is off to a side.
             patience: Control steps without progress after which it withdraws: until then the push grows.
             slack: Length of scope that may go into loops, beyond where it lay straightest, before it is pulled back to
