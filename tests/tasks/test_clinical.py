@@ -65,6 +65,13 @@ def test_a_group_of_them() -> None:
     assert switches(configured("env.clinical=[camera]")) == [name in CAMERA for name in EFFECTS]
 
 
+def test_a_replay_which_has_no_events_takes_all() -> None:
+    cfg = load_cfg_from_registry("ARC-Sigmoid-Proximal", "env_cfg_entry_point")
+    cfg.events, cfg.clinical = None, ("all",)
+    make_clinical(cfg)
+    assert cfg.scene.camera.preparation.scores == (2, 3, 3)
+
+
 def test_again_it_changes_nothing_more() -> None:
     cfg = configured(ALL)
     before = to_plain(cfg)

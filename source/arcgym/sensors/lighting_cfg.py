@@ -99,7 +99,7 @@ class ExposureCfg:
     """Shortest and longest time that a picture collects light [s], over which what moves is blurred; None, the default,
     for sharp pictures. The time is the longest at :attr:`longest_gain` and falls with the gain: shorter near a wall."""
 
-    longest_gain: float = 1.2e-3
+    longest_gain: float = 5.0e-4
     """Gain from which on the shutter is open longest. Raise it for shorter times, such as with a brighter lamp."""
 
     def validate_config(self) -> None:

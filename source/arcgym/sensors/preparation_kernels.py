@@ -15,9 +15,9 @@ CELL = wp.constant(0.02)
 """Cell of space in which a lump of stool may lie [m]."""
 MUCOSA = wp.constant(0.26)
 """Luminance of the mean mucosa, linear: what is darker or brighter is lit less or more."""
-STOOL = wp.constant(wp.vec3(0.22, 0.11, 0.025))
+STOOL = wp.constant(wp.vec3(0.16, 0.075, 0.02))
 """Linear albedo of stool; a choice."""
-MURK = wp.constant(wp.vec3(0.34, 0.17, 0.04))
+MURK = wp.constant(wp.vec3(0.30, 0.15, 0.04))
 """Linear albedo of turbid fluid; a choice."""
 SHORE = wp.constant(0.06)
 """Width of the edge of a puddle, in the cosine of the wall's slope."""

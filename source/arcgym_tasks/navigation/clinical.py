@@ -141,7 +141,8 @@ def _light(cfg: Any) -> None:
 
 def _preparation(cfg: Any) -> None:
     _where_default(cfg.scene.camera.preparation, "scores", None, SCORES)
-    _where_default(cfg.events, "preparation", None, EventTermCfg(func=mdp.randomize_preparation, mode="reset"))
+    if cfg.events is not None:  # a replay has none
+        _where_default(cfg.events, "preparation", None, EventTermCfg(func=mdp.randomize_preparation, mode="reset"))
 
 
 def _where_default(cfg: Any, name: str, shipped: Any, value: Any) -> None:
