@@ -23,6 +23,7 @@ QUICK = [
     "abdomen_stop",
     "hand_dent,hand_push",
     "mesentery_swing,mesentery_strain",
+    "loop_friction",
     "stiffening_hoop",
     "thickness_hoop",
     "relaxation_quick,relaxation_slow",

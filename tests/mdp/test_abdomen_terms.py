@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 import torch
 
@@ -55,6 +57,14 @@ def test_every_world_may_have_sheets_of_its_own(env) -> None:
     values, _ = env.scene["colon"].commands["mesentery"]
     assert set(values) == {"fullness"} and values["fullness"].shape == (2,)
     assert ((values["fullness"] >= 1.2) & (values["fullness"] <= 1.3)).all()
+
+
+def test_every_world_may_have_a_friction_of_its_own(env) -> None:
+    drawn: dict[str, torch.Tensor] = {}
+    env.sim = SimpleNamespace(write_loop_friction=lambda friction, env_ids: drawn.update(value=friction, ids=env_ids))
+    mdp.randomize_loop_friction(env, torch.tensor([1]))
+    friction, worlds = drawn["value"], drawn["ids"]
+    assert 0.034 <= friction.item() <= 0.078 and worlds.tolist() == [1]
 
 
 def test_a_task_has_a_hand_where_it_is_asked_for() -> None:

@@ -4,75 +4,20 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
 import torch
 import warp as wp
-from tiny import tiny_colon_stage
-from tiny_sim import TinySim
+from hairpin import COLON, LOWER, UPPER, HairpinSim, draw_together, of_rings, step_wall, two_tubes
 
-from arcgym.anatomy import write_colon
 from arcgym.sim import Simulation, WallSolverCfg
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import own_patients
-
-LIMB, WIDTH, RADIUS = 0.09, 0.04, 0.012
-"""Length of each limb, their distance and the radius of the lumen [m]."""
-COLON = {
-    "youngs_modulus": 1.0e5,
-    "anchor_stiffness": dict.fromkeys(("rectum", "sigmoid", "descending", "splenic", "transverse"), 4.0e3),
-}
-"""Soft, and held with 4000 N/m^2: by 50 N/m for each ring of 12 mm."""
-LOWER, UPPER = (4, 5, 6), (14, 15, 16)
-"""Rings of the two limbs, of 21; rings 7 to 13 make the turn."""
-
-
-class HairpinSim(TinySim):
-    """Simulations in a tube that runs up along Z, turns towards +Y and comes down again."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        stage = tiny_colon_stage(
-            length=2.0 * LIMB + 0.5 * math.pi * WIDTH, radius=RADIUS, rings=21, texture_folder=folder
-        )
-        wall = replace(stage.wall, points=hairpin(stage.wall.points))
-        self.colon_path = write_colon(replace(stage, wall=wall), folder / "colon.usda")
-
-
-def hairpin(points: np.ndarray) -> np.ndarray:
-    """Bend points beside the Z axis, shape (V, 3)."""
-    x, y, s = points.T
-    turn = np.clip((s - LIMB) / (0.5 * WIDTH), 0.0, math.pi)
-    ahead = np.minimum(s - LIMB, 0.0) + np.maximum(s - LIMB - 0.5 * math.pi * WIDTH, 0.0)
-    across = 0.5 * WIDTH * (1.0 - np.cos(turn)) + y * np.cos(turn)
-    along = LIMB + 0.5 * WIDTH * np.sin(turn) - y * np.sin(turn) + ahead * np.cos(turn)
-    return np.stack([x, across, along], axis=1).astype(np.float32)
 
 
 @pytest.fixture(scope="module")
 def sim_in(tmp_path_factory: pytest.TempPathFactory) -> HairpinSim:
     return HairpinSim(tmp_path_factory.mktemp("hairpin"))
-
-
-def of_rings(sim: Simulation, rings: tuple[int, ...]) -> torch.Tensor:
-    return torch.from_numpy(np.isin(sim.colon.wall.ring, rings))
-
-
-def step_wall(sim: Simulation, steps: int) -> None:
-    """Advance the wall without a scope in it."""
-    for _ in range(steps):
-        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, sim.state.body_q, sim.state.body_q)
-
-
-def draw_together(sim: Simulation, way: float) -> None:
-    """Move the places that the limbs' anchors pull to by ``way`` [m] towards each other."""
-    rest = wp.to_torch(sim.wall.nodes.anchors.rest)[:, 0]
-    rest[of_rings(sim, LOWER), 1] += way
-    rest[of_rings(sim, UPPER), 1] -= way
 
 
 def distance_of_limbs(sim: Simulation) -> float:
@@ -108,14 +53,6 @@ def test_action_is_reaction(sim_in: HairpinSim) -> None:
     lower, upper = (force[of_rings(sim, rings).numpy(), 1].sum() for rings in (range(10), range(11, 21)))
     assert lower < -0.2 < 0.2 < upper
     assert np.abs(force.sum(axis=0)).max() < 1.0e-4 * upper
-
-
-def two_tubes(distance: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return points and rings of a tube of 20 mm radius up and one down beside it, 8 rings of 12 vertices each."""
-    angle = np.arange(12) * np.pi / 6.0
-    ring = 0.02 * np.stack([np.cos(angle), np.sin(angle), np.zeros(12)], axis=1)
-    centers = [[side * distance, 0.0, z] for side, way in ((0, 1), (1, -1)) for z in 0.0125 * np.arange(8)[::way]]
-    return (np.array(centers)[:, None] + ring).reshape(-1, 3), np.repeat(np.arange(16), 12)
 
 
 def test_rings_that_overlap_at_rest_push_only_when_closer() -> None:

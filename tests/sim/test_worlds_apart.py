@@ -14,7 +14,7 @@ import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.assets import AbdomenCfg, GasCfg, GradingCfg, MesenteryCfg, WallLawCfg
-from arcgym.sim import Simulation, WeightCfg
+from arcgym.sim import LoopFrictionCfg, Simulation, WeightCfg
 
 DEVICES = ["cpu", pytest.param("cuda:0", marks=pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA"))]
 STEPS = 10
@@ -29,7 +29,15 @@ def three(tiny: TinySim, effects: bool, **cfg: Any) -> Simulation:
     colon = {"youngs_modulus": 5.0e5, "gas": GasCfg(enabled=True), "wall_law": law}
     colon["mesentery"] = MesenteryCfg(enabled=True, height={"sigmoid": 0.03})
     colon["abdomen"] = AbdomenCfg(enabled=True, gap=0.0, hand_place=(0.0, 0.0))
-    return tiny(links=10, num_envs=3, colon=colon, scope=scope, weight=WeightCfg(enabled=True), **cfg)
+    return tiny(
+        links=10,
+        num_envs=3,
+        colon=colon,
+        scope=scope,
+        weight=WeightCfg(enabled=True),
+        loops=LoopFrictionCfg(enabled=True),
+        **cfg,
+    )
 
 
 def pushed(tiny: TinySim, effects: bool) -> Simulation:

@@ -4,6 +4,7 @@
 
 from typing import TYPE_CHECKING
 
+from arcgym.sim.loop_friction_cfg import LoopFrictionCfg
 from arcgym.sim.simulation_cfg import ContactCfg, SimulationCfg, WallSolverCfg
 from arcgym.sim.weight_cfg import WeightCfg
 from arcgym.utils.lazy import lazy_names
@@ -18,6 +19,15 @@ _LAZY = {
     "SnapshotSet": "arcgym.sim.snapshot",
 }
 
-__all__ = ["ContactCfg", "Simulation", "SimulationCfg", "Snapshot", "SnapshotSet", "WallSolverCfg", "WeightCfg"]
+__all__ = [
+    "ContactCfg",
+    "LoopFrictionCfg",
+    "Simulation",
+    "SimulationCfg",
+    "Snapshot",
+    "SnapshotSet",
+    "WallSolverCfg",
+    "WeightCfg",
+]
 
 __getattr__ = lazy_names(__name__, _LAZY)

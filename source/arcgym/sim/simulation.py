@@ -300,6 +300,17 @@ class Simulation:
         array = wp.to_torch(self.actuation.gravity)
         array[self._worlds(env_ids)] = gravity.to(array)
 
+    def write_loop_friction(self, friction: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
+        """Set the coefficient of friction between loops of the colon, shape (n,), of the worlds (all by default).
+
+        Raises:
+            ValueError: If loops do not rub.
+        """
+        if self.surroundings is None or self.surroundings.friction is None:
+            raise ValueError("Loops do not rub on each other: set env.sim.loops.enabled=true.")
+        array = wp.to_torch(self.surroundings.friction.friction)
+        array[self._worlds(env_ids)] = friction.to(array)
+
     def write_state(
         self, arrays: Mapping[str, torch.Tensor], env_ids: Sequence[int] | torch.Tensor | None = None
     ) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from typing import Literal
 
+from arcgym.sim.loop_friction_cfg import LoopFrictionCfg
 from arcgym.sim.weight_cfg import WeightCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import (
@@ -158,6 +159,8 @@ class SimulationCfg:
     """Factor on the scope's real link masses. Inertia hardly matters at 50 mm/s; heavier links damp contact noise."""
     weight: WeightCfg = WeightCfg()
     """Weight of scope, wall and contents along the patient's posture; off by default."""
+    loops: LoopFrictionCfg = LoopFrictionCfg()
+    """Friction where loops of the colon touch; off by default."""
     contact: ContactCfg = ContactCfg()
     """Contact law and search."""
     wall: WallSolverCfg = WallSolverCfg()
@@ -181,6 +184,12 @@ class SimulationCfg:
         if self.weight.enabled and any(self.gravity):
             raise FieldError(
                 self, "gravity", f"is {self.gravity}, expected zeros with weight.enabled=true, whose posture says it."
+            )
+        if self.loops.enabled and not self.wall.self_contact:
+            raise FieldError(
+                self,
+                "loops.enabled",
+                "is true, which needs sim.wall.self_contact=true: loops that pass through each other do not rub.",
             )
         if not re.fullmatch(r"cpu|cuda(:\d+)?", self.device):
             raise FieldError(self, "device", f"is {self.device!r}, expected 'cpu', 'cuda' or 'cuda:<number>'.")

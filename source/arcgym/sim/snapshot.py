@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from arcgym.sim.contact.loop_friction import LOOPS
 from arcgym.sim.wall.abdomen import ABDOMEN
 from arcgym.sim.wall.lumen_gas import GAS
 from arcgym.sim.wall.tissue_shell import RELAXATION
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
 
 
-OPTIONAL = (GAS, RELAXATION, ABDOMEN)
+OPTIONAL = (GAS, RELAXATION, ABDOMEN, LOOPS)
 """Begin the names of arrays that stored states may lack or have too many; zeros stand for those that they lack."""
 OPTIONAL_OF_DRIVES = (".play", ".lag")
 """End the names of such arrays."""

@@ -11,6 +11,7 @@ import warp as wp
 
 from arcgym.anatomy.shell import ShellMesh
 from arcgym.assets.wall_law_cfg import WallLawCfg
+from arcgym.sim.contact.loop_friction import LoopFriction
 from arcgym.sim.wall.abdomen import Abdomen
 from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.mesentery import Mesentery
@@ -70,12 +71,13 @@ def _law(sim: Simulation) -> WallLawCfg | None:
 
 def _surroundings(sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes]) -> Surroundings | None:
     cfg, device = sim.colon.cfg, sim.device
-    if not (cfg.abdomen.enabled or cfg.mesentery.enabled):
+    if not (cfg.abdomen.enabled or cfg.mesentery.enabled or sim.cfg.loops.enabled):
         return None
     members = wp.array(modes[0].members, dtype=int, device=device)
     abdomen = _abdomen(sim, walls, members) if cfg.abdomen.enabled else None
     mesentery = _mesentery(sim, members) if cfg.mesentery.enabled else None
-    return Surroundings(walls[0].ring, members, sim.num_envs, device, abdomen, mesentery)
+    friction = _friction(sim) if sim.cfg.loops.enabled else None
+    return Surroundings(walls[0].ring, members, sim.num_envs, device, abdomen, mesentery, friction)
 
 
 def _abdomen(sim: Simulation, walls: Sequence[WallParameters], members: wp.array) -> Abdomen:
@@ -89,3 +91,8 @@ def _mesentery(sim: Simulation, members: wp.array) -> Mesentery:
     sim.require_two_level("has no mesenteries", "set env.scene.colon.mesentery.enabled=false")
     meshes = [patient.wall for patient in sim.colon.patients]
     return Mesentery(sim.colon.cfg.mesentery, meshes, members, sim.patient, sim.device)
+
+
+def _friction(sim: Simulation) -> LoopFriction:
+    sim.require_two_level("has loops that pass through each other", "set env.sim.loops.enabled=false")
+    return LoopFriction(sim.cfg.loops, sim.colon.num_rings, sim.num_envs, sim.device)

@@ -24,7 +24,7 @@ NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "gas", "expert", "devi
 """Fields of configurations that change no state, or whose content is hashed instead of their name. States are made
 without gas: at the pressure at which it was imaged, gas does nothing to a wall."""
 
-EFFECTS = ("wall_law", "weight", "grading", "abdomen", "mesentery")
+EFFECTS = ("wall_law", "weight", "grading", "abdomen", "mesentery", "loops")
 """Fields that change no state while they are not ``active``."""
 OF_DRIVES = ("play", "lag")
 """Fields of drives that change no state while they are zero."""

@@ -10,7 +10,7 @@ from arcgym.envs import mdp
 from arcgym.managers import EventTermCfg
 from arcgym.utils.validation import FieldError
 
-PHYSICS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen", "mesentery")
+PHYSICS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen", "mesentery", "loops")
 """Effects on what is simulated."""
 CAMERA = ("latency", "exposure", "light", "preparation")
 """Effects on what the camera sees."""
@@ -120,6 +120,10 @@ def _mesentery(cfg: Any) -> None:
     cfg.scene.colon.mesentery.enabled = True
 
 
+def _loops(cfg: Any) -> None:
+    cfg.sim.loops.enabled = True
+
+
 def _latency(cfg: Any) -> None:
     _where_default(cfg.scene.camera, "latency", 0.0, LATENCY)
 
@@ -159,6 +163,7 @@ _SWITCHES = {
     "friction": _friction,
     "abdomen": _abdomen,
     "mesentery": _mesentery,
+    "loops": _loops,
     "latency": _latency,
     "exposure": _exposure,
     "light": _light,

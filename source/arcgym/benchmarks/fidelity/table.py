@@ -46,6 +46,7 @@ TABLE: tuple[Check, ...] = (
     line("abdomen_stop", "abdomen:stop", quick=True),
     line("hand_dent hand_push", "abdomen:hand", quick=True),
     line("mesentery_swing mesentery_strain", "mesentery:hang", quick=True),
+    line("loop_friction", "loops:slide", quick=True),
     line("indentation_paper", "indentation:indentation", material="paper"),
     line("indentation_in_situ", "indentation:indentation", material="in_situ"),
     line("indentation_solid_paper", "solids:indentation", material="paper"),

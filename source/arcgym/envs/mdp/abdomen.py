@@ -18,7 +18,14 @@ from arcgym.utils.validation import NON_NEGATIVE, Range, expects, require
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
 
-__all__ = ["HandPressureAction", "HandPressureActionCfg", "hand", "randomize_abdomen", "randomize_mesentery"]
+__all__ = [
+    "HandPressureAction",
+    "HandPressureActionCfg",
+    "hand",
+    "randomize_abdomen",
+    "randomize_loop_friction",
+    "randomize_mesentery",
+]
 
 
 class HandPressureAction(VelocityAction):
@@ -126,6 +133,19 @@ def randomize_mesentery(
     """
     drawn = _uniform(env, env_ids, "mesentery", fullness=fullness, stiffness=stiffness)
     env.scene["colon"].write_mesentery_to_sim(**drawn, env_ids=env_ids)
+
+
+@expects(friction=NON_NEGATIVE)
+def randomize_loop_friction(
+    env: ManagerBasedEnv, env_ids: torch.Tensor, friction: tuple[float, float] = (0.034, 0.078)
+) -> None:
+    """Give each world a friction between loops, uniform between bounds; needs ``env.sim.loops.enabled=true``.
+
+    Args:
+        friction: Least and largest Coulomb coefficient; the default is the range of rats' abdominal walls.
+    """
+    drawn = _uniform(env, env_ids, "loops", friction=friction)
+    env.sim.write_loop_friction(**drawn, env_ids=env_ids)
 
 
 def _uniform(

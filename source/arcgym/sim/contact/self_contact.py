@@ -28,9 +28,9 @@ MAX_DILATION = 1.25
 class SelfContact:
     """Contact of the wall with itself: keeps loops of the colon from passing through each other.
 
-    Rings push on rings, so contact is as coarse as the rings are long, and there is no friction between loops: the
-    outside of the bowel is wet and smooth. Rings that overlap at rest may go on doing so; folds of one stretch, and a
-    wall gathered on the shaft, do not count.
+    Rings push on rings, so contact is as coarse as the rings are long; friction is
+    :class:`arcgym.sim.contact.loop_friction.LoopFriction`'s. Rings that overlap at rest may go on doing so; folds of
+    one stretch, and a wall gathered on the shaft, do not count.
     """
 
     def __init__(

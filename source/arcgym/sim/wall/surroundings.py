@@ -8,6 +8,8 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sim.contact.loop_friction import LoopFriction
+from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.wall import outer_force_kernels as kernels
 from arcgym.sim.wall.abdomen import Abdomen
 from arcgym.sim.wall.band_kernels import Rings
@@ -28,6 +30,7 @@ class Surroundings:
         device: str,
         abdomen: Abdomen | None = None,
         mesentery: Mesentery | None = None,
+        friction: LoopFriction | None = None,
     ):
         """Allocate.
 
@@ -38,8 +41,10 @@ class Surroundings:
             device: Warp device.
             abdomen: The abdomen, if there is one.
             mesentery: The mesenteries, if they are sheets.
+            friction: Friction between loops, if there is any.
         """
-        self.abdomen, self.mesentery, self._members, self._device = abdomen, mesentery, members, device
+        self.abdomen, self.mesentery, self.friction = abdomen, mesentery, friction
+        self._members, self._device = members, device
         self.force = kernels.OuterForce()
         """Their force on every vertex."""
         self.force.ring = wp.array(ring, dtype=int, device=device)
@@ -50,15 +55,16 @@ class Surroundings:
     @property
     def memory(self) -> dict[str, torch.Tensor]:
         """What their future depends on, by name, as views of shape (W, ...)."""
-        return {} if self.abdomen is None else self.abdomen.memory
+        kept = [part.memory for part in (self.abdomen, self.friction) if part is not None]
+        return {name: value for memory in kept for name, value in memory.items()}
 
     @property
     def settings(self) -> dict[str, torch.Tensor]:
         """What may differ between worlds, by name, shape (W,) each."""
         return {name: value for part in self._parts() for name, value in part.settings.items()}
 
-    def _parts(self) -> list[Abdomen | Mesentery]:
-        return [part for part in (self.abdomen, self.mesentery) if part is not None]
+    def _parts(self) -> list[Abdomen | Mesentery | LoopFriction]:
+        return [part for part in (self.abdomen, self.mesentery, self.friction) if part is not None]
 
     def measure(self, x: wp.array, tissue: Tissue, dt: float) -> None:
         """Measure the forces of a step of ``dt`` [s] at positions ``x`` [m], shape (V, W), vec3."""
@@ -70,8 +76,17 @@ class Surroundings:
         if self.mesentery is not None:
             self.mesentery.measure(x, tissue, self.force)
 
-    def advance(self, dt: float) -> None:
-        """End the step's part that takes no wall: move the hands."""
+    def advance(self, x: wp.array, v: wp.array, contact: SelfContact, dt: float) -> None:
+        """Begin a step of ``dt`` [s], after :meth:`measure`: add friction between loops, and move the hands.
+
+        Args:
+            x: Wall positions [m], shape (V, W), vec3.
+            v: Wall velocities [m/s], shape (V, W), vec3.
+            contact: Contact of the wall with itself, measured at ``x``.
+            dt: Physics step [s].
+        """
+        if self.friction is not None:
+            self.friction.measure(x, v, contact, dt, self.force)
         if self.abdomen is not None:
             self.abdomen.advance(dt)
 

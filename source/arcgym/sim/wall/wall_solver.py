@@ -177,7 +177,7 @@ class WallSolver:
         self.self_contact.measure(x)
         if self.surroundings is not None:
             self.surroundings.measure(x, self.tissue, self.dt)
-            self.surroundings.advance(self.dt)
+            self.surroundings.advance(x, v, self.self_contact, self.dt)
         if self.gas is not None:
             self.gas.begin(self.inertial)
         self._measure(self.inertial)
