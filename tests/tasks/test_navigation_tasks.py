@@ -301,3 +301,9 @@ def test_a_step_forward_earns_more_than_the_best_view_and_waiting_ends_in_failur
     best_view = cfg.rewards.lumen.weight * (mdp.PAPER.weight_centering + mdp.PAPER.weight_visibility) * step
     assert cfg.rewards.progress.weight * 0.04 * step * step > best_view
     assert not cfg.terminations.stuck.time_out
+
+
+def test_events_begin_with_the_patient() -> None:
+    """What follows belongs to the world's patient, and evaluations of several patients put theirs there."""
+    cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+    assert next(iter(vars(cfg.events))) == "patient"

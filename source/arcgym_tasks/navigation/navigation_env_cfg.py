@@ -96,7 +96,8 @@ class TerminationsCfg:
 class EventsCfg:
     """Where an episode starts and what differs from world to world."""
 
-    patient = EventTerm(func=mdp.randomize_patient, mode="reset")
+    patient: EventTerm | None = EventTerm(func=mdp.randomize_patient, mode="reset")
+    """First: what follows belongs to the world's patient. Annotated, as fields with a type come before the others."""
     reset = EventTerm(func=mdp.reset_to_segment_start, mode="reset")
     aim = EventTerm(func=mdp.perturb_tip, mode="reset", params={"std": 0.1})
     light = EventTerm(func=mdp.randomize_light, mode="reset", params={"gain": (0.7, 1.4)})
