@@ -57,6 +57,12 @@ ROWS: tuple[tuple[str, str, str, Callable[[Figures], str]], ...] = (
         lambda f: _number(f["gathered"], 2),
     ),
     (
+        "The same where the tip got furthest",
+        "–",
+        "for insertions that did not arrive",
+        lambda f: _number(f["gathered_at_furthest"], 2),
+    ),
+    (
         "Scope inside in the cecum [cm]",
         "70–90",
         "usual, straight",
@@ -76,6 +82,12 @@ ROWS: tuple[tuple[str, str, str, Callable[[Figures], str]], ...] = (
         lambda f: _shares(f["demands"]),
     ),
     ("The same, shaft looped", "79 %", SHAH, lambda f: _percent(f["demands_looped"])),
+    (
+        "Median push or pull, tip in rectum, sigmoid, ... cecum [N]",
+        "rises",
+        "Korman et al. 2012",
+        lambda f: ", ".join(_number(value, 0) for value in f["push_by_segment"].values()),
+    ),
 )
 """Name, published figure, source, and our figure in words."""
 
