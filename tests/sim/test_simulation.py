@@ -6,8 +6,10 @@ from __future__ import annotations
 
 import pytest
 import torch
+import warp as wp
 from tiny_sim import TinySim
 
+from arcgym.sensors.camera_view import CameraView
 from arcgym.sim import Simulation, SimulationCfg
 from arcgym.utils.configclass import validate
 
@@ -18,6 +20,14 @@ SOFT = {"youngs_modulus": 5.0e5}
 def narrow(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
     """Return a tube of 11 mm radius, in which a bent tip soon meets the wall."""
     return TinySim(tmp_path_factory.mktemp("narrow"), radius=0.011)
+
+
+class SceneOf(dict):
+    """What a camera asks of a scene."""
+
+    def __init__(self, sim: Simulation) -> None:
+        super().__init__(endoscope=sim.endoscope)
+        self.sim, self.num_envs, self.device = sim, sim.num_envs, sim.device
 
 
 def build(narrow: TinySim, num_envs: int = 2, **cfg: object) -> Simulation:
@@ -72,6 +82,19 @@ def test_same_inputs_give_the_same_result(narrow: TinySim) -> None:
     for sim in (first, second):
         drive(sim, [144])
     assert differing(first, second) == []
+
+
+def test_a_camera_looks_between_the_steps_of_a_call_and_changes_none(narrow: TinySim) -> None:
+    """7 ms are three steps of 1/480 s, rounded: what five steps have left, of eight."""
+    seen, plain = build(narrow), build(narrow)
+    view = CameraView(SceneOf(seen), 0.007)
+    drive(seen, [8])
+    drive(plain, [5])
+    late = wp.to_torch(view.shot.pose).clone()
+    assert torch.equal(late, wp.to_torch(plain.endoscope.camera_pose_wp))
+    assert torch.equal(wp.to_torch(view.shot.wall), wp.to_torch(plain.nodal_pos))
+    plain.step(3)
+    assert not differing(seen.world_arrays(), plain.world_arrays())
 
 
 def test_one_call_of_two_steps_equals_two_calls(narrow: TinySim) -> None:
