@@ -233,3 +233,38 @@ def test_snapshot_shows_the_world_asked_for(tmp_path):
 def test_unknown_data_type_names_the_alternatives():
     with pytest.raises(ValueError, match="normals.*depth, rgb"):
         EndoscopeCamera(EndoscopeCameraCfg(data_types=("rgb", "normals")))
+
+
+def test_two_halves_make_one_picture(tmp_path):
+    """The second one: the first is drawn in one thread anyway."""
+    scene = TubeScene(tmp_path)
+    before = torch.get_num_threads()
+    pictures = []
+    try:
+        for threads in (1, 2):
+            torch.set_num_threads(threads)
+            camera = make_camera(scene)
+            camera.update()
+            camera.update()
+            pictures.append(picture(camera))
+    finally:
+        torch.set_num_threads(before)
+    for one, other in zip(*pictures, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_wall_that_stands_still_is_skinned_once(tmp_path, monkeypatch):
+    scene = TubeScene(tmp_path)
+    camera = make_camera(scene)
+    skinned = []
+    monkeypatch.setattr(camera.surface, "update", lambda *args: skinned.append(1))
+    for version, times in ((None, 1), (None, 2), (7, 3), (7, 3), (8, 4)):
+        scene["colon"].wall_version = version
+        camera.update()
+        assert len(skinned) == times
+    skinned.clear()
+    scene["colon"].wall_version = 9
+    camera.update(torch.ones(1, dtype=torch.bool))  # some worlds: the others may show an older version
+    camera.update()
+    camera.update()
+    assert len(skinned) == 2

@@ -111,6 +111,7 @@ class TubeScene(dict):
             patients=(patient,),
             patient_of=lambda env_id: patient,
             patient_wp=wp.zeros(num_envs, dtype=int, device=device),
+            wall_version=None,
             nodal_pos_wp=wp.array(np.repeat(wall.points[:, None], num_envs, axis=1), dtype=wp.vec3, device=device),
         )
         camera = CameraSpec((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), np.radians(150.0), (0.001, 0.6))

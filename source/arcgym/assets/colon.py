@@ -174,6 +174,11 @@ class Colon:
         self.patient_wp: wp.array = sim.patient
         self.data = ColonData(self, sim)
 
+    @property
+    def wall_version(self) -> int | None:
+        """A number that changes where walls that stand still may have been put elsewhere; None for walls that move."""
+        return None if self._sim.wall.moves else self._sim.written_states
+
     def patient_of(self, env_id: int) -> Patient:
         """Return the patient of a world; waits for the device."""
         return self.patients[int(self.data.patient[env_id])]

@@ -74,6 +74,8 @@ class EndoscopeCamera(SensorBase):
         size = (self.cfg.width, self.cfg.height)
         self._visuals = visuals
         self._renderer = SurfaceRenderer(surface, visuals, textures, self._optics(), size, self.cfg.samples)
+        self._skinned: int | None = None
+        """Version of the wall, see :attr:`Colon.wall_version`, that the surface of all worlds shows."""
         self._fine_patient: Patient | None = None
         self._snapshots: dict[tuple[int, int], SurfaceRenderer] = {}
         self._view: CameraView | None = None
@@ -129,7 +131,10 @@ class EndoscopeCamera(SensorBase):
         if self._view is not None:
             self._view.refresh(self._drawn, self._stepped)
         late = None if self._view is None else self._view.shot.wall
-        self._renderer.surface.update(self._colon.nodal_pos_wp if late is None else late, self._drawn)
+        version = None if late is not None else self._colon.wall_version
+        if env_mask is not None or version is None or version != self._skinned:
+            self._renderer.surface.update(self._colon.nodal_pos_wp if late is None else late, self._drawn)
+            self._skinned = version if env_mask is None else None
         self.draw()
 
     def advance(self, dt: float) -> None:

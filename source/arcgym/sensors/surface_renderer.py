@@ -26,6 +26,7 @@ from arcgym.sensors.motion_kernels import smear
 from arcgym.sensors.shading_kernels import Lighting, SurfaceView
 from arcgym.sensors.texture_density import texel_density
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.two_threads import both, cpu_threads
 
 if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
@@ -110,6 +111,7 @@ class SurfaceRenderer:
         self.covered = wp.zeros(surface.num_envs, dtype=wp.bool, device=device)
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
+        self._drawn_before = False
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
         self.view = _surface_view(surface, visuals, textures)
         self.overlay: Callable[[wp.array], None] | None = None
@@ -133,44 +135,66 @@ class SurfaceRenderer:
             outputs=[self.covered],
             device=self.device,
         )
-        wp.launch(
-            cast_rays if self.optics.lighting.concentration is None else cast_rays_measured,
-            self.shape,
-            inputs=[
-                self.view,
-                self.lighting,
-                drawn,
-                poses,
-                self.rays,
-                looks.texture_offset,
-                self.covered,
-                self.optics.near,
-                self.optics.far,
-            ],
-            outputs=[self.radiance, self.depth],
-            device=self.device,
-        )
+        self._in_halves(lambda rows: self._cast(poses, looks, drawn, rows))
         if self.soil is not None:
             self.soil(poses, drawn)
         if self.overlay is not None:
             self.overlay(poses)
         self._expose(poses, drawn)
         radiance = self.radiance if motion is None else self._smear(motion, drawn)
+        self._in_halves(lambda rows: self._develop(radiance, looks, drawn, rows))
+        self._drawn_before = True
+
+    def _in_halves(self, work: Callable[[slice], None]) -> None:
+        """Do ``work`` on the rows of all pictures: on a CPU with two cores, on the upper and the lower ones at once.
+
+        Not with the first picture, which loads the kernels.
+        """
+        device, height = wp.get_device(self.device), self.shape[1]
+        if device.is_cuda or device.is_capturing or cpu_threads() == 1 or not self._drawn_before or height == 1:
+            work(slice(0, height))
+        else:
+            upper, lower = slice(0, height // 2), slice(height // 2, height)
+            both(lambda: work(upper), lambda: work(lower))
+
+    def _cast(self, poses: wp.array, looks: WorldLooks, drawn: wp.array, rows: slice) -> None:
+        num_envs, _, width = self.shape
         wp.launch(
-            develop if self.optics.exposure.gamma == GAMMA else develop_gamma,
-            self.shape,
+            cast_rays if self.optics.lighting.concentration is None else cast_rays_measured,
+            (num_envs, rows.stop - rows.start, width),
             inputs=[
-                radiance,
+                self.view,
+                self.lighting,
+                drawn,
+                poses,
+                self.rays[rows],
+                looks.texture_offset,
+                self.covered,
+                self.optics.near,
+                self.optics.far,
+            ],
+            outputs=[self.radiance[:, rows], self.depth[:, rows]],
+            device=self.device,
+        )
+
+    def _develop(self, radiance: wp.array, looks: WorldLooks, drawn: wp.array, rows: slice) -> None:
+        num_envs, _, width = self.shape
+        exposure = self.optics.exposure
+        wp.launch(
+            develop if exposure.gamma == GAMMA else develop_gamma,
+            (num_envs, rows.stop - rows.start, width),
+            inputs=[
+                radiance[:, rows],
                 self.gain,
                 looks.light_gain,
                 looks.color_gain,
-                self.rays,
-                self.optics.exposure.vignette,
-                self.optics.exposure.contrast,
-                self.optics.exposure.gamma,
+                self.rays[rows],
+                exposure.vignette,
+                exposure.contrast,
+                exposure.gamma,
                 drawn,
             ],
-            outputs=[self.rgb],
+            outputs=[self.rgb[:, rows]],
             device=self.device,
         )
 

@@ -22,6 +22,7 @@ from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.coupling.two_level_coupling import Coupling, TwoLevelCoupling
 from arcgym.sim.patient_walls import patient_walls
+from arcgym.sim.physics_step import PhysicsStep
 from arcgym.sim.scope.actuation import Actuation
 from arcgym.sim.scope.scope_readout import ScopeReadout
 from arcgym.sim.simulation_cfg import SimulationCfg
@@ -87,8 +88,9 @@ class Simulation:
         self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor).fill_(colon.anchor_scale)
         self.rigid: torch.Tensor = wp.to_torch(self.wall.tissue.rigid)
         self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=self.device)
-        self._graph: wp.Graph | None = None
-        self._eager_steps = 0
+        self.written_states = 0
+        """How often states were written so far, see :meth:`forward`."""
+        self._physics = PhysicsStep(self)
         self.watchers: list[Callable[[int, int], None]] = []
         """Called before each physics step of :meth:`step` with how many are left, this one counted, and how many there
         are in all: for sensors that look between control steps. Launches only."""
@@ -121,6 +123,7 @@ class Simulation:
         self.gas: LumenGas | None = effects[0]
         self.surroundings: Surroundings | None = effects[3]
         self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, *effects)
+        self.contact.still = not self.wall.moves
         if isinstance(colon.wall, ShellMesh):
             self.contact.soften(self.wall.tissue.moduli, cfg.contact.tissue_share)
         anchors, scale = [wall.anchor for wall in walls], self.wall.tissue.anchor
@@ -206,7 +209,7 @@ class Simulation:
         for left in range(n, 0, -1):
             for watch in self.watchers:
                 watch(left, n)
-            self._step_once()
+            self._physics.make()
         for array in averages:
             wp.to_torch(array).mul_(1.0 / n)
         self.scope_readout.finish(n)
@@ -214,27 +217,6 @@ class Simulation:
         if self.gas is not None:
             self.gas.finish(n)
         self._read_out(self._all_worlds)
-
-    def _step_once(self) -> None:
-        if self._graph is not None:
-            wp.capture_launch(self._graph)
-            return
-        if not self.cfg.use_graph or self._eager_steps < 2:
-            self._physics_step()
-            self._eager_steps += 1
-            return
-        with wp.ScopedCapture(device=self.device) as capture:
-            self._physics_step()
-        self._graph = capture.graph
-        wp.capture_launch(self._graph)
-
-    def _physics_step(self) -> None:
-        self.coupling.step()
-        self.scope_readout.collect()
-        if self.wall.moves:
-            self.wall_readout.measure(self.nodal_pos)
-            if self.surroundings is not None:
-                self.surroundings.read(self.nodal_pos, self.wall.tissue, self.wall_readout)
 
     def forward(self, env_mask: torch.Tensor | None = None) -> None:
         """Recompute link poses, ring centres, tip and camera after the state was written to.
@@ -244,6 +226,9 @@ class Simulation:
                 last bit, which they would not on a GPU: the same formula may round otherwise in another kernel.
         """
         mask = self._all_worlds if env_mask is None else wp.from_torch(env_mask.contiguous(), dtype=wp.bool)
+        self.written_states += 1
+        if self.contact.still:
+            self.contact.measure_surface(self.nodal_pos)
         self.coupling.forward(mask)
         if self.gas is not None:
             self.gas.fill(self.nodal_pos, mask)

@@ -33,6 +33,7 @@ class RestingScene(dict):
             patients=(patient_of_stage(stage, shell=False),),
             patient_wp=wp.zeros(num_envs, dtype=int, device=device),
             nodal_pos_wp=wp.array(nodes, dtype=wp.vec3, device=device),
+            wall_version=None,
         )
         self["endoscope"] = SimpleNamespace(
             stage=optics, camera_pose_wp=wp.array(poses, dtype=wp.transform, device=device)

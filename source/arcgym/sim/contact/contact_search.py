@@ -64,6 +64,8 @@ class ContactSearch:
             carried: Fine surface of the lumen that is touched in place of the wall's faces.
         """
         self.num_envs, self.device, self.carried = num_envs, device, carried
+        self.still = False
+        """Whether the walls stand still: no contact moves them, and where they are is looked up on request alone."""
         if carried is not None:
             topology, surface_offset = carried.topology, 0.0
         room = (len(radius) + FURTHER_LINKS) * (1 if carried is None else CARRIED_ROOM)
@@ -204,17 +206,26 @@ class ContactSearch:
             x: Wall positions [m], shape (V, W), vec3.
             body_q: Link poses, shape (W*L,), transform.
         """
-        self.update_centers(x)
+        if not self.still:
+            self.update_centers(x)
+            self.measure_surface(x)
         self.track(body_q)
-        self.points = x if self.carried is None else self.carried.update(x)
-        self._find(self.points, body_q)
+        self._find(body_q)
         self._record(x, self.points, body_q)
 
-    def _find(self, points: wp.array, body_q: wp.array) -> None:
+    def measure_surface(self, x: wp.array) -> None:
+        """Find where the faces are at the wall positions ``x`` [m], shape (V, W), vec3.
+
+        Where :attr:`still`, :meth:`detect` leaves it to others to call this and :meth:`update_centers`.
+        """
+        self.points = x if self.carried is None else self.carried.update(x)
+        shape, inputs = (self.ring_count, self.num_envs), [self.points, self.surface]
+        self._launch(lumen_kernels.bound_faces, shape, inputs, [self.bounds])
+
+    def _find(self, body_q: wp.array) -> None:
         """Find the patches near each link."""
         links = (self.num_envs, self.link_count)
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
-        self._launch(lumen_kernels.bound_faces, (self.ring_count, self.num_envs), [points, self.surface], [self.bounds])
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
@@ -238,6 +249,8 @@ class ContactSearch:
         near = [self.links, self.surface, self.candidates.nearest, self.past]
         inputs = [x, points, body_q, *near, self.law, self.moduli]
         self._launch(record_kernels.locate_contacts, of_records, inputs, [records])
+        if self.still:
+            return
         self._launch(list_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
         self._launch(list_kernels.list_rings, (self.num_envs, parts), [parts], [records])
 

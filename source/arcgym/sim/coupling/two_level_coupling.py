@@ -34,8 +34,8 @@ class TwoLevelCoupling:
     Contacts are found once a step. Each scope substep re-evaluates their depth against the link's new pose, implicitly;
     the wall solve then sees the scope's final pose.
 
-    On a GPU the scope moves on a stream of its own while the wall prepares its step: the chain's solver keeps few of
-    the processors busy, and neither reads what the other writes.
+    On a GPU contacts are found and the scope moves on a stream of its own while the wall prepares its step: the chain's
+    solver keeps few of the processors busy, and neither reads what the other writes.
 
     **Stale within a step:** the contact points, and for the scope the place of the wall. That acts like a normal
     dashpot of stiffness * dt where the wall yields. Moving the wall on at its velocity meanwhile would undo that, but
@@ -58,16 +58,28 @@ class TwoLevelCoupling:
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
-        sim, state = self.sim, self.sim.state
-        self.find_contacts()
         if self._scope_stream is None:
-            self._move_scope()
-            sim.wall.prepare(sim.nodal_pos, sim.nodal_vel)
+            self.move_scope()
+            self.prepare_wall()
         else:
             with wp.ScopedStream(self._scope_stream):
-                self._move_scope()
-            sim.wall.prepare(sim.nodal_pos, sim.nodal_vel)
-            wp.get_stream(sim.device).wait_stream(self._scope_stream)
+                self.move_scope()
+            self.prepare_wall()
+            wp.get_stream(self.sim.device).wait_stream(self._scope_stream)
+        self.finish()
+
+    def move_scope(self) -> None:
+        """Find the contacts and advance the scope by a physics step."""
+        self.find_contacts()
+        self._move_scope()
+
+    def prepare_wall(self) -> None:
+        """Begin the wall's step; may be done at the same time as :meth:`move_scope`."""
+        self.sim.wall.prepare(self.sim.nodal_pos, self.sim.nodal_vel)
+
+    def finish(self) -> None:
+        """Advance the wall by a physics step, against the scope where it is then."""
+        sim, state = self.sim, self.sim.state
         sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
         link_force = sim.scope_readout.step_force
         sim.wall.finish_contacts(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev, link_force)
