@@ -62,6 +62,11 @@ def test_one_of_them_alone(effect: str) -> None:
     assert switches(configured(f"env.clinical=[{effect}]")) == [name == effect for name in EFFECTS]
 
 
+def test_what_is_written_down_are_effects_not_groups() -> None:
+    assert configured(ALL).clinical == EFFECTS
+    assert configured("env.clinical=[camera,gas]").clinical == ("gas", *CAMERA)
+
+
 def test_a_group_of_them() -> None:
     assert switches(configured("env.clinical=[camera]")) == [name in CAMERA for name in EFFECTS]
 

@@ -65,12 +65,14 @@ def check(cfg: Any) -> None:
 def make_clinical(cfg: Any) -> None:
     """Switch on what ``cfg.clinical`` names; done again, it changes nothing more.
 
-    Numbers that are not as shipped stay as they were given.
+    Numbers that are not as shipped stay as they were given. Groups become the names that they stand for, so that what
+    was recorded with ``all`` is replayed without effects that came later.
 
     Args:
         cfg: :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg`.
     """
-    for name in chosen(cfg.clinical):
+    cfg.clinical = chosen(cfg.clinical)
+    for name in cfg.clinical:
         if name not in CAMERA or getattr(cfg.scene, "camera", None) is not None:
             _SWITCHES[name](cfg)
 
