@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arcgym.benchmarks.experts.measure import row_of
+from arcgym.benchmarks.experts.measure import Attempt, row_of
 from arcgym.benchmarks.experts.table import failures, read_rows, table
 from arcgym.cli.bench_experts import _missing
 from arcgym.start_states.route import Entry, Route
@@ -48,3 +48,9 @@ def test_scopes_of_another_length_have_rows_of_their_own() -> None:
     stages = [Path("a/colon.usda"), Path("b/colon.usda")]
     assert list(_missing([shipped], "magnetic", "paper", None, stages, 8)) == [stages[1:]]
     assert list(_missing([shipped], "magnetic", "paper", 2.2, stages, 8)) == [stages]
+
+
+def test_overrides_are_part_of_a_row_s_tissue() -> None:
+    plan = Attempt("capsule", "paper", 4, 240.0, "cpu", overrides=("env.clinical=[all]",))
+    assert plan.label == "paper env.clinical=[all]"
+    assert Attempt("capsule", "paper", 4, 240.0, "cpu").label == "paper"

@@ -8,6 +8,8 @@ there to ``figures.json`` and, beside the published ones, to ``table.md``. Run f
     arcgym bench clinical --colons population:validation --num_patients 20 --device cuda:0 --out logs/clinical
     arcgym bench clinical --colons colon_1 ct_1 --variants clinical --worlds 1 --out logs/clinical
     arcgym bench clinical --table --out logs/clinical
+
+Overrides of the task join those of every variant.
 """
 
 from __future__ import annotations
@@ -19,7 +21,12 @@ from pathlib import Path
 from arcgym.cli.arguments import positive
 from arcgym.utils.errors import UsageError
 
-VARIANTS = {"paper": (), "in_situ": ("env.scene.colon.material=in_situ",), "clinical": ("env.clinical=[all]",)}
+TAKES_OVERRIDES = True
+VARIANTS: dict[str, tuple[str, ...]] = {
+    "paper": (),
+    "in_situ": ("env.scene.colon.material=in_situ",),
+    "clinical": ("env.clinical=[all]",),
+}
 """Overrides by name."""
 GPU_WORLDS, CPU_WORLDS = 6, 1
 
@@ -76,7 +83,8 @@ def _drive(args: argparse.Namespace) -> None:
     worlds = args.worlds or (CPU_WORLDS if device == "cpu" else GPU_WORLDS)
     for name in args.variants:
         deadline = began + 60.0 * args.minutes
-        plan = Plan(name, VARIANTS[name], worlds, args.max_time, args.patience, device, args.seed, deadline)
+        overrides = (*VARIANTS[name], *args.overrides)
+        plan = Plan(name, overrides, worlds, args.max_time, args.patience, device, args.seed, deadline)
         insert(plan, stages, args.out, _say)
 
 

@@ -8,6 +8,9 @@ Several worlds of a patient work together, and several patients are driven at on
 
     arcgym bench experts --device cuda:0 --out logs/experts
     arcgym bench experts --colons colon_1 colon_2 --robots capsule --tissues paper --worlds 4 --out logs/experts
+    arcgym bench experts --tissues paper --out logs/experts env.clinical=[all]
+
+Overrides are those of the robots' tasks; their rows say so after the tissue.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from typing import Any
 from arcgym.cli.arguments import positive
 from arcgym.utils.errors import UsageError
 
+TAKES_OVERRIDES = True
 ROBOTS = ("capsule", "magnetic", "proximal")
 TISSUES = ("paper", "in_situ")
 GPU_WORLDS, CPU_WORLDS = 12, 4
@@ -71,7 +75,8 @@ def run(args: argparse.Namespace) -> None:
     args.out.mkdir(parents=True, exist_ok=True)
     rows = args.out / "rows.jsonl"
     for robot, tissue in product(args.robots, args.tissues):
-        for batch in _missing(read_rows(rows), robot, tissue, args.length, stages, args.batch):
+        label = " ".join((tissue, *args.overrides))
+        for batch in _missing(read_rows(rows), robot, label, args.length, stages, args.batch):
             if time.monotonic() - began < 60.0 * args.minutes:
                 _drive(args, robot, tissue, batch, rows, began + 60.0 * args.minutes)
     done = read_rows(rows)
@@ -113,5 +118,6 @@ def _drive(
         )
 
     how = {"keep_states": args.states, "patience": args.patience, "length": args.length}
+    how["overrides"] = tuple(args.overrides)
     plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, **how)
     attempt(plan, stages, done, lambda text: print(f"{robot}, {tissue}: {text}", flush=True))

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.assets import CAPSULE_CFG, MAGNETIC_CFG, PROXIMAL_CFG, ColonCfg
+from arcgym.benchmarks.worlds import load_env_cfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
@@ -19,7 +20,7 @@ from arcgym.start_states import Drive, store
 from arcgym.start_states.making import SPEED, key_of
 from arcgym.start_states.route import Route, what_holds
 from arcgym.start_states.settling import CONTROL_STEP
-from arcgym.utils.configclass import replace
+from arcgym.utils.configclass import replace, validate
 
 ROBOTS = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
 """Robots by name."""
@@ -52,6 +53,13 @@ class Attempt:
     """Simulated time without progress after which the drive gives up a patient [s]."""
     length: float | None = None
     """Length of a scope with a shaft [m]; None takes the shipped one's, and capsules have none."""
+    overrides: tuple[str, ...] = ()
+    """Overrides of the robot's task, such as ``env.clinical=[all]``."""
+
+    @property
+    def label(self) -> str:
+        """Tissue and overrides, as rows have them."""
+        return " ".join((self.tissue, *self.overrides))
 
 
 def attempt(
@@ -68,11 +76,7 @@ def attempt(
         done: Called with the row of each patient as soon as the drive has ended there.
         tell: Called with a line about all of them every 10 simulated seconds.
     """
-    colon = ColonCfg(usd_path=[str(stage) for stage in stages], material=plan.tissue)
-    count = plan.worlds * len(stages)
-    endoscope = replace(ROBOTS[plan.robot], length=None if plan.robot == "capsule" else plan.length)
-    cfg = InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=endoscope)
-    scene = InteractiveScene(cfg, SimulationCfg(device=plan.device))
+    scene = build(plan, stages)
     drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
     began, written = time.monotonic(), set[int]()
 
@@ -82,7 +86,7 @@ def attempt(
                 route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
             if not route.running and patient not in written:
                 written.add(patient)
-                about = {"robot": plan.robot, "tissue": plan.tissue, "worlds": plan.worlds, "seed": plan.seed}
+                about = {"robot": plan.robot, "tissue": plan.label, "worlds": plan.worlds, "seed": plan.seed}
                 about |= {} if plan.length is None else {"scope_length": plan.length}
                 spent = {"wall_time": round(time.monotonic() - began, 1)}
                 done({"patient": scene.colon.patients[patient].name, **about, **row_of(route), **spent})
@@ -93,6 +97,22 @@ def attempt(
     drive.run("cecum", report, settled=plan.keep_states)
     if plan.keep_states:
         _keep(scene, drive)
+
+
+def build(plan: Attempt, stages: Sequence[Path]) -> InteractiveScene:
+    """Return the worlds of a batch; with overrides, those of the robot's task without its camera."""
+    colon, sim = ColonCfg(material=plan.tissue), SimulationCfg(device=plan.device)
+    endoscope = ROBOTS[plan.robot]
+    if plan.overrides:
+        words = (f"env.scene.colon.material={plan.tissue}", *plan.overrides)
+        task = load_env_cfg(f"ARC-Cecum-{plan.robot.title()}", words, plan.seed, device=plan.device)
+        validate(task)
+        task.resolve()
+        colon, sim, endoscope = task.scene.colon, task.sim, task.scene.endoscope
+    colon = replace(colon, usd_path=[str(stage) for stage in stages], num_patients=None)
+    endoscope = replace(endoscope, length=None if plan.robot == "capsule" else plan.length)
+    cfg = InteractiveSceneCfg(num_envs=plan.worlds * len(stages), colon=colon, endoscope=endoscope)
+    return InteractiveScene(cfg, sim)
 
 
 def _progress(drive: Drive, spent: float) -> str:
