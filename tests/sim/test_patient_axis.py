@@ -12,6 +12,7 @@ import torch
 from tiny import write_tiny_colon
 from tiny_sim import TinySim
 
+from arcgym.assets import AbdomenCfg, MesenteryCfg
 from arcgym.sim import Simulation, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
 
@@ -82,6 +83,25 @@ def test_a_solid_wall_has_patients_too(tiny: TinySim, paths: list[str]) -> None:
     for world, path in enumerate(paths):
         one = push(tiny("capsule", colon={"usd_path": path, **colon}))
         assert_same(state(both, world), state(one, 0))
+
+
+def test_abdomens_and_mesenteries_are_their_patients(tiny: TinySim, paths: list[str]) -> None:
+    around = {
+        "abdomen": AbdomenCfg(enabled=True, gap=0.0, hand_place=(0.0, 0.0), hand_time=0.02),
+        "mesentery": MesenteryCfg(enabled=True),
+    }
+
+    def pressed(path: str | list[str], num_envs: int) -> Simulation:
+        sim = tiny("capsule", num_envs=num_envs, colon={"usd_path": path, "material": "in_situ", **around})
+        sim.colon.set_hand_pressure(torch.full((num_envs,), 40.0))
+        return push(sim)
+
+    both = pressed(paths, 2)
+    for world, path in enumerate(paths):
+        one = pressed(path, 1)
+        assert one.colon.data.abdomen_force.item() > 0.01 and one.colon.data.hand_dent.item() > 0.001
+        assert_same(state(both, world), state(one, 0))
+    assert both.colon.data.abdomen_force[0] != both.colon.data.abdomen_force[1]
 
 
 def test_a_world_that_takes_another_patient_goes_on_as_that_one(

@@ -115,7 +115,8 @@ def everything() -> dict[str, Any]:
     }
     sac, lagrangian = RslRlSacRunnerCfg(), RslRlPpoLagrangianAlgorithmCfg(limits={"tip_force": 1.0})
     agents = (sac, lagrangian, RslRlA2cAlgorithmCfg(), RecurrentCnnModelCfg(), BetaDistributionCfg())
-    others = (*agents, AscentMultiplierCfg(), FixedPenaltyCfg(), PROXIMAL_CFG, mdp.InsertionActionCfg())
+    actions = (mdp.InsertionActionCfg(), mdp.GasFlowActionCfg(), mdp.HandPressureActionCfg())
+    others = (*agents, AscentMultiplierCfg(), FixedPenaltyCfg(), PROXIMAL_CFG, *actions)
     return cfgs | {f"other{i}": cfg for i, cfg in enumerate(others)}
 
 
