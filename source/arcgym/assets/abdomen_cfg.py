@@ -18,9 +18,10 @@ class AbdomenCfg:
     gap: float = 0.01
     """Way from the imaged colon to the inside of the abdomen where they are nearest [m]. A choice: the colon as imaged
     touches nothing. Another one for each world is set by :meth:`arcgym.assets.Colon.write_abdomen_to_sim`."""
-    squareness: float = 4.0
-    """Exponent of the superellipsoid: 2 is an ellipsoid, 10 nearly a box. A choice: 4 comes within 16 mm of the front,
-    26 mm of the sides of colon 1, where an ellipsoid around all of it keeps 54 and 85 mm."""
+    squareness: float = 6.0
+    """Exponent of the superellipsoid: 2 is an ellipsoid, 10 nearly a box. A choice: the least one around colon 1 leaves
+    7 mm in front of it and 5 mm beside it with 6, 18 and 21 mm with 4, 57 and 82 mm with 2; the transverse colon, full
+    of gas, lies right behind the front of the abdomen."""
     stiffness: float = 3.0e5
     """Pressure on the colon over how far it has gone outside [Pa/m]: 3 kPa a cm, a choice, within 2 to 5 kPa a cm. It
     stands for fat, muscles and other bowel that give way."""

@@ -18,6 +18,8 @@ from arcgym.sim.wall.wall_parameters import WallParameters
 
 ABDOMEN = "abdomen."
 """Begins the names of what the abdomen's future depends on."""
+FITTING_STEPS = 500
+"""Steps in which the inside is fitted: its volume is then within a percent of the least."""
 
 
 class Abdomen:
@@ -90,20 +92,28 @@ class Abdomen:
 
 
 def fit(points: np.ndarray, squareness: float, margin: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return middle and semi-axes [m], shape (3,) each, of the superellipsoid that just holds all points.
+    """Return middle and semi-axes [m], shape (3,) each, of the least superellipsoid that holds all points.
 
-    It has the proportions of their bounding box.
+    It lies in the middle of their bounding box. Of all with sum_i w_i |q_i|^n <= 1 the least has the largest product of
+    w: then 1 / w_i = sum_k m_k |q_ki|^n with weights m of the points, which are found as those of a D-optimal design
+    are (Titterington 1976: each times its own sum, again and again).
 
     Args:
         points: Positions [m], shape (V, 3).
-        squareness: Exponent.
+        squareness: Exponent n.
         margin: Distance that is added to the semi-axes [m].
     """
     points = points.astype(np.float64)
     low, high = points.min(axis=0), points.max(axis=0)
     center, half = 0.5 * (low + high), np.maximum(0.5 * (high - low), 1.0e-3)
-    farthest = (np.abs((points - center) / half) ** squareness).sum(axis=1).max() ** (1.0 / squareness)
-    return center, half * farthest + margin
+    away = np.abs((points - center) / half) ** squareness
+    weights = np.full(len(points), 3.0 / len(points))
+    for _ in range(FITTING_STEPS):
+        inverse = 1.0 / (weights @ away)
+        weights *= away @ inverse
+    inverse = 1.0 / (weights @ away)
+    inverse /= (away @ inverse).max()
+    return center, half * inverse ** (-1.0 / squareness) + margin
 
 
 def vertex_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
