@@ -11,16 +11,16 @@ The robot is that of the run's task. Evaluate the file that is written, not the 
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 from pathlib import Path
 
 from arcgym.rl.params import read_params
 from arcgym.rl.pretrained import FILE, policies_dir, robot_of, write_small
+from arcgym.rl.run_folder import write_params
 from arcgym.utils.errors import UsageError
 
-NAMES = ("run", "env", "agent")
-"""Parameter files that go with the checkpoint."""
+OF_THE_MAKER = ("usd_path", "num_patients")
+"""Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own."""
 
 
 def main() -> None:
@@ -46,9 +46,10 @@ def ship(checkpoint: Path, out: Path) -> Path:
         raise UsageError(f"{checkpoint.parent} has no params/, which names task and agent; expected a run's folder.")
     folder = out / robot_of(saved.task)
     write_small(checkpoint, folder / FILE)
-    (folder / "params").mkdir(exist_ok=True)
-    for name in NAMES:
-        shutil.copy(saved.folder / f"{name}.yaml", folder / "params" / f"{name}.yaml")
+    for name in OF_THE_MAKER:
+        saved.env.get("scene", {}).get("colon", {}).pop(name, None)
+    run = {"task": saved.task, "agent": saved.agent_key}
+    write_params(folder, run=run, env=saved.env, agent=saved.agent)
     return folder / FILE
 
 
