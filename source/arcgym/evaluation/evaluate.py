@@ -246,7 +246,7 @@ def _hold_patients(env_cfg: Any, patients: list[str]) -> None:
     several = len(patients) > 1
     env_cfg.scene.colon.usd_path, env_cfg.scene.colon.num_patients = patients if several else patients[0], None
     if several:
-        if next(iter(vars(env_cfg.events)), None) != "patient":
+        if next((name for name, term in vars(env_cfg.events).items() if term is not None), None) != "patient":
             raise UsageError(
                 "The task's events do not begin with 'patient', so that worlds cannot change their patients: put "
                 "patient = EventTermCfg(func=mdp.randomize_patient, mode='reset') first, or give --num_patients 1."
