@@ -12,6 +12,7 @@ from tube_scene import FORWARD, MIDDLE, RADIUS, TubeScene
 
 from arcgym.sensors import EndoscopeCamera, EndoscopeCameraCfg, ExposureCfg
 from arcgym.sensors.camera_rays import fisheye_rays
+from arcgym.utils.two_threads import VARIABLE
 
 SIZE = 32
 
@@ -235,20 +236,16 @@ def test_unknown_data_type_names_the_alternatives():
         EndoscopeCamera(EndoscopeCameraCfg(data_types=("rgb", "normals")))
 
 
-def test_two_halves_make_one_picture(tmp_path):
+def test_two_halves_make_one_picture(tmp_path, monkeypatch):
     """The second one: the first is drawn in one thread anyway."""
     scene = TubeScene(tmp_path)
-    before = torch.get_num_threads()
     pictures = []
-    try:
-        for threads in (1, 2):
-            torch.set_num_threads(threads)
-            camera = make_camera(scene)
-            camera.update()
-            camera.update()
-            pictures.append(picture(camera))
-    finally:
-        torch.set_num_threads(before)
+    for threads in ("1", "2"):
+        monkeypatch.setenv(VARIABLE, threads)
+        camera = make_camera(scene)
+        camera.update()
+        camera.update()
+        pictures.append(picture(camera))
     for one, other in zip(*pictures, strict=True):
         np.testing.assert_array_equal(one, other)
 

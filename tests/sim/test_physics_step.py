@@ -9,22 +9,27 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
+from arcgym.utils.two_threads import VARIABLE
+
 
 @pytest.mark.parametrize("kind", ["capsule", "proximal"])
-def test_two_threads_make_the_same_steps_as_one(tiny_sim: TinySim, kind: str) -> None:
+def test_two_threads_make_the_same_steps_as_one(tiny_sim: TinySim, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     ends = []
-    for threads in (1, 2):
-        sim = tiny_sim(kind, num_envs=2, threads=threads)
+    for threads in ("1", "2"):
+        monkeypatch.setenv(VARIABLE, threads)
+        sim = tiny_sim(kind, num_envs=2)
         wp.to_torch(sim.nodal_pos)[..., 0] += 0.014  # of a tube of 20 mm radius around the scope
         sim.forward()
         sim.step(30)
+        assert (sim._physics._beside is not None) == (threads == "2")
         assert sim.contact.records.start.numpy()[:, -1].min() > 0
         ends.append({name: array.clone() for name, array in sim.world_arrays().items()})
     for name, array in ends[0].items():
         assert torch.equal(array, ends[1][name]), name
 
 
-def test_a_wall_that_stands_still_needs_one_thread(tiny_sim: TinySim) -> None:
-    sim = tiny_sim("capsule", threads=2, colon={"rigid": True})
+def test_a_wall_that_stands_still_needs_one_thread(tiny_sim: TinySim, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "2")
+    sim = tiny_sim("capsule", colon={"rigid": True})
     sim.step(3)
     assert sim._physics.graph is not None and sim._physics._beside is None

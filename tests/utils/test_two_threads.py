@@ -7,9 +7,8 @@ from __future__ import annotations
 import threading
 
 import pytest
-import torch
 
-from arcgym.utils.two_threads import both, cpu_threads
+from arcgym.utils.two_threads import VARIABLE, both, cpu_threads
 
 
 def fail() -> None:
@@ -31,11 +30,15 @@ def test_a_failure_of_either_is_raised_when_both_are_done(first: bool) -> None:
     assert done == [1]
 
 
-def test_threads_are_those_of_torch_up_to_two() -> None:
-    before = torch.get_num_threads()
-    try:
-        for threads in (1, 2, 3):
-            torch.set_num_threads(threads)
-            assert cpu_threads() == min(threads, 2)
-    finally:
-        torch.set_num_threads(before)
+@pytest.mark.parametrize(("value", "threads"), [(None, 1), ("1", 1), ("2", 2)])
+def test_the_variable_says_how_many_threads(value: str | None, threads: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    if value is not None:
+        monkeypatch.setenv(VARIABLE, value)
+    assert cpu_threads() == threads
+
+
+def test_another_number_of_threads_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "3")
+    with pytest.raises(ValueError, match="expected 1 or 2"):
+        cpu_threads()

@@ -146,7 +146,7 @@ class SurfaceRenderer:
         self._drawn_before = True
 
     def _in_halves(self, work: Callable[[slice], None]) -> None:
-        """Do ``work`` on the rows of all pictures: on a CPU with two cores, on the upper and the lower ones at once.
+        """Do ``work`` on the rows of all pictures: with two threads of a CPU, on the upper and the lower ones at once.
 
         Not with the first picture, which loads the kernels.
         """

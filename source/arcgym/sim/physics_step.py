@@ -21,7 +21,7 @@ class PhysicsStep:
     """Advances a simulation by one physics step.
 
     The first two steps ever made run kernel by kernel, which compiles them; the next is recorded in a graph, which is
-    replayed from then on. On two cores of a CPU it is three graphs: contacts are found and the scope moves while the
+    replayed from then on. On two threads of a CPU it is three graphs: contacts are found and the scope moves while the
     wall prepares its step, each part in a thread that replays it outside Python. As the two share nothing that either
     writes, results are those of one thread to the bit.
     """
@@ -73,10 +73,8 @@ class PhysicsStep:
         self.graph = self._recorded(rest)
 
     def _two_threads(self) -> bool:
-        """Whether a CPU has two cores for the physics, and the wall something to do meanwhile."""
-        sim = self._sim
-        threads = sim.cfg.threads or cpu_threads()
-        return wp.get_device(sim.device).is_cpu and sim.wall.moves and threads == 2
+        """Whether a CPU is to use two cores, and the wall has something to do meanwhile."""
+        return wp.get_device(self._sim.device).is_cpu and self._sim.wall.moves and cpu_threads() == 2
 
     def _recorded(self, work: Callable[[], None]) -> wp.Graph:
         with wp.ScopedCapture(device=self._sim.device) as capture:

@@ -170,10 +170,6 @@ class SimulationCfg:
     use_graph: bool = True
     """Capture the physics step in a graph and replay it: 2.3 times faster with one world on a CPU core. Switch it off
     to step through kernels in a debugger."""
-    threads: int = 0
-    """Threads of the physics on a CPU, 1 or 2: with two, contacts are found and the scope moves while the wall prepares
-    its step, to the same result. 0: two where the process has two cores and torch is not held to one thread, as by
-    ``OMP_NUM_THREADS=1``. Choose 1 where as many processes run as there are cores."""
 
     def validate_config(self) -> None:
         """Check bounds.
@@ -184,7 +180,6 @@ class SimulationCfg:
         require(self, "dt", Range(0.0, 1.0 / 60.0, above=True), unit="s")
         require(self, "gravity", FINITE, unit="m/s^2")
         require_at_least(self, 1, "scope_substeps", "scope_iterations", "newton_iterations")
-        require(self, "threads", Range(0, 2))
         require_positive(self, "mass_scaling")
         if self.weight.enabled and any(self.gravity):
             raise FieldError(

@@ -5,10 +5,12 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
-import torch
+VARIABLE = "ARCGYM_CPU_THREADS"
+"""Environment variable with the number of threads; results are the same to the bit."""
 
 
 @functools.cache
@@ -17,8 +19,15 @@ def _worker() -> ThreadPoolExecutor:
 
 
 def cpu_threads() -> int:
-    """Return how many threads work on a CPU may use, 1 or 2: as torch, which keeps to ``OMP_NUM_THREADS``."""
-    return min(2, torch.get_num_threads())
+    """Return how many threads physics and drawing may use on a CPU: 2 with ``ARCGYM_CPU_THREADS=2``, else 1.
+
+    Raises:
+        ValueError: If that variable is something else.
+    """
+    value = os.environ.get(VARIABLE, "1")
+    if value not in ("1", "2"):
+        raise ValueError(f"{VARIABLE}={value!r}: expected 1 or 2.")
+    return int(value)
 
 
 def both(one: Callable[[], None], other: Callable[[], None]) -> None:
