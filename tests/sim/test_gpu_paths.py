@@ -63,7 +63,10 @@ def test_lists_are_ordered_side_by_side(touching: Simulation) -> None:
 @CUDA
 @pytest.mark.parametrize("kind", ["capsule", "magnetic", "proximal"])
 def test_a_gpu_steps_as_a_cpu_does(tiny_sim: TinySim, kind: str) -> None:
-    """Twelve steps against a wall 14 mm off the scope's axis: 3 um, and 1e-5 rad, of motions of some 0.1 mm."""
+    """Twelve steps with the wall 14 mm off the scope's axis.
+
+    On a CPU, walls put 1 um elsewhere end within 3 um, and joints within 7e-5: rounding, a tenth of that, does less.
+    """
     ends = []
     for device in ("cpu", "cuda:0"):
         sim = tiny_sim(kind, num_envs=2, device=device)
@@ -71,5 +74,5 @@ def test_a_gpu_steps_as_a_cpu_does(tiny_sim: TinySim, kind: str) -> None:
         sim.forward()
         sim.step(12)
         ends.append([sim.nodal_pos.numpy(), sim.state.joint_q.numpy()])
-    for on_cpu, on_gpu in zip(*ends, strict=True):
-        np.testing.assert_allclose(on_gpu, on_cpu, atol=1e-5)
+    for on_cpu, on_gpu, bound in zip(*ends, (5e-6, 1e-4), strict=True):
+        np.testing.assert_allclose(on_gpu, on_cpu, rtol=0.0, atol=bound)
