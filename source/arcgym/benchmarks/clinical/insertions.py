@@ -26,6 +26,8 @@ TASK = "ARC-Cecum-Proximal"
 """Task whose scene is taken."""
 OUT_OF_TIME = "no computing time left"
 """Problem of a patient in which the drive was stopped from outside."""
+KEPT_EVERY = 200
+"""Control steps after which insertions that are under way are written down."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,8 @@ class Plan:
 def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], None]) -> None:
     """Drive up all patients and write ``NAME/PATIENT.npz`` of each: ``steps`` (T, F) by ``FIELDS``, and ``about``.
 
-    The insertion of a patient is that of the world that got furthest, see :class:`.record.RecordedPushExpert`.
+    The insertion of a patient is that of the world that got furthest, see :class:`.record.RecordedPushExpert`. Its file
+    is written when it ends, and every 20 simulated seconds before.
 
     Args:
         plan: What drives, and how long.
@@ -66,26 +69,29 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
     expert = drive.expert
     if not isinstance(expert, RecordedPushExpert):
         raise TypeError(f"The drive has a {type(expert).__name__}, expected a RecordedPushExpert.")
-    began, ends = time.monotonic(), dict[int, int]()
+    began, ended = time.monotonic(), set[int]()
+
+    def keep(patients: Sequence[int]) -> None:
+        last = [expert.entry(drive.foremost[patient]) for patient in patients]
+        for patient, steps in zip(patients, expert.histories(last) if patients else [], strict=True):
+            _write(plan, drive, patient, steps, out)
 
     def report(drive: Drive) -> None:
         for patient, route in enumerate(drive.routes):
             if route.running and time.monotonic() > plan.deadline:
                 route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
-            if not route.running and patient not in ends:
-                ends[patient] = expert.entry(drive.foremost[patient])
-                name = scene.colon.patients[patient].name
-                tell(f"{plan.name}, {name}: {route.arc:.2f} m, {route.failure or 'arrived'}")
-        if round(drive.time / CONTROL_STEP) % 100 == 0:
+        fresh = [k for k, route in enumerate(drive.routes) if not route.running and k not in ended]
+        ended.update(fresh)
+        count = round(drive.time / CONTROL_STEP)
+        keep([k for k in range(len(drive.routes)) if k in fresh or (k not in ended and count % KEPT_EVERY == 0)])
+        for k in fresh:
+            name, route = scene.colon.patients[k].name, drive.routes[k]
+            tell(f"{plan.name}, {name}: {route.arc:.2f} m, {route.failure or 'arrived'}")
+        if count % 100 == 0:
             arcs = " ".join(f"{route.arc:.2f}" for route in drive.routes)
             tell(f"{plan.name}, {drive.time:.0f} s simulated in {time.monotonic() - began:.0f} s, tips at [m] {arcs}")
 
-    try:
-        drive.run("cecum", report, settled=False)
-    finally:
-        last = [ends.get(patient, expert.entry(world)) for patient, world in enumerate(drive.foremost)]
-        for patient, steps in enumerate(expert.histories(last)):
-            _write(plan, drive, patient, steps, out)
+    drive.run("cecum", report, settled=False)
 
 
 def build(plan: Plan, stages: Sequence[Path]) -> InteractiveScene:
