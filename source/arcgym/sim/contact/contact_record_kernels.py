@@ -189,7 +189,7 @@ def fill_slots(k: int, w: int, surface: LumenSurface, candidates: Candidates, re
             slot += 1
 
 
-@wp.kernel(launch_bounds=(256, 3))
+@wp.kernel
 def record_faces(
     x: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
