@@ -94,9 +94,9 @@ class Abdomen:
 def fit(points: np.ndarray, squareness: float, margin: float) -> tuple[np.ndarray, np.ndarray]:
     """Return middle and semi-axes [m], shape (3,) each, of the least superellipsoid that holds all points.
 
-    It lies in the middle of their bounding box. Of all with sum_i w_i |q_i|^n <= 1 the least has the largest product of
-    w: then 1 / w_i = sum_k m_k |q_ki|^n with weights m of the points, which are found as those of a D-optimal design
-    are (Titterington 1976: each times its own sum, again and again).
+    It lies in the middle of their bounding box. Of all with ``sum_i w_i |q_i|^n <= 1`` the least has the largest
+    product of w: then ``1 / w_i = sum_k m_k |q_ki|^n`` with weights m of the points, which are found as those of a
+    D-optimal design are (Titterington 1976: each times its own sum, again and again).
 
     Args:
         points: Positions [m], shape (V, 3).
