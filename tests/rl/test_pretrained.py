@@ -37,8 +37,10 @@ def test_a_task_gets_the_policy_of_its_robot(shipped: Path, task: str) -> None:
 
 
 def test_a_robot_without_a_policy_is_told_which_have_one(shipped: Path) -> None:
-    with pytest.raises(UsageError, match="for 'mine', the robot of ARC-Sigmoid-Mine; there are some for: magnetic"):
-        pretrained_checkpoint("ARC-Sigmoid-Mine")
+    with pytest.raises(
+        UsageError, match="for 'mine', the robot of ARC-Sigmoid-Mine; there are some for: magnetic. Train .*-Mine'"
+    ):
+        pretrained_checkpoint("ARC-Sigmoid-Mine-Play")
 
 
 def test_it_plays_where_nothing_was_trained_and_where_it_is_asked_for(shipped: Path) -> None:

@@ -1,7 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Policies that come with ARCGym: ``policies/<robot>/`` beside the USD assets, each with the parameters of its run."""
+"""Policies that come with ARCGym: ``policies/<robot>/`` beside the USD assets, each with the parameters of its run.
+
+There is none yet; ``scripts/tools/ship_policy.py`` puts a run's policy there.
+"""
 
 from __future__ import annotations
 
@@ -37,10 +40,11 @@ def pretrained_checkpoint(task: str) -> Path:
     path = policies_dir() / robot_of(task) / FILE
     if path.is_file():
         return path
+    plain = task.removesuffix("-Play")
     there = sorted(found.parent.name for found in policies_dir().glob(f"*/{FILE}"))
     raise UsageError(
-        f"No policy is shipped for '{robot_of(task)}', the robot of {task}; there are some for: "
-        f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {task}'."
+        f"No policy is shipped for '{robot_of(task)}', the robot of {plain}; there are some for: "
+        f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {plain}'."
     )
 
 
