@@ -4,7 +4,8 @@
 
 A class under :func:`configclass` is a plain dataclass with these conveniences:
 
-* A member needs no annotation: ``joint_pos = ObsTerm(func=mdp.joint_pos)`` is a field.
+* A member needs no annotation: ``joint_pos = ObsTerm(func=mdp.joint_pos)`` is a field. Those with one come first, in
+  their order, and then the others in theirs, which is the order of a manager's terms.
 * Defaults may be mutable; every instance gets its own deep copy.
 * A field without default, or with :data:`MISSING`, must be set before :func:`validate` is called.
 * A subclass overrides a field by assigning it again; ``= None`` switches a term off.
