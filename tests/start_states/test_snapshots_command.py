@@ -27,6 +27,13 @@ def test_it_makes_the_states_up_to_the_segment_asked_for(tube: str, tmp_path: Pa
     assert len(list((tmp_path / "cache" / "start_states").rglob("capsule-paper-*.npz"))) == 1
 
 
+def test_states_are_those_of_the_effects_that_were_asked_for(tube: str, tmp_path: Path, capsys) -> None:
+    for effects in ([], ["env.clinical=[tissue]"]):
+        assert main([*TASK, tube, *effects, "--until", "rectum"]) == 0
+    made = {path.name.split("-")[1] for path in (tmp_path / "cache" / "start_states").rglob("capsule-*.npz")}
+    assert made == {"paper", "clinical"}
+
+
 def test_a_drive_that_ends_early_exits_with_status_2_and_keeps_its_states(tube: str, tmp_path: Path, capsys) -> None:
     with pytest.raises(SystemExit) as end:
         main([*TASK, tube, "--max_time", "0.2"])

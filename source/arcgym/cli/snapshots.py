@@ -89,7 +89,7 @@ def _make_all(args: SnapshotArguments, cfg: Any, stages: list[Path]) -> None:
 
 
 def _env_cfg(args: SnapshotArguments) -> Any:
-    """Return the task's configuration on the chosen device, checked."""
+    """Return the task's configuration on the chosen device, checked, with what its switches put into the scene."""
     from arcgym.rl.device import choose_device
     from arcgym.utils.configclass import validate
     from arcgym.utils.hydra import apply_overrides
@@ -102,4 +102,5 @@ def _env_cfg(args: SnapshotArguments) -> Any:
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
     cfg.sim.device = choose_device(args.device)
+    cfg.resolve()
     return cfg

@@ -10,6 +10,7 @@ import numpy as np
 
 from arcgym.benchmarks.fidelity.pushes import CONTROL_STEP
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run
+from arcgym.benchmarks.worlds import load_env_cfg
 
 REST_TIME = 3.0
 """Time without commands [s]."""
@@ -17,6 +18,8 @@ LEAST = 0.1
 """Force below which changes are compared with it [N]."""
 UNTIL = "splenic"
 """Last segment that colon 1 has start states of beside its stage."""
+CLINICAL = "clinical"
+"""Tissue that stands for all of ``env.clinical=[all]``."""
 
 
 def start_rest(run: Run, robot: str, material: str, until: str = UNTIL) -> list[Row]:
@@ -43,14 +46,10 @@ def rest(run: Run, robot: str, material: str, until: str) -> tuple[tuple[str, ..
     """Return names of start states, and forces in each without commands [N], shape (T, N, 2): window and base."""
     import torch
 
-    from arcgym import assets, start_states
-    from arcgym.scene import InteractiveSceneCfg
+    from arcgym import start_states
     from arcgym.scene.interactive_scene import InteractiveScene
-    from arcgym.sim import SimulationCfg
 
-    endoscope = getattr(assets, f"{robot.upper()}_CFG")
-    cfg = InteractiveSceneCfg(num_envs=1, colon=assets.ColonCfg(material=material), endoscope=endoscope)
-    sim_cfg = SimulationCfg(device=run.device)
+    cfg, sim_cfg = scene(robot, material, run.device)
     states = start_states.ensure(InteractiveScene(cfg, sim_cfg), until)
     cfg.num_envs = len(states.names)
     sim = InteractiveScene(cfg, sim_cfg).sim
@@ -63,3 +62,19 @@ def rest(run: Run, robot: str, material: str, until: str) -> tuple[tuple[str, ..
         data = sim.endoscope.data
         samples.append(torch.stack([data.window_force_norm.amax(dim=1), data.base_force.abs()], dim=1).cpu().numpy())
     return states.names, np.array(samples, dtype=float)
+
+
+def scene(robot: str, material: str, device: str) -> tuple[Any, Any]:
+    """Return the configurations of scene and simulation of a robot in a tissue; in ``clinical`` with all effects."""
+    from arcgym import assets
+    from arcgym.scene import InteractiveSceneCfg
+    from arcgym.sim import SimulationCfg
+
+    if material == CLINICAL:
+        task = load_env_cfg(f"ARC-Sigmoid-{robot.capitalize()}", ["env.clinical=[all]"], 0, device=device)
+        task.resolve()
+        own = {"colon": task.scene.colon, "endoscope": task.scene.endoscope}
+        return InteractiveSceneCfg(num_envs=1, **own), task.sim
+    endoscope = getattr(assets, f"{robot.upper()}_CFG")
+    colon = assets.ColonCfg(material=material)
+    return InteractiveSceneCfg(num_envs=1, colon=colon, endoscope=endoscope), SimulationCfg(device=device)
