@@ -49,7 +49,7 @@ def test_those_behind_go_on_from_the_foremost_of_their_patient(tmp_path: Path) -
     assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[:4], speed[:4]).any()
 
 
-def test_those_hardly_behind_keep_their_states_and_get_new_settings(tmp_path: Path) -> None:
+def test_those_hardly_behind_keep_their_states_and_some_get_new_settings(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 8)
     expert = PullExpert(scene)
     population = Population(scene, expert)
@@ -60,7 +60,32 @@ def test_those_hardly_behind_keep_their_states_and_get_new_settings(tmp_path: Pa
     assert (moved.tolist(), sources.tolist()) == ([2], [6])
     now = scene["endoscope"].data.joint_pos
     assert torch.equal(now[[0, 1, 3]], before[[0, 1, 3]])
-    assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[:4], speed[:4]).any()
+    assert torch.equal(expert.speed[4:], speed[4:]) and not torch.isclose(expert.speed[2], speed[2])
+    renewed = 0
+    arc[2] = 0.50
+    for _ in range(40):  # four worlds that are hardly behind: a quarter of 160
+        speed = expert.speed.clone()
+        assert len(population.exchange(score, arc)[0]) == 0
+        renewed += int((expert.speed[:4] != speed[:4]).sum())
+    assert torch.equal(expert.speed[4:], speed[4:]) and 20 <= renewed <= 60
+
+
+def test_worlds_of_a_patient_that_needs_none_help_the_others(tmp_path: Path) -> None:
+    scene = scene_of(tmp_path, 8)
+    population = Population(scene, PullExpert(scene))
+    velocity = torch.zeros(8, 3)
+    velocity[:, 2] = torch.linspace(0.02, 0.06, 8)
+    for _ in range(2):
+        scene["endoscope"].set_tip_velocity_command(velocity, torch.zeros(8, 3))
+        scene.sim.step(48)
+    arc = scene["endoscope"].data.tip_arc_length.clone()
+    moved, sources = population.hand_over([0], arc)  # world 7 is the foremost of the second patient
+    assert (moved.tolist(), sources.tolist()) == ([0, 2, 4, 6], [7, 7, 7, 7])
+    assert population.owner.tolist() == [1] * 8 and scene.colon.data.patient.tolist() == [1] * 8
+    assert torch.equal(scene["endoscope"].data.tip_arc_length[[0, 2, 4, 6]], arc[[7, 7, 7, 7]])
+    ranking = population.rank(arc)
+    assert ranking.counts.tolist() == [0, 8] and ranking.order.tolist() == [7, 6, 5, 4, 3, 2, 1, 0]
+    assert len(population.hand_over([0], arc)[0]) == 0 and len(population.hand_over([0, 1], arc)[0]) == 0
 
 
 def test_the_longer_the_foremost_is_stuck_the_farther_behind_others_may_be(tmp_path: Path) -> None:

@@ -35,7 +35,7 @@ def test_a_world_goes_on_from_where_another_one_was(tmp_path: Path) -> None:
     scene.sim.step(96)
     later = data.tip_arc_length.clone()
     assert (later > first + 0.004).all()
-    assert trail.put_back([1, 3], [0.0, 1.0], [0.5, 0.5]) == [1]  # no state is 1 m far
+    assert trail.put_back([1, 3], [0, 0], [0.0, 1.0], [0.5, 0.5]) == [1]  # no state is 1 m far
     assert torch.equal(data.joint_pos[1], pose)
     assert torch.equal(data.tip_arc_length[[0, 2, 3]], later[[0, 2, 3]])
     assert remembered.tolist() == [0.0, 2.0, 2.0, 3.0]
@@ -45,7 +45,7 @@ def test_states_are_a_few_centimeters_apart_and_not_kept_for_ever(tmp_path: Path
     trail = Trail(scene_of(tmp_path).sim, 1, lambda: [])
     for arc in (0.10, 0.10 + 0.5 * SPACING, 0.10 + SPACING, 0.11 + REACH):
         trail.follow(0, arc, 0)
-    assert [place.arc for place in trail._places[0]] == [0.10 + SPACING, 0.11 + REACH]
+    assert [place.arc for place in trail.places[0]] == [0.10 + SPACING, 0.11 + REACH]
 
 
 def test_worlds_beside_a_foremost_that_is_stuck_try_again(tmp_path: Path) -> None:

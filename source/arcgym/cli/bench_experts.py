@@ -3,8 +3,9 @@
 """Measure how far the robots' scripted experts get in many patients, how fast, with which forces, and what stops them.
 
 Several worlds of a patient work together, and several patients are driven at once. Each patient's row is appended to
-``rows.jsonl`` in OUT as soon as the drive has ended there; the same command goes on where it was stopped, and writes
-``table.md``. Run for example::
+``rows.jsonl`` in OUT as soon as the drive has ended there, and ``table.md`` at the end. The same command goes on where
+it was stopped: with the patients that have no row yet, from the anus, or with ``--halts`` from where they were.
+Run for example::
 
     arcgym bench experts --device cuda:0 --out logs/experts
     arcgym bench experts --colons colon_1 colon_2 --robots capsule --tissues paper --worlds 4 --out logs/experts
@@ -53,6 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--minutes", type=float, default=float("inf"), help="longest time in all (no limit)")
     parser.add_argument("--states", action="store_true", help="keep the start states in the cache folder")
+    parser.add_argument(
+        "--halts", type=Path, help="folder that keeps drives for which --minutes were not enough, to go on with them"
+    )
     parser.add_argument("--seed", type=int, default=0, help="seed of the experts' settings (0)")
     parser.add_argument("--device", help="cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)")
     parser.add_argument("--out", type=Path, required=True, help="folder of the rows and the table")
@@ -117,7 +121,7 @@ def _drive(
             flush=True,
         )
 
-    how = {"keep_states": args.states, "patience": args.patience, "length": args.length}
+    how = {"keep_states": args.states, "patience": args.patience, "length": args.length, "halts": args.halts}
     how["overrides"] = tuple(args.overrides)
     plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, **how)
     attempt(plan, stages, done, lambda text: print(f"{robot}, {tissue}: {text}", flush=True))

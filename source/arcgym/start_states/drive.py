@@ -63,7 +63,8 @@ class Drive:
         self.population = Population(scene, self.expert, seed)
         self._peaks = Peaks(scene)
         self._leaps = Leaps(scene["endoscope"].data.tip_arc_length)
-        self._trail = Trail(scene.sim, len(self.routes), self._memory)
+        self.trail = Trail(scene.sim, len(self.routes), self.memory)
+        """States on the way of each patient's foremost world."""
         self._steps = round(CONTROL_STEP / scene.sim.physics_dt)
         self._count = 0
         self._settled: set[tuple[int, str]] = set()
@@ -124,31 +125,44 @@ class Drive:
         self.time = self._count * CONTROL_STEP
         self._peaks.update()
         arcs = self._arcs()
-        front = arcs.view(self.population.each, -1).max(dim=0)
-        broken = self.scene.sim.non_finite.view(self.population.each, -1).all(dim=0)
-        places = zip(self.routes, front.values.tolist(), front.indices.tolist(), broken.tolist(), strict=True)
-        for patient, (route, arc, row, lost) in enumerate(places):
+        front = self.population.foremost(arcs)
+        broken = self._all_broken()
+        places = zip(self.routes, arcs[front].tolist(), front.tolist(), broken.tolist(), strict=True)
+        for patient, (route, arc, world, lost) in enumerate(places):
             if route.running:
-                self.foremost[patient] = row * len(self.routes) + patient
+                self.foremost[patient] = world
                 route.problem = "the simulation broke" if lost else ""
-                self._follow(route, arc, self.foremost[patient])
-        if self.population.each > 1 and self._count % self.expert.PERIOD == 0:
+                self._follow(patient, arc, world)
+        if self.scene.num_envs > 1 and self._count % self.expert.PERIOD == 0:
             merit = torch.where(arcs == OUT_OF_PLACE, OUT_OF_PLACE, self.expert.merit())
-            moved, sources = self.population.exchange(merit, arcs)
-            self._peaks.take_over(moved, sources)
-            self._leaps.take_over(moved, sources)
+            self._carry_over(*self.population.exchange(merit, arcs))
             self._try_again(arcs)
+            ended = [patient for patient, route in enumerate(self.routes) if not route.running]
+            if 0 < len(ended) < len(self.routes):
+                self._carry_over(*self.population.hand_over(ended, merit))
+
+    def _carry_over(self, moved: torch.Tensor, sources: torch.Tensor) -> None:
+        """Let worlds that took over the states of others remember what those have met."""
+        self._peaks.take_over(moved, sources)
+        self._leaps.take_over(moved, sources)
 
     def _try_again(self, arcs: torch.Tensor) -> None:
         """Let some worlds go on from farther back where the foremost is stuck."""
         worlds, back = self.population.tries_again(arcs)
-        least = (arcs.view(self.population.each, -1).amax(dim=0)[worlds % len(self.routes)] - back).tolist()
+        owner = self.population.owner[worlds]
+        least = (arcs[self.population.foremost(arcs)][owner] - back).tolist()
         draws = torch.rand(len(worlds), generator=self.population.random, device=self.scene.device).tolist()
-        self._trail.put_back(worlds.tolist(), least, draws)
+        self.trail.put_back(worlds.tolist(), owner.tolist(), least, draws)
 
-    def _memory(self) -> list[torch.Tensor]:
+    def memory(self) -> list[torch.Tensor]:
         """Return what is remembered of every world beside its state, tensors of shape (N, ...)."""
         return [*self.expert.memory(), *self._peaks.memory, *self._leaps.memory]
+
+    def _all_broken(self) -> torch.Tensor:
+        """Return the patients in all of whose worlds the simulation broke, shape (P,), bool."""
+        owner = self.population.owner
+        whole = torch.zeros(len(self.routes), dtype=torch.int32, device=owner.device)
+        return whole.index_add_(0, owner, (~self.scene.sim.non_finite).int()) == 0
 
     def _arcs(self) -> torch.Tensor:
         """Return the arc lengths of the tips of worlds that count [m], shape (N,)."""
@@ -160,10 +174,11 @@ class Drive:
         sim = self.scene.sim
         return sim.non_finite | sim.wall_penetrated if sim.cfg.solver == "two_level" else sim.non_finite
 
-    def _follow(self, route: Route, arc: float, world: int) -> None:
+    def _follow(self, patient: int, arc: float, world: int) -> None:
         """Take note of a patient's foremost world."""
-        if self.population.each > 1 and arc > OUT_OF_PLACE:
-            self._trail.follow(world % len(self.routes), arc, world)
+        route = self.routes[patient]
+        if self.scene.num_envs > 1 and arc > OUT_OF_PLACE:
+            self.trail.follow(patient, arc, world)
         for segment in route.advance(arc, self.time):
             self._enter(route, segment, world)
         if route.running:
@@ -172,7 +187,7 @@ class Drive:
                 route.held_by = what_holds(self.scene, world)
 
     def _enter(self, route: Route, segment: str, world: int) -> None:
-        route.entries[segment] = self._peaks.entry(world, self.time)
+        route.entries[segment] = self._peaks.entry(world, route.time)
         route.states[segment] = self.scene.sim.read_snapshot(world)
 
     def _settle(self) -> None:

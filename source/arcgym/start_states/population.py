@@ -4,6 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from typing import NamedTuple
+
 import torch
 
 from arcgym.experts import ExpertBase
@@ -18,7 +21,10 @@ FRONT = 4
 BEHIND = 2
 """One of so many worlds of a patient is moved, if it is behind."""
 NEAR = 0.03
-"""Arc length by which a world may be behind the foremost and still go its own way, with new settings [m]."""
+"""Arc length by which a world may be behind the foremost and still go its own way [m]."""
+RENEWED = 0.25
+"""Share of the worlds that go their own way in the rear half which get new settings at an exchange: a setting lasts for
+about four exchanges, 10 to 16 s, as what frees a scope may take that long."""
 ON = 0.01
 """Way that the foremost has to get on between two exchanges, or it counts as stuck [m]."""
 STUCK = 0.1
@@ -27,8 +33,21 @@ MOST_NEAR = 0.35
 """Largest arc length by which a world may be behind, after many exchanges in which the foremost was stuck [m]."""
 
 
+class Ranking(NamedTuple):
+    """The worlds, N of them, patient by patient, and within each the best first; P patients."""
+
+    order: torch.Tensor
+    """The worlds in that order, int64, shape (N,)."""
+    first: torch.Tensor
+    """Place of each patient's best world in it, int64, shape (P,); any of a patient without worlds."""
+    place: torch.Tensor
+    """Place of each world among those of its patient, from 0, shape (N,)."""
+    counts: torch.Tensor
+    """Worlds of each patient, shape (P,)."""
+
+
 class Population:
-    """The worlds of each patient: N worlds, P patients, W = N / P worlds of each. World ``n`` has patient ``n % P``.
+    """The worlds of each patient: N worlds, P patients, at first N / P worlds of each: world ``n`` has ``n % P``.
 
     The first of each patient's worlds keeps the expert's own settings and no disturbance until it falls behind.
     """
@@ -46,11 +65,12 @@ class Population:
         """
         self.scene, self.expert = scene, expert
         self.patients = len(scene.colon.patients)
-        self.each = scene.num_envs // self.patients
-        if self.each * self.patients != scene.num_envs:
+        if scene.num_envs % self.patients:
             raise ValueError(f"{scene.num_envs} worlds cannot be shared out evenly among {self.patients} patients.")
         self.random = torch.Generator(scene.device).manual_seed(seed)
         worlds = torch.arange(scene.num_envs, device=scene.device)
+        self.owner = worlds % self.patients
+        """Patient of each world, int64, shape (N,)."""
         expert.vary(worlds[self.patients :], self.random)
         self._plain = worlds < self.patients
         self._farthest = torch.zeros(self.patients, device=scene.device)
@@ -62,11 +82,31 @@ class Population:
         drift = MEMORY * self.expert.disturbance + DISTURBANCE * noise
         self.expert.disturbance.copy_(torch.where(self._plain[:, None], 0.0, drift))
 
+    def rank(self, score: torch.Tensor) -> Ranking:
+        """Order the worlds of each patient by a score, shape (N,), the highest first."""
+        best = score.argsort(descending=True, stable=True)
+        order = best[self.owner[best].argsort(stable=True)]
+        count = torch.bincount(self.owner, minlength=self.patients)
+        first = count.cumsum(0) - count
+        place = torch.empty_like(order)
+        place[order] = torch.arange(len(order), device=order.device) - first[self.owner[order]]
+        return Ranking(order, first.clamp(max=len(order) - 1), place, count)
+
+    def foremost(self, arc: torch.Tensor) -> torch.Tensor:
+        """Return the world of each patient whose tip is foremost, int64, shape (P,); any where it has no world.
+
+        Args:
+            arc: Arc lengths of the tips [m], shape (N,).
+        """
+        ranking = self.rank(arc)
+        return ranking.order[ranking.first]
+
     def exchange(self, score: torch.Tensor, arc: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         """Let the rear half of each patient's worlds take over the states of the foremost, with new settings.
 
-        Those whose tips are hardly behind keep their states: what gets a tip on may begin with a step back, or with
-        scope that goes into loops. The longer the foremost is stuck, the farther back the others may go to try again.
+        Those whose tips are hardly behind keep their states, and most of them their settings: what gets a tip on may
+        begin with a step back, or with scope that goes into loops. The longer the foremost is stuck, the farther back
+        the others may go to try again.
 
         Args:
             score: Higher is better, shape (N,).
@@ -75,18 +115,47 @@ class Population:
         Returns:
             The worlds that were moved and those whose states they took, int64, shape (n,).
         """
-        of_patient = score.view(self.each, self.patients)
-        order = of_patient.argsort(dim=0, descending=True)
-        front, rear = order[: max(1, self.each // FRONT)], order[self.each - self.each // BEHIND :]
-        pick = torch.randint(len(front), rear.shape, generator=self.random, device=self.scene.device)
-        number = torch.arange(self.patients, device=self.scene.device)
-        moved, sources = ((rows * self.patients + number).flatten() for rows in (rear, front.gather(0, pick)))
-        farthest = arc.view(self.each, self.patients).amax(dim=0)
+        ranking = self.rank(score)
+        moved = ranking.order[self._of_rear(ranking)]
+        farthest = arc[self.foremost(arc)]
         self._wait(farthest)
-        behind = arc[moved] < (farthest - self._near)[moved % self.patients]
-        self._renew(moved[~behind])
-        moved, sources = moved[behind], sources[behind]
+        behind = arc[moved] < (farthest - self._near)[self.owner[moved]]
+        near = moved[~behind]
+        self._renew(near[self._draw(len(near)) < RENEWED])
+        moved = moved[behind]
+        sources = self._leaders(ranking, self.owner[moved])
         if len(moved):
+            self._move(moved, sources)
+        return moved, sources
+
+    def hand_over(self, ended: Collection[int], score: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Give the worlds of patients that need none any more to the others, who take over states of their foremost.
+
+        Each world goes to a patient that has the fewest by then; of several to the one that has been stuck longest.
+
+        Args:
+            ended: The patients that need none.
+            score: Higher is better, shape (N,).
+
+        Returns:
+            The worlds that were moved and those whose states they took, int64, shape (n,).
+        """
+        ranking, near = self.rank(score), self._near.tolist()
+        count = ranking.counts.tolist()
+        done = set(ended)
+        free = [world for world, patient in enumerate(self.owner.tolist()) if patient in done]
+        left = [patient for patient in range(self.patients) if patient not in done and count[patient]]
+        takers = []
+        for _ in free if left else ():
+            taker = min(left, key=lambda patient: (count[patient], -near[patient]))
+            count[taker] += 1
+            takers.append(taker)
+        moved = torch.tensor(free[: len(takers)], dtype=torch.long, device=self.scene.device)
+        patients = torch.tensor(takers, dtype=torch.long, device=self.scene.device)
+        sources = self._leaders(ranking, patients)
+        if len(moved):
+            self.owner[moved] = patients
+            self.scene.colon.write_patient_to_sim(patients, moved)
             self._move(moved, sources)
         return moved, sources
 
@@ -102,14 +171,26 @@ class Population:
         Returns:
             The worlds, int64, shape (n,), and how far back each may go [m], shape (n,).
         """
-        order = arc.view(self.each, self.patients).argsort(dim=0, descending=True)[max(1, self.each // FRONT) :]
-        worlds = (order * self.patients + torch.arange(self.patients, device=self.scene.device)).flatten()
-        patient = worlds % self.patients
+        ranking = self.rank(arc)
+        worlds = ranking.order[(ranking.place >= self._in_front(ranking)[self.owner])[ranking.order]]
+        patient = self.owner[worlds]
         stuck = (self._near > STUCK)[patient] & (arc[worlds] > (self._farthest - NEAR)[patient])
-        draw = torch.rand(len(worlds), generator=self.random, device=self.scene.device) < 0.5
-        worlds = worlds[stuck & draw]
+        worlds = worlds[stuck & (self._draw(len(worlds)) < 0.5)]
         self._renew(worlds)
-        return worlds, self._near[worlds % self.patients]
+        return worlds, self._near[self.owner[worlds]]
+
+    def _of_rear(self, ranking: Ranking) -> torch.Tensor:
+        """Return which places of a ranking are of the rear half of a patient's worlds, shape (N,), bool."""
+        return (ranking.place >= (ranking.counts - ranking.counts // BEHIND)[self.owner])[ranking.order]
+
+    def _in_front(self, ranking: Ranking) -> torch.Tensor:
+        """Return how many worlds of each patient are followed, shape (P,)."""
+        return (ranking.counts // FRONT).clamp(min=1)
+
+    def _leaders(self, ranking: Ranking, patients: torch.Tensor) -> torch.Tensor:
+        """Return one of the foremost worlds for each of some patients, drawn at random, both int64, shape (n,)."""
+        pick = (self._draw(len(patients)) * self._in_front(ranking)[patients]).long()
+        return ranking.order[ranking.first[patients] + pick]
 
     def _wait(self, farthest: torch.Tensor) -> None:
         """Take note of the arc lengths of the foremost tips [m], shape (P,), and of whether they got on."""
@@ -129,3 +210,7 @@ class Population:
         self.expert.vary(worlds, self.random)
         self.expert.disturbance[worlds] = 0.0
         self._plain[worlds] = False
+
+    def _draw(self, count: int) -> torch.Tensor:
+        """Draw numbers from [0, 1), shape (count,)."""
+        return torch.rand(count, generator=self.random, device=self.scene.device)

@@ -31,6 +31,8 @@ class Entry:
     """Largest force of the wall on 50 mm of scope so far [N]."""
     drive_peak: float
     """Largest push on the base, or pull on a tip whose base is not driven, so far [N]."""
+    inserted: float = 0.0
+    """Largest length of scope that was inside so far [m]."""
 
 
 @dataclass
@@ -49,6 +51,8 @@ class Route:
     """Largest arc length of a tip [m]."""
     time: float = 0.0
     """Simulated time until the end [s]."""
+    before: float = 0.0
+    """Simulated time that an earlier drive took, from which this one goes on [s]."""
     problem: str = ""
     """Why it ended early; empty while it has not."""
     held_by: str = ""
@@ -70,11 +74,11 @@ class Route:
 
         Args:
             arc: Its arc length [m].
-            time: Simulated time [s].
+            time: Simulated time of this drive [s].
         """
-        self.arc, self.time = max(self.arc, arc), time
+        self.arc, self.time = max(self.arc, arc), self.before + time
         if arc > self._progress[0] + GAIN:
-            self._progress = (arc, time)
+            self._progress = (arc, self.time)
         return [name for name, (start, _) in self.bounds.items() if arc > start and name not in self.entries]
 
     def watch(self, patience: float, max_time: float) -> None:
@@ -86,12 +90,12 @@ class Route:
 
 
 class Peaks:
-    """Largest forces of each world since the rest pose, along the line of worlds that it took over from."""
+    """Largest forces of each world since the rest pose, and most scope inside, also of those that it took over from."""
 
     def __init__(self, scene: InteractiveScene):
         """Start at zero."""
         self._data = scene["endoscope"].data
-        self._values = torch.zeros(scene.num_envs, 3, device=scene.device)
+        self._values = torch.zeros(scene.num_envs, 4, device=scene.device)
 
     @property
     def memory(self) -> list[torch.Tensor]:
@@ -102,7 +106,7 @@ class Peaks:
         """Take note of the forces of the last control step."""
         data = self._data
         drive = torch.maximum(data.base_force.abs(), data.tip_pull_force_w.norm(dim=1))
-        now = torch.stack([data.tip_force_peak, data.window_force_peak.amax(dim=1), drive], dim=1)
+        now = torch.stack([data.tip_force_peak, data.window_force_peak.amax(dim=1), drive, data.inserted_length], dim=1)
         torch.maximum(self._values, now.nan_to_num(), out=self._values)
 
     def take_over(self, moved: torch.Tensor, sources: torch.Tensor) -> None:

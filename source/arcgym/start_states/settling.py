@@ -26,34 +26,28 @@ def settle(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> l
     """Return states after a while without commands, at rest; the scene's own state is left as it is.
 
     Args:
-        scene: Scene; its worlds are used, as many states at a time as its patients allow.
+        scene: Scene; its worlds are used, as many states at a time.
         states: Patient and state of each.
     """
-    sim = scene.sim
+    sim, colon = scene.sim, scene.colon
     now = {name: array.clone() for name, array in sim.world_arrays().items()}
+    owner = colon.data.patient.clone()
     settled: list[Snapshot | None] = [None] * len(states)
-    for batch in _batches([patient for patient, _ in states], len(scene.colon.patients), scene.num_envs):
-        worlds, which = list(batch), list(batch.values())
-        arrays = {name: np.stack([states[k][1].arrays[name] for k in which]) for name in now}
+    for first in range(0, len(states), scene.num_envs):
+        some = states[first : first + scene.num_envs]
+        worlds = list(range(len(some)))
+        if len(colon.patients) > 1:
+            colon.write_patient_to_sim(torch.tensor([patient for patient, _ in some], device=scene.device), worlds)
+        arrays = {name: np.stack([state.arrays[name] for _, state in some]) for name in now}
         sim.write_state({name: torch.from_numpy(array).to(scene.device) for name, array in arrays.items()}, worlds)
         sim.forward()
         for world, state in _until_steady(scene, worlds):
-            settled[batch[world]] = state.at_rest()
+            settled[first + world] = state.at_rest()
+    if len(colon.patients) > 1:
+        colon.write_patient_to_sim(owner)
     sim.write_state(now)
     sim.forward()
     return [state for state in settled if state is not None]
-
-
-def _batches(owners: Sequence[int], patients: int, worlds: int) -> Iterator[dict[int, int]]:
-    """Yield which state each world takes; world ``n`` can take those of patient ``n % patients``."""
-    waiting = {patient: [k for k, owner in enumerate(owners) if owner == patient] for patient in range(patients)}
-    while any(waiting.values()):
-        places = [world for world in range(worlds) if waiting[world % patients]]
-        batch: dict[int, int] = {}
-        for world in places:
-            if waiting[world % patients]:
-                batch[world] = waiting[world % patients].pop(0)
-        yield batch
 
 
 def _until_steady(scene: InteractiveScene, worlds: Sequence[int]) -> Iterator[tuple[int, Snapshot]]:

@@ -36,15 +36,16 @@ class Trail:
 
         Args:
             sim: The simulation.
-            patients: Number of patients P; world ``n`` has patient ``n % P``.
+            patients: Number of patients P.
             memory: Returns what is remembered of every world beside its state, tensors of shape (N, ...).
         """
         self._sim, self._memory = sim, memory
-        self._places: list[list[Place]] = [[] for _ in range(patients)]
+        self.places: list[list[Place]] = [[] for _ in range(patients)]
+        """States on the way of each patient's foremost world, the rearmost first."""
 
     def follow(self, patient: int, arc: float, world: int) -> None:
         """Keep the state of a patient's foremost world, if it got on by :data:`SPACING` since the last one."""
-        places = self._places[patient]
+        places = self.places[patient]
         if places and arc < places[-1].arc + SPACING:
             return
         state = {name: array[world].clone() for name, array in self._sim.world_arrays().items()}
@@ -52,11 +53,14 @@ class Trail:
         while places[0].arc < arc - REACH:
             places.pop(0)
 
-    def put_back(self, worlds: Sequence[int], least: Sequence[float], draws: Sequence[float]) -> list[int]:
+    def put_back(
+        self, worlds: Sequence[int], patients: Sequence[int], least: Sequence[float], draws: Sequence[float]
+    ) -> list[int]:
         """Put worlds into states that are drawn among those of their patients; :meth:`Simulation.forward` is called.
 
         Args:
             worlds: The worlds.
+            patients: Patient of each.
             least: Least arc length of the state of each [m].
             draws: Number in [0, 1) for each, that draws the state.
 
@@ -64,8 +68,8 @@ class Trail:
             The worlds that were put back: those for which there was a state.
         """
         chosen: list[tuple[int, Place]] = []
-        for world, low, draw in zip(worlds, least, draws, strict=True):
-            fit = [place for place in self._places[world % len(self._places)] if place.arc >= low]
+        for world, patient, low, draw in zip(worlds, patients, least, draws, strict=True):
+            fit = [place for place in self.places[patient] if place.arc >= low]
             if fit:
                 chosen.append((world, fit[int(draw * len(fit))]))
         if not chosen:

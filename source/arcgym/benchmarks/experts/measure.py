@@ -17,6 +17,7 @@ from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
 from arcgym.start_states import Drive, store
+from arcgym.start_states.halts import Halt, go_on, halt_of
 from arcgym.start_states.making import SPEED, key_of
 from arcgym.start_states.route import Route, what_holds
 from arcgym.start_states.settling import CONTROL_STEP
@@ -55,6 +56,8 @@ class Attempt:
     """Length of a scope with a shaft [m]; None takes the shipped one's, and capsules have none."""
     overrides: tuple[str, ...] = ()
     """Overrides of the robot's task, such as ``env.clinical=[all]``."""
+    halts: Path | None = None
+    """Folder in which drives are kept that were stopped from outside, and from which they go on; None for none."""
 
     @property
     def label(self) -> str:
@@ -78,12 +81,15 @@ def attempt(
     """
     scene = build(plan, stages)
     drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
+    _go_on(plan, drive)
     began, written = time.monotonic(), set[int]()
 
     def report(drive: Drive) -> None:
         for patient, route in enumerate(drive.routes):
             if route.running and time.monotonic() > plan.deadline:
                 route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
+                if plan.halts is not None:
+                    halt_of(drive, patient).save(_halt(plan, drive, patient))
             if not route.running and patient not in written:
                 written.add(patient)
                 about = {"robot": plan.robot, "tissue": plan.label, "worlds": plan.worlds, "seed": plan.seed}
@@ -97,6 +103,21 @@ def attempt(
     drive.run("cecum", report, settled=plan.keep_states)
     if plan.keep_states:
         _keep(scene, drive)
+
+
+def _halt(plan: Attempt, drive: Drive, patient: int) -> Path:
+    """Return the file of a drive that was stopped from outside."""
+    assert plan.halts is not None
+    words = (drive.scene.colon.patients[patient].name, drive.scene.endoscope.path.stem, *plan.label.split())
+    return plan.halts / ("-".join(words) + ".npz")
+
+
+def _go_on(plan: Attempt, drive: Drive) -> None:
+    """Let the drive go on where another one was stopped, in the patients in which one was."""
+    for patient in range(len(drive.routes)) if plan.halts is not None else ():
+        halt = Halt.load(_halt(plan, drive, patient))
+        if halt is not None:
+            go_on(drive, patient, halt)
 
 
 def build(plan: Attempt, stages: Sequence[Path]) -> InteractiveScene:
