@@ -189,15 +189,17 @@ def test_each_task_may_have_checkpoints_of_its_own(tmp_path: Path) -> None:
     from arcgym.evaluation.evaluate import EvaluationOptions, run_record
     from arcgym.evaluation.suites import read_suites
     from arcgym.evaluation.trials import read_conditions
+    from arcgym.rl.checkpoint import write_checkpoint
 
     for task in ("ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"):
         (tmp_path / task).mkdir()
         for seed in (1, 2):
-            (tmp_path / task / f"{seed}.pt").write_text(f"{task} {seed}")
+            write_checkpoint(tmp_path / task / f"{seed}.pt", {"infos": {"transitions": 10 * seed}, "of": task})
     options = EvaluationOptions((f"{tmp_path}/{{task}}/1.pt", f"{tmp_path}/{{task}}/2.pt"), "paper")
     assert options.agents_for("ARC-Sigmoid-Magnetic:dense")[1] == f"{tmp_path}/ARC-Sigmoid-Magnetic/2.pt"
     conditions = read_conditions(read_suites()["paper"].conditions_path)
     run = run_record(["ARC-Rectum-Magnetic", "ARC-Sigmoid-Magnetic"], conditions, options)
     assert len(set(run["checkpoint_sha256"])) == 4 and run["trained_on"] == [None] * 4
+    assert run["training"] == [{"transitions": 10}, {"transitions": 20}] * 2
     with pytest.raises(UsageError, match="No checkpoint .*ARC-Splenic-Magnetic/1.pt, "):
         run_record(["ARC-Splenic-Magnetic"], conditions, options)

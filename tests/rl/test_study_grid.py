@@ -185,6 +185,7 @@ def test_values_are_written_in_the_grammar_of_hydra(value, text):
         ("minutes: 0", "minutes is 0"),
         ("grid: {sed: [1]}", "varies 'sed'"),
         ("grid: {seed: []}", "gives 'seed' no values"),
+        ("{grid: {seed: [1]}, skip: [{gamma: 1}]}", "names 'gamma', expected names of the grid"),
         ("algorithms: {sac: {worlds: 4}}", "gives 'sac' 'worlds'"),
         ("[1, 2]", "holds list"),
     ],
@@ -201,3 +202,29 @@ def test_shipped_studies_are_whole(path):
     cells = all_cells(read_study(find_study(path.stem, SHIPPED)), FOLDER)
     check_cells(cells)
     assert len(cells) > 1
+
+
+def test_cells_that_are_skipped_are_not_there():
+    """Of six, capsule with seed 2 goes, and SAC with both seeds of the magnetic scope."""
+    grid = {"seed": [1, 2], "algorithm": ["ppo", "sac"], "robot": ["Capsule", "Magnetic"]}
+    skip = [{"robot": "Capsule", "seed": [2, 3]}, {"algorithm": ["sac"], "robot": "Magnetic"}]
+    assert [cell.name for cell in all_cells(study(task="rectum", grid=grid, skip=skip), FOLDER)] == [
+        "rectum-capsule_ppo_seed1",
+        "rectum-magnetic_ppo_seed1",
+        "rectum-capsule_sac_seed1",
+        "rectum-magnetic_ppo_seed2",
+    ]
+
+
+def test_the_papers_table_has_three_seeds_where_the_paper_has_them():
+    """PPO with both rewards on four tasks: three seeds magnetic, one capsule, one pushed; the budget is the task's."""
+    cells = all_cells(read_study(find_study("paper_table", SHIPPED)), FOLDER)
+    ppo = [cell for cell in cells if cell.algorithm in ("ppo", "ppo_paper")]
+    assert len(ppo) == 2 * 4 * (3 + 1 + 1)
+    by_name = {cell.name: cell for cell in cells}
+    assert set(by_name["sigmoid-magnetic_a2c_paper_seed1"].overrides) == {
+        "agent.max_transitions=221184",
+        "env.reward=paper",
+        "env.actions.tip.forward_velocity=0.04",
+    }
+    assert by_name["sigmoid-proximal_ppo_seed1"].overrides == ("agent.max_transitions=307200",)

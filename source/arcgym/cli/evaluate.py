@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.cli.arguments import add_fields, argument, positive, read_fields
+from arcgym.cli.stopping import stopped_cleanly
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.sharing import Share, share
 from arcgym.evaluation.trials import Conditions
@@ -79,10 +80,11 @@ def run(namespace: argparse.Namespace) -> None:
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
         return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
-    if min(args.processes, len(conditions.trials)) > 1:
-        folder = _evaluate_in_processes(args, conditions, len(tasks))
-    else:
-        folder = evaluate(tasks, conditions, load, options, Path(args.out))
+    with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"):
+        if min(args.processes, len(conditions.trials)) > 1:
+            folder = _evaluate_in_processes(args, conditions, len(tasks))
+        else:
+            folder = evaluate(tasks, conditions, load, options, Path(args.out))
     _write_reports(folder)
     if args.videos:
         from arcgym.evaluation.videos import film

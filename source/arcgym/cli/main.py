@@ -28,6 +28,7 @@ COMMANDS = {
     "results merge": ("arcgym.cli.results_merge", "put the results of several machines into one folder"),
     "results page": ("arcgym.cli.results_page", "draw an evaluation as a page"),
     "results paper": ("arcgym.cli.results_paper", "show an evaluation beside the paper's figures"),
+    "results summary": ("arcgym.cli.results_summary", "write all tables of result folders as one page"),
     "results check": ("arcgym.cli.results_check", "check a result folder before it is published"),
     "results leaderboard": ("arcgym.cli.results_leaderboard", "make the leaderboard of submitted result folders"),
     "replay": ("arcgym.cli.replay", "make a recorded episode again and compare it bit for bit"),

@@ -7,8 +7,9 @@
     arcgym study my_study.yaml seed=1,2,3 --launcher submitit_slurm hydra.launcher.partition=gpu
 
 CONFIG is a YAML file, or the name of a study that comes with the package. The study goes to logs/studies/<name>.
-Called again, it leaves finished cells alone and goes on with the others from their checkpoints. Other arguments are
-overrides in Hydra's grammar: fields of the study, and hydra.launcher.… for the launcher.
+Called again, it leaves finished cells alone and goes on with the others from their checkpoints. A study with a suite
+runs its trials too, in trials/. Other arguments are overrides in Hydra's grammar: fields of the study, and
+hydra.launcher.… for the launcher.
 """
 
 from __future__ import annotations
@@ -69,12 +70,33 @@ def run(namespace: argparse.Namespace) -> int:
     if args.dry_run:
         for cell in cells:
             print(f"{cell.name}: {cell.read_state()['state']}")
+        report_trials(cells, cfg.suite, each=True)
         return 0
     devices = _devices(args.devices) if args.launcher == "pool" else ()
     print(f"study {cfg.name}: {len(cells)} cells, {folder}", flush=True)
     options = LaunchOptions(args.launcher, devices, args.per_device, args.stop_after, changes)
     launch(cfg, folder, options)
-    return report(folder, cells)
+    status = report(folder, cells)
+    return max(status, report_trials(cells, cfg.suite)) if status != 1 else 1
+
+
+def report_trials(cells: list[Any], suite: str | None, each: bool = False) -> int:
+    """Say in which state the trials of the study's suite are, and return 0 if all have ended, else 3.
+
+    Args:
+        cells: Cells of the study.
+        suite: The suite; None has no trials.
+        each: Whether to name each result folder.
+    """
+    from arcgym.rl.studies.suite_trials import all_trials
+
+    found = {trials.name: trials.state() for trials in all_trials(cells, suite)} if suite else {}
+    for name, state in found.items():
+        if each or state == "of other policies":
+            print(f"trials/{name}: {state}")
+    if found:
+        print(f"trials of {suite}: {', '.join(f'{count} {state}' for state, count in Counter(found.values()).items())}")
+    return 0 if set(found.values()) <= {"finished"} else 3
 
 
 def report(folder: Path, cells: list[Any]) -> int:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import platform
 import subprocess
 from functools import lru_cache
@@ -98,10 +99,14 @@ def versions() -> dict[str, str]:
 
 
 def _commit() -> dict[str, str]:
-    """Return the commit of ARCGym's own checkout, marked where files differ from it; nothing where it is installed."""
+    """Return the commit of ARCGym's own checkout, marked where files differ from it.
+
+    A copy without a checkout, such as one on a cluster, has what the variable ``ARCGYM_COMMIT`` says, or nothing.
+    """
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
-        return {}
+        said = os.environ.get("ARCGYM_COMMIT", "")
+        return {"arcgym commit": said} if said else {}
     try:
         commit, changed = (
             subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10).stdout.strip()

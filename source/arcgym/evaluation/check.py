@@ -41,10 +41,15 @@ BASIC = ("task", "agent", *COLUMNS, "success", "end", "reward", "seconds")
 """Columns that every row must have."""
 
 
-def problems(path: Path) -> list[str]:
+def problems(path: Path, whole: bool = True) -> list[str]:
     """Return what is wrong with a submission, a line each; none if it can be published.
 
     Trials must be those of the suite's condition file, each of them once, with possible values.
+
+    Args:
+        path: The folder.
+        whole: Whether it is a submission: with all tasks, trials and training seeds of the suite, and without rules on
+            actions that read the simulator's depth.
 
     Raises:
         UsageError: It is no result folder.
@@ -54,11 +59,8 @@ def problems(path: Path) -> list[str]:
     if suite is None:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
     conditions = read_conditions(suite.conditions_path)
-    return [
-        *_run_problems(run, conditions, suite),
-        *_row_problems(rows, conditions),
-        *_missing_trials(rows, conditions, suite),
-    ]
+    found = [*_run_problems(run, conditions, suite), *_row_problems(rows, conditions), *_other_tasks(rows, suite)]
+    return found + [*_unfit_to_compete(run, conditions), *_missing_trials(rows, conditions, suite)] * whole
 
 
 def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> list[str]:
@@ -71,15 +73,21 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     more = [text for text in run.get("overrides", []) if text not in suite.overrides and not text.startswith("agent.")]
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
-    checkpoints, wanted = len(set(run.get("checkpoint_sha256", []))), min(conditions.groups, SEEDS)
-    if run.get("agent") == "checkpoint" and 0 < checkpoints < wanted:
-        found.append(f"has {checkpoints} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups")
     for task, changes in run.get("changes", {}).items():
         asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
         allowed = {path: value for path, _, value in asked}
         for path, (registered, used) in changes.items():
             if not _is_agents(path, used) and str(used).lower() != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
+    return found
+
+
+def _unfit_to_compete(run: dict[str, Any], conditions: Conditions) -> list[str]:
+    """Return a problem for too few training seeds, and for rules on actions that know more than the policy."""
+    found = []
+    checkpoints, wanted = len(set(run.get("checkpoint_sha256", []))), min(conditions.groups, SEEDS)
+    if run.get("agent") == "checkpoint" and 0 < checkpoints < wanted:
+        found.append(f"has {checkpoints} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups")
     for task, inputs in run.get("inputs", {}).items():
         if inputs["simulator_depth"]:
             found.append(f"{task} was run with rules on actions that read the simulator's depth")
@@ -168,13 +176,21 @@ def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:
             yield name, value, f"above the peak, {peak}"
 
 
-def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
-    """Return a problem for each task that is not the suite's, or that lacks trials."""
+def _other_tasks(rows: list[Row], suite: Suite) -> list[str]:
+    """Return a problem for each task that is not the suite's."""
     named = {row["task"] for row in rows if "task" in row}
-    robots = {split_task(task)[0].split("-")[-1] for task in named}
-    others = sorted(named - {task for robot in robots for task in suite.tasks(robot)})
-    found = [f"{task} is no task of the suite" for task in others]
-    for robot in sorted(robots):
+    own = {task for robot in _robots(rows) for task in suite.tasks(robot)}
+    return [f"{task} is no task of the suite" for task in sorted(named - own)]
+
+
+def _robots(rows: list[Row]) -> list[str]:
+    return sorted({split_task(row["task"])[0].split("-")[-1] for row in rows if "task" in row})
+
+
+def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:
+    """Return a problem for each task that lacks trials."""
+    found = []
+    for robot in _robots(rows):
         for task in suite.tasks(robot):
             done = {row["trial"] for row in rows if row["task"] == task}
             missing = [trial.trial for trial in conditions.trials if trial.trial not in done]

@@ -22,6 +22,7 @@ from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.managers import EventTermCfg
+from arcgym.rl.checkpoint import read_checkpoint
 from arcgym.rl.device import choose_device, place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.params import differences, read_params
@@ -133,6 +134,7 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
         "checkpoint": [str(path) for path in checkpoints],
         "checkpoint_sha256": [file_sha256(path) for path in checkpoints],
         "trained_on": [trained_on(path) for path in checkpoints],
+        "training": [training_of(path) for path in checkpoints],
         "suite": options.suite,
         "conditions": conditions.name,
         "conditions_sha256": conditions.sha256,
@@ -146,6 +148,16 @@ def trained_on(checkpoint: Path) -> Any:
     """Return the patients that a checkpoint was trained on, as its run's parameters name them; None if it has none."""
     saved = read_params(checkpoint.parent)
     return None if saved is None else saved.env["scene"]["colon"]["usd_path"]
+
+
+def training_of(checkpoint: Path) -> dict[str, Any]:
+    """Return agent, task, limits, transitions and seconds that a checkpoint was trained with, as far as it says so."""
+    saved, infos = read_params(checkpoint.parent), read_checkpoint(checkpoint)["infos"] or {}
+    found = {name: infos[name] for name in ("transitions", "seconds") if name in infos}
+    if saved is None:
+        return found
+    limits = saved.agent.get("algorithm", {}).get("limits")
+    return {"agent": saved.agent_key, "task": saved.task, **found} | ({"limits": limits} if limits else {})
 
 
 def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:

@@ -63,8 +63,8 @@ class BehaviorCloningRunner(OnPolicyRunner):
         self._describe()
         if self.clock.is_over:
             raise UsageError(
-                f"Asking the expert took {self.clock.seconds / 60.0:.1f} minutes, all of agent.max_minutes, and "
-                "nothing was learnt: give more minutes, or fewer agent.algorithm.expert_steps."
+                f"Asking the expert took {self.clock}, all of agent.{self.clock.limit}, and nothing was learnt: give "
+                "more, or fewer agent.algorithm.expert_steps."
             )
 
     def _describe(self) -> None:

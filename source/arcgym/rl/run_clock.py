@@ -15,15 +15,17 @@ class BudgetSpent(Exception):
 
 
 class RunClock:
-    """Counts seconds of learning and transitions of a run, and knows when its time is over."""
+    """Counts seconds of learning and transitions of a run, and knows when it has had its share."""
 
-    def __init__(self, max_minutes: float | None = None):
+    def __init__(self, max_minutes: float | None = None, max_transitions: int | None = None):
         """Start a run that has taken nothing yet.
 
         Args:
             max_minutes: Minutes of learning that the run may take; None is without end.
+            max_transitions: Transitions that the run may take; None is without end.
         """
         self.max_seconds = None if max_minutes is None else 60.0 * max_minutes
+        self.max_transitions = max_transitions
         self.transitions = 0
         self._before = 0.0
         self._start: float | None = None
@@ -35,12 +37,25 @@ class RunClock:
 
     @property
     def fraction(self) -> float:
-        """Share of the time that is over; 0 without an end."""
-        return 0.0 if self.max_seconds is None else self.seconds / self.max_seconds
+        """Share of the time or of the transitions that is over, the larger one; 0 without an end."""
+        time_share = 0.0 if self.max_seconds is None else self.seconds / self.max_seconds
+        return max(time_share, 0.0 if self.max_transitions is None else self.transitions / self.max_transitions)
+
+    @property
+    def limit(self) -> str:
+        """Field of the agent's configuration that ends the run."""
+        spent = self.max_transitions is not None and self.transitions >= self.max_transitions
+        return "max_transitions" if spent else "max_minutes"
+
+    def __str__(self) -> str:
+        """Return what the run has taken, in words."""
+        return f"{self.seconds / 60.0:.1f} minutes and {self.transitions} transitions"
 
     @property
     def is_over(self) -> bool:
-        """Whether the time is over. All processes of a run get the first one's answer."""
+        """Whether time or transitions are over. All processes of a run get the first one's answer."""
+        if self.limit == "max_transitions":
+            return True
         if self.max_seconds is None:
             return False
         is_over = torch.tensor(self.seconds >= self.max_seconds, dtype=torch.uint8)

@@ -54,7 +54,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 "and its relatives alone can leave their policy as it is."
             )
         self.completed_iterations = 0
-        self.clock = RunClock(train_cfg.get("max_minutes"))
+        self.clock = RunClock(train_cfg.get("max_minutes"), train_cfg.get("max_transitions"))
         self.best_reward = float("-inf")
         self.last_checkpoint: Path | None = None
         self._policy_weights: list[torch.nn.Parameter] = []
@@ -91,7 +91,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 super().learn(0 if self.clock.is_over else num_learning_iterations, init_at_random_ep_len)
             except BudgetSpent:
                 self._save_last(self.current_learning_iteration)
-                print(f"learning ended after {self.clock.seconds / 60.0:.1f} minutes, as agent.max_minutes says")
+                print(f"learning ended after {self.clock}, as agent.{self.clock.limit} says")
             except TrainingInterrupted:
                 self._save_last(max(self.completed_iterations - 1, 0))
                 raise

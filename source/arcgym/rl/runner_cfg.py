@@ -279,6 +279,10 @@ class RslRlOnPolicyRunnerCfg:
     """Minutes of learning after which a run ends, resumed parts included; None has no such end. Building the worlds
     does not count. Set it to compare unlike algorithms at equal time."""
 
+    max_transitions: int | None = None
+    """Transitions after which a run ends, resumed parts included, with the update that reaches them; None has no such
+    end. Set it to compare unlike algorithms at equal experience."""
+
     save_interval: int = 50
     """Updates between two checkpoints; the last one is always kept."""
 
@@ -313,9 +317,9 @@ class RslRlOnPolicyRunnerCfg:
     """Whether the worlds start at random places of their time limit, so that time-outs do not come all at once."""
 
     final_learning_rate: float | None = None
-    """Learning rate at the end of ``max_iterations``, or of ``max_minutes`` if that comes first, reached on a line from
-    ``algorithm.learning_rate``; None keeps it constant. Set it for long runs that get worse late. Needs the schedule
-    ``fixed``."""
+    """Learning rate at the end of ``max_iterations``, or of ``max_minutes`` or ``max_transitions`` if that comes first,
+    reached on a line from ``algorithm.learning_rate``; None keeps it constant. Set it for long runs that get worse
+    late. Needs the schedule ``fixed``."""
 
     check_for_nan: bool = True
     """Whether the runner stops at a NaN in observation or reward. The environment resets broken worlds before that."""
@@ -349,7 +353,7 @@ class RslRlOnPolicyRunnerCfg:
             FieldError: A value is out of range.
         """
         require_at_least(self, -1, "seed")
-        require_at_least(self, 1, "num_steps_per_env", "max_iterations", "save_interval")
+        require_at_least(self, 1, "num_steps_per_env", "max_iterations", "max_transitions", "save_interval")
         require(self, "logger", ("tensorboard", *LOG_WRITERS))
         require_positive(self, "clip_actions", "max_minutes")
         require_non_negative(self, "final_learning_rate")

@@ -70,9 +70,13 @@ class Cell:
     @property
     def name(self) -> str:
         """Name of the cell, which is that of its folder."""
+        return self.name_with(self.seed)
+
+    def name_with(self, seed: Any) -> str:
+        """Return the name of this cell with another text as its seed, such as ``1+2+3`` of several cells together."""
         task = self.task.removeprefix("ARC-").lower()
         varied = [f"{path.rpartition('.')[2]}={value}" for path, value in self.axes.items()]
-        return re.sub(r"[^\w.=+-]+", "_", "_".join([task, self.algorithm, f"seed{self.seed}", *varied]))
+        return re.sub(r"[^\w.=+-]+", "_", "_".join([task, self.algorithm, f"seed{seed}", *varied]))
 
     @property
     def folder(self) -> Path:

@@ -38,6 +38,14 @@ def hydra_value(value: Any) -> str:
     return text if _PLAIN.fullmatch(text) else "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'"
 
 
+def is_left_out(values: Mapping[str, Any]) -> bool:
+    """Return whether one of ``skip`` leaves out the cell of these values, which are those of :func:`make_cell`."""
+    return any(
+        all(_value(values, name) in (given if isinstance(given, list) else [given]) for name, given in names.items())
+        for names in values.get("skip", ())
+    )
+
+
 def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
     """Return a cell from a study's configuration in which each name of the grid has one value.
 
@@ -62,12 +70,17 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
     axes = {}
     for name in values["axes"]:
         if name not in NAMED:
-            axes[name] = values[name] if name in AXES else _at(values, name)
+            axes[name] = _value(values, name)
             (merged if name in AXES else overrides)[name] = axes[name]
     texts = (*(f"{path}={hydra_value(value)}" for path, value in overrides.items()), *whole)
     return Cell(
         study, task, values["algorithm"], values["seed"], axes, evaluate=values["evaluate"], overrides=texts, **merged
     )
+
+
+def _value(values: Mapping[str, Any], name: str) -> Any:
+    """Return the value of a name that the grid may vary."""
+    return values[name] if name in AXES else _at(values, name)
 
 
 def _key(name: str) -> str:

@@ -20,10 +20,11 @@ import yaml
 from arcgym.rl.agent_checks import check_installed
 from arcgym.rl.run_folder import write_whole
 from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.grid import NAMED, make_cell, sweep_overrides
+from arcgym.rl.studies.grid import NAMED, is_left_out, make_cell, sweep_overrides
 from arcgym.rl.studies.run_cell import run_cell
 from arcgym.rl.studies.stopping import stopping_on_signals, was_stopped
 from arcgym.rl.studies.study_cfg import AXES, StudyCfg
+from arcgym.rl.studies.suite_trials import seeds_of
 from arcgym.utils.coerce import from_dict, to_plain
 from arcgym.utils.configclass import validate
 from arcgym.utils.errors import UsageError
@@ -77,6 +78,7 @@ def launch(cfg: StudyCfg, folder: Path, options: LaunchOptions) -> list[Cell]:
         check_installed(package, f"--launcher {options.launcher}", extra)
     values = to_plain(cfg) | {
         **_axes(cfg, options.overrides),
+        "seeds": seeds_of(cells),
         "folder": str(folder),
         "device": None,
         "stop_at": None if options.stop_after is None else time.time() + 60.0 * options.stop_after,
@@ -126,7 +128,8 @@ def all_cells(cfg: StudyCfg, folder: Path, overrides: Sequence[str] = ()) -> lis
             OmegaConf.update(values, key, value, force_add=True)
         plain_values: Any = OmegaConf.to_container(values, resolve=True)
         _check_types({name: plain_values[name] for name in names})
-        found.append(make_cell(plain_values, folder))
+        if not is_left_out(plain_values):
+            found.append(make_cell(plain_values, folder))
     return found
 
 

@@ -9,17 +9,19 @@ import fcntl
 import re
 import time
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
 from arcgym.rl.studies.cell import LOG_FILE, Cell
-from arcgym.rl.studies.grid import make_cell
+from arcgym.rl.studies.grid import is_left_out, make_cell
 from arcgym.rl.studies.job_signals import JobEndedError, start_child
 from arcgym.rl.studies.stopping import was_stopped
+from arcgym.rl.studies.suite_trials import SuiteTrials, trials_of
 
 TAIL = 15
 """Lines of the log that are kept of a cell that failed."""
@@ -38,12 +40,17 @@ def run_cell(cfg: DictConfig) -> dict[str, Any]:
     """
     values: Any = OmegaConf.to_container(cfg, resolve=True)
     cell = make_cell(values, Path(values["folder"]))
-    with _alone(cell) as is_mine:
+    if is_left_out(values):
+        return {"name": cell.name, "state": "left out"}
+    with _alone(cell.folder) as is_mine:
         try:
             state = _run(cell, values["device"], values["stop_at"]) if is_mine else "running"
         except Exception:  # of this process: the other cells go on
             state = "failed"
             cell.write_state(state, status="none", log=traceback.format_exc())
+    if state == "finished" and values.get("suite"):
+        trials = trials_of(cell, values["suite"], values["seeds"][cell.name_with("")])
+        _run_trials(trials, values["device"], values["stop_at"])
     return {"name": cell.name, "state": state}
 
 
@@ -63,7 +70,8 @@ def _run(cell: Cell, device: str | None, stop_at: float | None) -> str:
     print(f"{cell.name}: {'goes on' if cell.checkpoint() else 'starts'}", flush=True)
     start = time.monotonic()
     try:
-        status, stopped = _wait(cell, device, stop_at)
+        log_file = cell.folder / LOG_FILE
+        status, stopped = _wait(cell.name, cell.command(device), log_file, stop_at, partial(describe_progress, cell))
     except JobEndedError as error:
         print(f"{cell.name}: {error}", flush=True)
         status, stopped = 0, True
@@ -75,11 +83,32 @@ def _run(cell: Cell, device: str | None, stop_at: float | None) -> str:
     return state
 
 
-def _wait(cell: Cell, device: str | None, stop_at: float | None) -> tuple[int, bool]:
-    """Run the cell's command and return its exit status, and whether it was asked to stop."""
-    command = cell.command(device)
+def _run_trials(trials: SuiteTrials, device: str | None, stop_at: float | None) -> None:
+    """Run the trials of cells that are all finished, unless they have ended or another process runs them."""
+    with _alone(trials.folder) as is_mine:
+        if not is_mine or trials.state() not in ("pending", "begun") or _is_time(stop_at):
+            return
+        print(f"{trials.name}: trials of {trials.suite}", flush=True)
+        start = time.monotonic()
+        describe = partial(_count_rows, trials)
+        try:
+            status, _ = _wait(trials.name, trials.command(device), trials.log, stop_at, describe)
+            ended = f"status {status}, see {trials.log}" if status else "done"
+        except JobEndedError as error:
+            ended = str(error)
+        print(f"{trials.name}: {_count_rows(trials)}, {time.monotonic() - start:.0f} s: {ended}", flush=True)
+
+
+def _count_rows(trials: SuiteTrials) -> str:
+    return f"{trials.rows()} trials"
+
+
+def _wait(
+    name: str, command: list[str], log_file: Path, stop_at: float | None, describe: Callable[[], str]
+) -> tuple[int, bool]:
+    """Run a command and return its exit status, and whether it was asked to stop."""
     stopped, reported = False, time.monotonic()
-    with (cell.folder / LOG_FILE).open("a") as log:
+    with log_file.open("a") as log:
         print("$", *command[1:], file=log, flush=True)
         with start_child(command, log) as process:
             while process.poll() is None:
@@ -89,7 +118,7 @@ def _wait(cell: Cell, device: str | None, stop_at: float | None) -> tuple[int, b
                     process.terminate()
                 if time.monotonic() - reported > REPORT_S:
                     reported = time.monotonic()
-                    print(f"{cell.name}: {describe_progress(cell)}", flush=True)
+                    print(f"{name}: {describe()}", flush=True)
     return process.returncode, stopped
 
 
@@ -121,10 +150,10 @@ def _end_of_log(cell: Cell, size: int) -> str:
 
 
 @contextmanager
-def _alone(cell: Cell) -> Iterator[bool]:
-    """Yield whether no other process runs the cell while the block does."""
-    cell.folder.mkdir(parents=True, exist_ok=True)
-    with (cell.folder / "lock").open("w") as lock:
+def _alone(folder: Path) -> Iterator[bool]:
+    """Yield whether no other process writes to the folder while the block does."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

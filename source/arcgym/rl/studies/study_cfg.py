@@ -54,6 +54,10 @@ class StudyCfg:
     evaluate: bool = True
     """Whether each world's first episode is run with the last policy. The table needs it."""
 
+    suite: str | None = None
+    """Suite of :mod:`arcgym.evaluation` whose trials the last policies run once all seeds of a cell are finished, each
+    seed its group of them; the results go to ``trials/`` in the study's folder. None runs no trials."""
+
     env: dict[str, Any] = {}
     """Overrides of the environment's configuration in all cells, by path, such as ``{"lumen": "metric"}``."""
 
@@ -74,6 +78,10 @@ class StudyCfg:
     """Values by name: ``algorithm``, ``task``, ``robot``, ``seed``, ``num_envs``, ``minutes``, ``max_iterations``, or a
     path that starts with ``env.`` or ``agent.``. The last name varies fastest."""
 
+    skip: list[dict[str, Any]] = []
+    """Cells of the grid that are left out: those that have, for each name of one of these, its value or one of its
+    values, as in ``[{robot: Capsule, seed: [2, 3]}]``. Names are those of the grid."""
+
     def validate_config(self) -> None:
         """Check numbers and names.
 
@@ -91,6 +99,9 @@ class StudyCfg:
                 raise FieldError(self, "grid", f"varies '{name}', expected {paths} or one of: {', '.join(AXES)}.")
             if not values:
                 raise FieldError(self, "grid", f"gives '{name}' no values, expected one or more.")
+        for name in (name for names in self.skip for name in names):
+            if name not in ("algorithm", "task", "robot", "seed") and name not in self.grid:
+                raise FieldError(self, "skip", f"names '{name}', expected names of the grid: {', '.join(self.grid)}.")
         for kind in ("tasks", "algorithms"):
             for owner, settings in getattr(self, kind).items():
                 for name in settings:

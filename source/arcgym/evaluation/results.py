@@ -1,0 +1,147 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Result folders that can be shown: what was run is known, and the trials are those of a suite. Loads no torch."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from arcgym.evaluation.check import problems
+from arcgym.evaluation.result_folder import RUN_FILE, Row, read_run, read_trial_rows
+from arcgym.evaluation.suites import read_suites, split_task
+from arcgym.evaluation.trials import read_conditions
+
+LARGEST_SHARE = 10
+"""Shares of a suite's trials that are shown: all of them to each tenth one."""
+
+COMMIT = "arcgym commit"
+"""Entry of a run's versions."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """Trials of one agent in one task."""
+
+    folder: Path
+    """Result folder."""
+
+    task: str
+    """Registered name, with ``:variant`` behind it or without."""
+
+    run: dict[str, Any]
+    """What was run."""
+
+    rows: list[Row]
+    """A row a trial."""
+
+    @property
+    def suite(self) -> str:
+        """Name of the suite."""
+        return str(self.run["suite"])
+
+    @property
+    def segment(self) -> str:
+        """Segment or journey, such as ``Sigmoid``."""
+        return split_task(self.task)[0].split("-")[1]
+
+    @property
+    def robot(self) -> str:
+        """Robot, such as ``Magnetic``."""
+        return split_task(self.task)[0].split("-")[2]
+
+    @property
+    def method(self) -> str:
+        """What was trained and how, as :func:`method_of` names it, or the agent that was not trained."""
+        return method_of(self.run, self.task)
+
+    @property
+    def limits(self) -> str:
+        """Limits on the costs of an episode in training, such as ``tip_force 0.3``."""
+        training = (self.run.get("training") or [{}])[0]
+        return ", ".join(f"{cost} {limit:g}" for cost, limit in (training.get("limits") or {}).items())
+
+    @property
+    def reads_depth(self) -> bool:
+        """Whether rules on the actions read the simulator's depth, which the policy itself does not see."""
+        return any(inputs["simulator_depth"] for inputs in self.run.get("inputs", {}).values())
+
+    @property
+    def checkpoints(self) -> list[str]:
+        """SHA-256 of the checkpoints that ran these trials, each once."""
+        return list(dict.fromkeys(self.run.get("checkpoint_sha256", [])))
+
+    @property
+    def commit(self) -> str:
+        """Commit of the code that ran them."""
+        return str(self.run["versions"][COMMIT])
+
+    @property
+    def transitions(self) -> float:
+        """Most transitions of a training run; 0 where nothing was trained."""
+        return max((one.get("transitions", 0) for one in self.run.get("training", [])), default=0)
+
+
+def method_of(run: dict[str, Any], task: str) -> str:
+    """Return the name of a method: its agent, with ``_paper`` where reward and velocity are the paper's.
+
+    ``_paper_free`` is the paper's reward alone, and ``_velocity`` a constant velocity alone. An agent that was not
+    trained has its own name.
+    """
+    if run["agent"] != "checkpoint":
+        return str(run["agent"])
+    training = (run.get("training") or [{}])[0]
+    key = str(training.get("agent") or "unknown")
+    name = key.removesuffix("cfg_entry_point").removeprefix("rsl_rl").strip("_") or "ppo"
+    changes = run.get("changes", {}).get(task, {})
+    reward = changes.get("reward", [None, None])[1]
+    constant = changes.get("actions.tip.forward_velocity", [None, None])[1] is not None
+    suffix = f"_{reward}" + ("" if constant else "_free") if reward else "_velocity" * constant
+    return name + suffix
+
+
+def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list[str]]]:
+    """Return what can be shown of all result folders below some folders, and why the rest is left out.
+
+    Shown are trials whose code, checkpoint and condition file are known and are those of the suite, all of them or each
+    n-th one: those that end early come first, so that another part would be another sample.
+    """
+    found: list[Result] = []
+    left_out: dict[Path, list[str]] = {}
+    for path in sorted(dict.fromkeys(file.parent for folder in folders for file in folder.rglob(RUN_FILE))):
+        run, rows = read_run(path), read_trial_rows(path)
+        wrong = [*_unknown(run), *problems(path, whole=False)]
+        for task in [] if wrong else sorted({row["task"] for row in rows}):
+            result = Result(path, task, run, [row for row in rows if row["task"] == task])
+            if _is_whole(result):
+                found.append(result)
+            else:
+                wrong.append(f"{task} has {len(result.rows)} trials, neither all nor each n-th of them")
+        if wrong:
+            left_out[path] = wrong
+    return found, left_out
+
+
+def best(results: Sequence[Result]) -> Result | None:
+    """Return the result of several of one cell that says most: training seeds count first, trials, then transitions."""
+
+    def weight(one: Result) -> tuple[int, int, float, str]:
+        return len(one.checkpoints), len(one.rows), one.transitions, one.folder.name
+
+    return max(results, key=weight, default=None)
+
+
+def _unknown(run: dict[str, Any]) -> list[str]:
+    """Return what a run does not say of itself."""
+    found = [] if run.get("versions", {}).get(COMMIT) else ["the commit is not known"]
+    if run.get("agent") == "checkpoint" and not run.get("training"):
+        found.append("what its checkpoint was trained with is not known")
+    return found
+
+
+def _is_whole(result: Result) -> bool:
+    """Return whether there are all trials of the suite, or each n-th of them from the first on."""
+    numbers = [trial.trial for trial in read_conditions(read_suites()[result.suite].conditions_path).trials]
+    return {row["trial"] for row in result.rows} in [set(numbers[::n]) for n in range(1, LARGEST_SHARE + 1)]

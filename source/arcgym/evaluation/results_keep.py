@@ -1,0 +1,65 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Small copies of result folders, for a repository: what the page of results is made of. Loads no torch."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from arcgym.evaluation.check import BASIC
+from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, Row
+from arcgym.evaluation.results import Result
+from arcgym.evaluation.results_page import METRICS
+from arcgym.evaluation.summary import KEY_METRICS
+
+COLUMNS = tuple(dict.fromkeys((*BASIC, *KEY_METRICS, *METRICS)))
+"""Columns that are kept."""
+
+DIGITS = 6
+"""Significant digits that are kept: a figure of the page has three."""
+
+PARTS = 3
+"""Names of a checkpoint's path that are kept: cell, run and file."""
+
+
+def keep(results: Sequence[Result], out: Path) -> int:
+    """Write a small copy of each result folder, named after it, and return their number.
+
+    Paths of checkpoints lose all but their last names; hashes, seeds and trials stay.
+
+    Raises:
+        ValueError: Two folders have one name.
+    """
+    folders = list(dict.fromkeys(one.folder for one in results))
+    names = [folder.name for folder in folders]
+    if len(set(names)) < len(names):
+        raise ValueError(f"Result folders need names of their own; got {', '.join(sorted(names))}.")
+    for folder in folders:
+        own = [one for one in results if one.folder == folder]
+        _write(out / folder.name, own[0].run, [row for one in own for row in one.rows])
+    return len(folders)
+
+
+def _write(folder: Path, run: dict[str, Any], rows: Sequence[Row]) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    short = {**run, "checkpoint": [_short(path) for path in run.get("checkpoint", [])]}
+    (folder / RUN_FILE).write_text(json.dumps(short, indent=1, sort_keys=True) + "\n")
+    columns = [name for name in COLUMNS if name in rows[0]]
+    with (folder / TRIALS_FILE).open("w", newline="") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([_text(name, row[name]) for name in columns] for row in rows)
+
+
+def _text(name: str, value: Any) -> str:
+    if name == "agent":
+        return _short(value)
+    return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
+
+
+def _short(path: str) -> str:
+    return "/".join(PurePosixPath(path).parts[-PARTS:])

@@ -1,0 +1,215 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of results: all tables, made of result folders. Loads neither torch nor Warp.
+
+Figures are those of :mod:`arcgym.evaluation.summary`, :mod:`~arcgym.evaluation.strengths` and
+:mod:`~arcgym.evaluation.paper_tables`; here is only which of them stand where.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import yaml
+
+from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
+from arcgym.evaluation.result_folder import Row
+from arcgym.evaluation.results import Result, best
+from arcgym.evaluation.statistics import Interval
+from arcgym.evaluation.strengths import strengths_tables
+from arcgym.evaluation.suites import FOLDER
+from arcgym.evaluation.summary import summarize
+
+SECTIONS_FILE = FOLDER / "results.yaml"
+"""Sections of the page."""
+
+METRICS = {
+    "progress": ("progress", 2),
+    "seconds": ("time [s]", 1),
+    "coverage": ("mucosa seen", 2),
+    "polyps_seen": ("polyps seen", 2),
+    "tip_time_above_unsafe": ("tip above unsafe [s]", 2),
+    "shaft_time_above_unsafe": ("shaft above unsafe [s]", 2),
+    "p95_tip_force": ("p95 tip force [N]", 2),
+    "p95_shaft_force": ("p95 shaft force [N]", 2),
+}
+"""Heading and digits of the figures beside success."""
+
+REFERENCE_AGENTS = ("zero", "random", "expert")
+TRAINED = "model.pt"
+"""Stands for a checkpoint in commands."""
+
+NOTHING = "–"
+"""Stands in a cell for which nothing was run."""
+
+INTRODUCTION = """# Results
+
+Made by `arcgym results summary {folders} --out docs/results.md` and nothing else. A cell has the share
+of successful trials [%] with Wilson's interval (95 %), and behind it the number of trials where they are not all of the
+suite's; other figures are interquartile means with bootstrap intervals. `–` was not run: the command that would make it
+is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
+this policy and not of the method. † marks rules on actions that read the simulator's depth, which the policy does not
+see. What was run where is in the [last table](#what-was-run).
+"""
+
+
+def results_page(results: Sequence[Result], folders: Sequence[str], sections: Sequence[dict[str, Any]]) -> str:
+    """Return the page in Markdown.
+
+    Args:
+        results: What can be shown, see :func:`arcgym.evaluation.results.find_results`.
+        folders: Where they were looked for, for the record.
+        sections: Those of :data:`SECTIONS_FILE`.
+    """
+    used: list[Result] = []
+    parts = [INTRODUCTION.format(folders=" ".join(folders))]
+    for section in sections:
+        own = [result for result in results if result.suite == section["suite"]]
+        shown, text, missing = KINDS[section["kind"]](section, own)
+        used += shown
+        parts.append(f"## {section['title']}\n")
+        parts += [f"{section['text']}\n"] if "text" in section else []
+        parts += [text] if text else []
+        parts += [_commands(missing)] if missing else []
+    return "\n".join([*parts, "## What was run\n", _provenance(used)])
+
+
+def read_sections() -> list[dict[str, Any]]:
+    """Return the sections of the page."""
+    return yaml.safe_load(SECTIONS_FILE.read_text())
+
+
+def published_figures(section: dict[str, Any], robot: str, method: str) -> list[float] | None:
+    """Return the paper's figures of a row of the first table, one a segment, or None."""
+    given = section.get("published", {}).get(robot, {}).get(method)
+    if isinstance(given, str):
+        rows = yaml.safe_load(TABLES_FILE.read_text())["algorithms"]["rows"]
+        return next(row["paper"] for row in rows if row["algorithm"] == given)
+    return None if given is None else [given] * len(section["segments"])
+
+
+def cells_of(section: dict[str, Any], results: Sequence[Result]) -> Iterator[tuple[str, str, list[Result | None]]]:
+    """Yield robot, method and one result a segment of each row of a table of methods."""
+    for robot, methods in section["robots"].items():
+        for method in methods:
+            own = [one for one in results if (one.robot, one.method) == (robot, method)]
+            yield robot, method, [best([one for one in own if one.segment == name]) for name in section["segments"]]
+
+
+def _methods(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
+    """Return the results of a table of methods, the table, and the commands of the cells that are missing."""
+    lines = [_row(["robot", "method", *section["segments"]]), _rule(2 + len(section["segments"]))]
+    used, missing = [], []
+    for robot, method, found in cells_of(section, results):
+        asked = section.get("not_asked", {}).get(robot, {}).get(method, section["segments"])
+        published: Sequence[float | None] = published_figures(section, robot, method) or [None] * len(found)
+        pairs = zip(found, published, strict=True)
+        cells = [_success(one) + ("" if figure is None else f" [{figure:g}]") for one, figure in pairs]
+        lines.append(_row([robot, section["labels"][method], *cells]))
+        used += [one for one in found if one]
+        none = [name for name, one in zip(section["segments"], found, strict=True) if one is None and name in asked]
+        if none:
+            segments = ",".join(name.lower() for name in none)
+            missing.append(section["command"].format(method=method, robot=robot, segment=segments))
+    return used, "\n".join(lines) + "\n", missing
+
+
+def _agents(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
+    """Return the results of a table of agents, the table, and the commands of the cells that are missing."""
+    wanted = section.get("methods")
+    own = [one for one in results if wanted is None or one.method in wanted]
+    own = [one for one in own if one.checkpoints or one is best([same for same in own if _same(same, one)])]
+    own.sort(key=lambda one: (one.task, _place(one), one.limits, one.folder.name))
+    metrics = [name for name in section["metrics"] if any(name in row for one in own for row in one.rows[:1])]
+    head = ["task", "agent", "trials", "success [%]", *(METRICS[name][0] for name in metrics)]
+    lines = [_row(head), _rule(len(head)), *(_row(_agent_cells(one, metrics)) for one in own)]
+    there = {(one.robot, TRAINED if one.checkpoints else one.method) for one in own}
+    asked = [(robot, agent) for robot, agents in section["robots"].items() for agent in [*agents, TRAINED]]
+    missing = [
+        section["command"].format(suite=section["suite"], robot=robot, agent=agent)
+        for robot, agent in asked
+        if (robot, agent) not in there
+    ]
+    return own, "\n".join(lines) + "\n" if own else "", missing
+
+
+def _same(first: Result, second: Result) -> bool:
+    return (first.task, first.method) == (second.task, second.method)
+
+
+def _place(result: Result) -> int:
+    return REFERENCE_AGENTS.index(result.method) if result.method in REFERENCE_AGENTS else len(REFERENCE_AGENTS)
+
+
+def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
+    (of,) = summarize(result.rows).values()
+    name = f"{result.method} `{result.checkpoints[0][:8]}`" if result.checkpoints else result.method
+    figures = [_interval(of[name], METRICS[name][1]) if name in of else _mean(result.rows, name) for name in metrics]
+    limits = f", limit {result.limits}" if result.limits else ""
+    return [f"`{result.task}`", name + limits, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
+
+
+def _mean(rows: Sequence[Row], name: str) -> str:
+    """Return the plain mean of a metric that the summary does not have, which may be zero in most trials."""
+    return f"{sum(row[name] for row in rows) / len(rows):.2f}" if name in rows[0] else ""
+
+
+def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
+    """Return the results of the robustness variants, a table an agent, and the command where there is none."""
+    tables = strengths_tables([row for one in results for row in one.rows])
+    text = "\n".join(table.to_markdown() for table in tables)
+    return list(results), text, [] if results else [section["command"]]
+
+
+def _paper(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
+    """Return the results of one of the paper's studies of a fixed policy, a table a method."""
+    parts = []
+    for method in sorted({one.method for one in results}):
+        rows = [row for one in results if one.method == method for row in one.rows]
+        parts.append(f"`{method}`. {paper_table(rows, section['suite'])}")
+    return list(results), "\n".join(parts), [] if results else [section["command"]]
+
+
+KINDS = {"methods": _methods, "agents": _agents, "robustness": _robustness, "paper": _paper}
+"""What makes the sections of each kind."""
+
+
+def _success(result: Result | None) -> str:
+    """Return a cell of a table of methods; † where rules on actions read what the policy does not see."""
+    if result is None:
+        return NOTHING
+    (of,) = summarize(result.rows).values()
+    seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""
+    few = f" of {of['trials']}" if of["trials"] != 30 else ""
+    return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "")
+
+
+def _provenance(results: Sequence[Result]) -> str:
+    """Return a table of the results that are shown, a line a folder and task."""
+    head = ["suite", "task", "method", "trials", "transitions", "checkpoint (SHA-256)", "commit", "machine", "folder"]
+    lines = [_row(head), _rule(len(head))]
+    for one in dict.fromkeys((one.folder, one.task.partition(":")[0]) for one in results):
+        of = [result for result in results if (result.folder, result.task.partition(":")[0]) == one]
+        hashes = ", ".join(digest[:12] for digest in of[0].checkpoints)
+        transitions = f"{of[0].transitions:,.0f}".replace(",", " ") if of[0].transitions else ""
+        about = [str(sum(len(result.rows) for result in of)), transitions, hashes, of[0].commit, of[0].run["machine"]]
+        lines.append(_row([of[0].suite, f"`{one[1]}`", of[0].method, *about, one[0].name]))
+    return "\n".join(lines) + "\n"
+
+
+def _commands(missing: Sequence[str]) -> str:
+    """Return what would make the cells that are missing, below a fold."""
+    return "\n".join([f"Not run ({NOTHING}), and how it would be made:\n", "```bash", *missing, "```\n"])
+
+
+def _row(cells: Sequence[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _rule(columns: int) -> str:
+    return f"|{'---|' * columns}"
+
+
+def _interval(of: Interval, digits: int, factor: float = 1.0) -> str:
+    return f"{factor * of.value:.{digits}f} ({factor * of.low:.{digits}f}–{factor * of.high:.{digits}f})"

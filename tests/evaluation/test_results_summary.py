@@ -1,0 +1,149 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page of results, from result folders with made-up trials."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arcgym.cli.main import main
+from arcgym.evaluation.result_folder import ResultFolder
+from arcgym.evaluation.results import find_results, method_of
+from arcgym.evaluation.results_page import SECTIONS_FILE, read_sections
+from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.trials import read_conditions
+
+TASK = "ARC-Rectum-Magnetic"
+PPO = "rsl_rl_cfg_entry_point"
+LAGRANGIAN = "rsl_rl_ppo_lagrangian_cfg_entry_point"
+REWARD = {"reward": ["shaped", "paper"]}
+VELOCITY = {"actions.tip.forward_velocity": [None, 0.04]}
+
+
+def folder(path: Path, successes: int, task: str = TASK, suite: str = "paper", every: int = 1, **run: Any) -> Path:
+    """Write a result folder whose first trials succeed."""
+    conditions = read_conditions(read_suites()[suite].conditions_path)
+    about = {
+        "agent": "checkpoint",
+        "checkpoint": ["/far/away/cell/run_1/model_3.pt"],
+        "checkpoint_sha256": ["abcdef0123456789"],
+        "training": [{"agent": PPO, "transitions": 6144}],
+        "trained_on": ["colon_1/colon.usda"],
+        "suite": suite,
+        "conditions": conditions.name,
+        "conditions_sha256": conditions.sha256,
+        "overrides": [],
+        "versions": {"arcgym commit": "abc1234"},
+        "machine": "a machine",
+    }
+    out = ResultFolder(path, about | run)
+    for trial in conditions.trials[::every]:
+        success = len(out.rows) < successes
+        end = {"success": int(success), "end": "success" if success else "stuck", "progress": 1.0 if success else 0.5}
+        figures = {"reward": 1.0 / 3.0, "seconds": 2.0, "s_c": 0.5, "centered_rate": 0.5, "tip_time_above_unsafe": 0.25}
+        out.add({"task": task, "agent": "/far/away/cell/run_1/model_3.pt", **vars(trial), **end, **figures})
+    return path
+
+
+def page(folders: list[Path], tmp_path: Path, *more: str) -> str:
+    out = tmp_path / "results.md"
+    assert main(["results", "summary", *map(str, folders), "--out", str(out), *more]) == 0
+    return out.read_text()
+
+
+def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_command(tmp_path: Path) -> None:
+    """27 of 30: Wilson 74 to 97 %."""
+    ours = folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
+    text = page([ours], tmp_path)
+    label = "PPO, the paper's reward and constant velocity"
+    assert f"| Magnetic | {label} | 90 (74–97) [20] | – [0] | – [40] | – [0] |" in text
+    assert "arcgym study paper_table seed=1 algorithm=ppo_paper robot=Magnetic task=sigmoid,descending,splenic" in text
+    assert "arcgym study paper_table seed=1 algorithm=ppo robot=Magnetic task=rectum,sigmoid,descending,splenic" in text
+    assert (
+        "| paper | `ARC-Rectum-Magnetic` | ppo_paper | 30 | 6 144 | abcdef012345 | abc1234 | a machine | ours |" in text
+    )
+
+
+def test_more_training_seeds_are_shown_in_place_of_one(tmp_path: Path) -> None:
+    folder(tmp_path / "all" / "one", 30)
+    folder(tmp_path / "all" / "three", 3, checkpoint_sha256=["a", "b", "c"])
+    assert "| Magnetic | PPO, shipped reward | 10 (3–26), 3 seeds | – | – | – |" in page([tmp_path / "all"], tmp_path)
+
+
+def test_a_small_copy_makes_the_same_page(tmp_path: Path) -> None:
+    folder(tmp_path / "all" / "rectum", 27)
+    folder(tmp_path / "all" / "left", 7, "ARC-LeftColon-Magnetic", "left_colon", training=[{"agent": LAGRANGIAN}])
+    keep = tmp_path / "keep"
+    text = page([tmp_path / "all"], tmp_path, "--keep", str(keep))
+    assert text == page([keep], tmp_path)
+    rows = (keep / "rectum" / "trials.csv").read_text().splitlines()
+    assert "cell/run_1/model_3.pt" in rows[1] and "/far/away" not in rows[1] and "0.333333," in rows[1]
+    assert "| `ARC-LeftColon-Magnetic` | ppo_lagrangian `abcdef01` | 50 | 14 (7–26) |" in text
+
+
+def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:
+    training = [{"agent": LAGRANGIAN, "limits": {"tip_force": 0.3}}]
+    text = page([folder(tmp_path / "safe", 50, "ARC-LeftColon-Magnetic", "left_colon", training=training)], tmp_path)
+    assert "| ppo_lagrangian `abcdef01`, limit tip_force 0.3 | 50 | 100 (93–100) | 1.00 (1.00–1.00) |" in text
+    assert "| 0.25 |" in text.partition("## Safe ones")[2].partition("## Robust")[0]
+
+
+def test_rules_on_actions_are_marked(tmp_path: Path) -> None:
+    inputs = {TASK: {"sees": ["policy"], "simulator_depth": True}}
+    training = [{"agent": "rsl_rl_ppo_masked_cfg_entry_point"}]
+    text = page([folder(tmp_path / "masked", 30, inputs=inputs, training=training)], tmp_path)
+    assert "| PPO with rules on actions, shipped reward | 100 (89–100)† |" in text
+
+
+@pytest.mark.parametrize(
+    ("run", "every", "reason"),
+    [
+        ({"versions": {"newton": "1.8.0"}}, 1, "the commit is not known"),
+        ({"training": []}, 1, "trained with is not known"),
+        ({"conditions_sha256": "other"}, 1, "the hash of the condition file differs"),
+        ({"changes": {TASK: {"episode_length_s": [30.0, 60.0]}}}, 1, "episode_length_s = 60.0, which changes the task"),
+        ({}, 11, "has 3 trials, neither all nor each n-th of them"),
+    ],
+)
+def test_what_is_not_known_or_another_task_is_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], run: dict[str, Any], every: int, reason: str
+) -> None:
+    text = page([folder(tmp_path / "ours", 2, every=every, **run)], tmp_path)
+    assert reason in capsys.readouterr().out and "PPO, shipped reward | – | – | – | – |" in text
+
+
+def test_each_tenth_trial_is_a_share_and_says_how_many(tmp_path: Path) -> None:
+    found, left_out = find_results([folder(tmp_path / "ours", 3, every=10)])
+    assert len(found[0].rows) == 3 and not left_out
+    assert "PPO, shipped reward | 100 (44–100) of 3 |" in page([tmp_path / "ours"], tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"),
+    [({}, "ppo"), (REWARD, "ppo_paper_free"), (VELOCITY, "ppo_velocity"), (REWARD | VELOCITY, "ppo_paper")],
+)
+def test_a_method_is_named_after_agent_reward_and_velocity(changes: dict[str, Any], name: str) -> None:
+    assert method_of({"agent": "checkpoint", "training": [{"agent": PPO}], "changes": {TASK: changes}}, TASK) == name
+    assert method_of({"agent": "expert"}, TASK) == "expert"
+
+
+def test_sections_ask_for_suites_that_there_are() -> None:
+    """And every row of the first has its label; the study has each of its methods."""
+    from arcgym.cli.study import SHIPPED
+
+    sections = read_sections()
+    assert {section["suite"] for section in sections} <= set(read_suites()), SECTIONS_FILE
+    study = (SHIPPED / "paper_table.yaml").read_text()
+    for methods in sections[0]["robots"].values():
+        for method in methods:
+            assert method in sections[0]["labels"] and method in study
+
+
+def test_the_picture_is_drawn(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
+    page([tmp_path / "ours"], tmp_path, "--figure", str(tmp_path / "images" / "results.png"))
+    assert (tmp_path / "images" / "results.png").stat().st_size > 5000
