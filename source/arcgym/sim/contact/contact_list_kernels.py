@@ -10,6 +10,7 @@ import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactRecords
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.block_queue_kernels import wait_for_block
 
 LIST_ROOM = wp.constant(16)
 """Entries of a vertex's list up to which it is sorted in a copy."""
@@ -93,3 +94,77 @@ def list_rings(parts: int, records: ContactRecords):
                 records.ring_next[slot] = records.ring_head[rings[k], w]
                 records.ring_head[rings[k], w] = slot
         last -= BATCH
+
+
+@wp.func
+def place_in_order(entry: int, head: int, following: wp.array[int]) -> int:
+    """Return the next entry of a list after ``entry`` in ascending order; for its first one, less a sign, see below.
+
+    Args:
+        entry: Entry of the list.
+        head: Where the list, in any order, begins.
+        following: What comes after each entry there.
+
+    Returns:
+        The least entry above ``entry``, or -1; of the least entry of all, -3 less that.
+    """
+    least = bool(True)
+    after = int(-1)
+    at = int(head)
+    while at >= 0:
+        if at < entry:
+            least = False
+        elif at > entry and (after < 0 or at < after):
+            after = at
+        at = following[at]
+    if least:
+        return -3 - after
+    return after
+
+
+@wp.kernel
+def order_lists(records: ContactRecords, vertex_order: wp.array[int], ring_order: wp.array[int]):
+    """Put the entries of all lists by vertex in ascending order, and make the lists by ring. Launch (W, T).
+
+    What :func:`sort_vertex_lists` and :func:`list_rings` do, by all threads of a block: each entry finds the one after
+    it on a walk along its list. The T threads of a world have to be one block.
+
+    Args:
+        records: Contacts; the lists by vertex hold their entries in any order, those by ring are empty.
+        vertex_order: Scratch, shape (4*W*S,).
+        ring_order: Scratch, shape (W*S,).
+    """
+    w, thread = wp.tid()
+    first = w * records.capacity
+    end = first + records.start[w, records.start.shape[1] - 1]
+    slot = first + int(thread)
+    while slot < end:
+        ring_order[slot] = wp.atomic_exch(records.ring_head, records.ring[slot], w, slot)
+        corners = records.corners[slot]
+        for c in range(4):
+            if c < 3 or corners[3] != corners[2]:
+                entry = 4 * slot + c
+                vertex_order[entry] = place_in_order(entry, records.vertex_head[corners[c], w], records.vertex_next)
+        slot += records.threads
+    wait_for_block()
+    slot = first + int(thread)
+    while slot < end:
+        corners = records.corners[slot]
+        for c in range(4):
+            if c < 3 or corners[3] != corners[2]:
+                entry = 4 * slot + c
+                after = vertex_order[entry]
+                if after < -1:
+                    records.vertex_head[corners[c], w] = entry
+                    after = -3 - after
+                records.vertex_next[entry] = after
+        records.ring_next[slot] = place_in_order(slot, records.ring_head[records.ring[slot], w], ring_order)
+        slot += records.threads
+    wait_for_block()
+    slot = first + int(thread)
+    while slot < end:
+        after = records.ring_next[slot]
+        if after < -1:
+            records.ring_head[records.ring[slot], w] = slot
+            records.ring_next[slot] = -3 - after
+        slot += records.threads

@@ -189,7 +189,7 @@ def fill_slots(k: int, w: int, surface: LumenSurface, candidates: Candidates, re
             slot += 1
 
 
-@wp.kernel
+@wp.kernel(launch_bounds=(256, 3))
 def record_faces(
     x: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],

@@ -20,8 +20,6 @@ from arcgym.utils.warp_setup import GPU_BLOCK
 
 FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
-GPU_LIST_PARTS = 32
-"""Threads a world that list the contacts by ring on a GPU, where a list waits for memory at every entry."""
 GPU_RECORD_THREADS = 256
 """Threads a world that go through its contacts on a GPU, one block: as many as most worlds have contacts."""
 CARRIED_ROOM = 3
@@ -90,7 +88,7 @@ class ContactSearch:
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
         self.records = self._records(cfg.capacity * room)
-        self.list_parts = 1 if device == "cpu" else GPU_LIST_PARTS
+        self._orders = wp.zeros_like(self.records.vertex_next), wp.zeros_like(self.records.ring_next)
         self.past = record_kernels.PastContacts()
         for name in ("start", "face", "slide"):
             setattr(self.past, name, wp.clone(getattr(self.records, name)))
@@ -176,7 +174,7 @@ class ContactSearch:
         """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W), vec3."""
         wp.launch(
             lumen_kernels.ring_centers,
-            (self.num_envs, self.ring_count),
+            (self.ring_count, self.num_envs),
             inputs=[x, self.surface],
             outputs=[self.centers],
             device=self.device,
@@ -233,7 +231,7 @@ class ContactSearch:
     def _record(self, x: wp.array, points: wp.array, body_q: wp.array) -> None:
         """Record the faces near each link, and what friction held where it touched the same face before."""
         records = self.records
-        of_records, parts = (self.num_envs, records.threads), self.list_parts
+        of_records = (self.num_envs, records.threads)
         self._launch(record_kernels.keep_past, of_records, [records], [self.past])
         records.vertex_head.fill_(-1)
         records.ring_head.fill_(-1)
@@ -251,8 +249,18 @@ class ContactSearch:
         self._launch(record_kernels.locate_contacts, of_records, inputs, [records])
         if self.still:
             return
-        self._launch(list_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
-        self._launch(list_kernels.list_rings, (self.num_envs, parts), [parts], [records])
+        if self.device == "cpu":
+            self._launch(list_kernels.sort_vertex_lists, (self.vertex_count, self.num_envs), [], [records])
+            self._launch(list_kernels.list_rings, (self.num_envs, 1), [1], [records])
+            return
+        wp.launch(
+            list_kernels.order_lists,
+            of_records,
+            inputs=[records],
+            outputs=list(self._orders),
+            device=self.device,
+            block_dim=records.threads,
+        )
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, int], inputs: list[object], outputs: list[object]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)

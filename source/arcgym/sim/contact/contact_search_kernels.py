@@ -14,6 +14,7 @@ from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, sphere_r
 from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, triangle_point
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.block_queue_kernels import clear_queue, queue_entry, queue_length, queued, wait_for_block
+from arcgym.utils.block_store_kernels import store_points, stored_point
 
 
 @wp.struct
@@ -94,7 +95,7 @@ class LinkReach:
 @wp.func
 def face_corner(surface: LumenSurface, face: int, k: int, x: wp.array2d[wp.vec3], w: int, center: wp.vec3) -> wp.vec3:
     """Return corner ``k`` of a face from ``center`` [m]."""
-    return x[surface.faces[face, k], w] - center
+    return stored_point(x, surface.faces[face, k], w) - center
 
 
 @wp.func
@@ -269,6 +270,7 @@ def measure_faces(
     gathered around the link, but not the outside of a neighboring loop.
     """
     pairs = candidates.start[w, links.radius.shape[0]]
+    store_points(x, w, thread, threads)
     clear_queue(thread)
     k = int(thread)
     while k < pairs:

@@ -44,14 +44,14 @@ class Bounds:
 
 @wp.kernel
 def ring_centers(x: wp.array2d[wp.vec3], surface: LumenSurface, centers: wp.array2d[wp.vec3]):
-    """Compute the mean of each ring's inner vertices. Launch (W, R).
+    """Compute the mean of each ring's inner vertices. Launch (R, W).
 
     Args:
         x: Wall positions [m], shape (V, W).
         surface: Inner faces of one world.
         centers: Ring centres [m], shape (W, R); written.
     """
-    w, r = wp.tid()
+    r, w = wp.tid()
     n = surface.rings.shape[1]
     total = wp.vec3(0.0)
     for k in range(n):

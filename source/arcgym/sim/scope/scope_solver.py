@@ -13,6 +13,7 @@ from newton import JointType
 from newton.solvers import SolverBase
 
 from arcgym.sim.scope import scope_kernels as kernels
+from arcgym.sim.scope.aba_cuda_kernels import THREADS, fits, warp_kernel
 from arcgym.sim.scope.aba_kernels import chain_kinematics, solve_chain
 
 JOINTS = (JointType.REVOLUTE, JointType.PRISMATIC, JointType.D6, JointType.FIXED)
@@ -46,6 +47,8 @@ class SolverArticulatedChain(SolverBase):
         self._block = 8 if self.num_envs <= SPREAD_WORLDS else 32
         self.chain = self._chain()
         links, dofs, worlds = self.chain.links, self.chain.dofs, self.num_envs
+        on_gpu = wp.get_device(model.device).is_cuda and fits(links, dofs)
+        self._by_warp = warp_kernel(links, dofs) if on_gpu else None
         self.work = _scratch(kernels.ChainWork(), links, dofs, worlds, model.device)
         self.loads = kernels.LinkLoads()
         self.loads.wrench = wp.zeros((links, worlds), dtype=wp.spatial_vector, device=model.device)
@@ -133,13 +136,14 @@ class SolverArticulatedChain(SolverBase):
             outputs=[work],
             device=device,
         )
+        by_warp = self._by_warp
         wp.launch(
-            solve_chain,
-            worlds,
+            solve_chain if by_warp is None else by_warp,
+            worlds if by_warp is None else (worlds, THREADS),
             inputs=[chain, state_in.body_q, state_in.body_qd, dt],
             outputs=[work, state_out.joint_q, state_out.joint_qd, state_out.body_q, state_out.body_qd],
             device=device,
-            block_dim=self._block,
+            block_dim=self._block if by_warp is None else THREADS,
         )
 
 

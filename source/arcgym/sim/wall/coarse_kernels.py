@@ -103,11 +103,31 @@ def axis(i: int) -> wp.vec3:
 
 
 @wp.func
-def apply_contact_stiffness(measured: MeasuredContacts, slot: int, move: wp.vec3) -> wp.vec3:
-    """Return the stiffness of a contact times a displacement of its point."""
-    n = measured.normal[slot]
-    k = measured.stiffness[slot]
-    return ((k[0] - k[1]) * wp.dot(n, move)) * n + k[1] * move
+def contact_push(normal: wp.vec3, stiffness: wp.vec2, move: wp.vec3) -> wp.vec3:
+    """Return the stiffness of a contact, along its normal and across it, times a displacement of its point."""
+    return ((stiffness[0] - stiffness[1]) * wp.dot(normal, move)) * normal + stiffness[1] * move
+
+
+@wp.kernel
+def measure_fields(rings: Rings, records: ContactRecords, measured: MeasuredContacts):
+    """Write how far every contact's point moves with the vectors of its two rings. Launch (W, T).
+
+    Args:
+        rings: Rings of all patients.
+        records: Contacts.
+        measured: ``own_fields`` and ``next_fields`` are written.
+    """
+    w, thread = wp.tid()
+    slot = w * records.capacity + thread
+    end = w * records.capacity + records.start[w, records.start.shape[1] - 1]
+    p = rings.patient[w]
+    while slot < end:
+        r = records.ring[slot]
+        corners = records.corners[slot]
+        shares = records.bary[slot]
+        measured.own_fields[slot] = point_fields(rings, corners, shares, r, p)
+        measured.next_fields[slot] = point_fields(rings, corners, shares, r + 1, p)
+        slot += records.threads
 
 
 @wp.func
@@ -230,23 +250,29 @@ def assemble(
             own_row += self_contact_row(rings, loads, self_contact, r, field, along, w)
         for j in range(loads.members.shape[1]):
             v = loads.members[r, j]
+            fields = ring_fields(rings, wp.max(v, 0), p)
+            push = force[wp.max(v, 0), w]
             if v >= 0:
-                total += wp.dot(ring_fields(rings, v, p), field) * wp.dot(force[v, w], along)
+                total += wp.dot(fields, field) * wp.dot(push, along)
         for which in range(2):
             lowest = r - which
             slot = int(-1)
             if lowest >= 0:
                 slot = records.ring_head[lowest, w]
             while slot >= 0:
-                if measured.stiffness[slot][0] > 0.0:
-                    f = records.corners[slot]
-                    u = records.bary[slot]
-                    fields = point_fields(rings, f, u, r, p)
-                    push = apply_contact_stiffness(measured, slot, wp.dot(fields, field) * along)
+                stiffness = measured.stiffness[slot]
+                normal = measured.normal[slot]
+                own_fields = measured.own_fields[slot]
+                next_fields = measured.next_fields[slot]
+                slot = records.ring_next[slot]
+                if stiffness[0] > 0.0:
+                    fields = own_fields
+                    if which == 1:
+                        fields = next_fields
+                    push = contact_push(normal, stiffness, wp.dot(fields, field) * along)
                     own_row = add_share(own_row, fields, push)
                     if which == 0 and next_free == 1:
-                        next_row = add_share(next_row, point_fields(rings, f, u, r + 1, p), push)
-                slot = records.ring_next[slot]
+                        next_row = add_share(next_row, next_fields, push)
     else:
         for i in range(MODES):
             own_row[i] = wp.where(i == a, 1.0, 0.0)

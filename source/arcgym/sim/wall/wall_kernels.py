@@ -167,6 +167,8 @@ class MeasuredContacts:
     force: wp.array[wp.vec3]  # on the wall [N]
     normal: wp.array[wp.vec3]  # from the scope into the wall
     stiffness: wp.array[wp.vec2]  # along the normal and across it [N/m]
+    own_fields: wp.array[wp.vec3]  # how far the point moves with each vector of its lowest ring, see ``ring_modes``
+    next_fields: wp.array[wp.vec3]  # and with those of the next ring
 
 
 @wp.kernel

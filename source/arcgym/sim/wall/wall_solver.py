@@ -131,6 +131,8 @@ class WallSolver:
         measured.force = wp.zeros(slots, dtype=wp.vec3, device=self.device)
         measured.normal = wp.zeros(slots, dtype=wp.vec3, device=self.device)
         measured.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
+        measured.own_fields = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        measured.next_fields = wp.zeros(slots, dtype=wp.vec3, device=self.device)
         return measured
 
     def _rings(
@@ -291,6 +293,8 @@ class WallSolver:
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
+        shape, records = (self.num_envs, contacts.records.threads), contacts.records
+        self._launch(coarse_kernels.measure_fields, shape, [rings, records], [self.measured])
         inputs = [self.force, rings, self.loads, self.bands, self.shift, tissue, 1.0 / self.dt**2]
         self._launch(
             coarse_kernels.assemble,
