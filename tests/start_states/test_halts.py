@@ -54,7 +54,7 @@ def test_a_drive_goes_on_with_more_worlds_from_where_it_was_cut_off(tmp_path: Pa
     arc = scene["endoscope"].data.tip_arc_length
     assert torch.equal(arc, drive.scene["endoscope"].data.tip_arc_length[[0, 1, 2, 3, 0, 1]])
     assert torch.equal(later.expert.speed[:4], drive.expert.speed)
-    assert later.expert.speed[4] != drive.expert.speed[0]
+    assert later.expert.roll[4] != drive.expert.roll[0]
     assert [list(route.entries) for route in later.routes] == [["rectum"], ["rectum"]]
     assert [len(places) for places in later.trail.places] == [len(places) for places in drive.trail.places] != [0, 0]
     arrived = later.run("sigmoid", settled=False)

@@ -15,7 +15,14 @@ from arcgym.experts import PullExpert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
+from arcgym.start_states import population as module
 from arcgym.start_states.population import Population
+
+
+@pytest.fixture(autouse=True)
+def all_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every world draw all settings."""
+    monkeypatch.setattr(module, "PLAIN", 0.0)
 
 
 def scene_of(folder: Path, worlds: int) -> InteractiveScene:
@@ -104,6 +111,19 @@ def test_the_first_world_of_a_patient_is_not_disturbed(tmp_path: Path) -> None:
     population = Population(scene, expert)
     population.disturb()
     assert not expert.disturbance[:2].any() and expert.disturbance[2:].all()
+
+
+def test_some_worlds_vary_only_in_how_they_roll(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "PLAIN", 0.5)
+    scene = scene_of(tmp_path, 80)
+    expert = PullExpert(scene, speed=0.05)
+    population = Population(scene, expert)
+    population.disturb()
+    plain = expert.speed == 0.05
+    assert 25 <= int(plain[2:].sum()) <= 53  # half of 78, give or take three deviations
+    assert torch.equal(expert.disturbance.any(dim=1), ~plain)
+    assert (expert.look[plain] == 0.02).all() and (expert.look[~plain] != 0.02).all()
+    assert (expert.roll[:2] == 0.0).all() and (expert.roll[2:][plain[2:]] >= 6.0).all()
 
 
 def test_patients_have_as_many_worlds_each(tmp_path: Path) -> None:

@@ -23,6 +23,8 @@ class ExpertBase(ABC):
 
     VARIED: ClassVar[dict[str, tuple[float, float]]] = {}
     """Settings that :meth:`vary` draws, with their ranges; each is an attribute of shape (N,)."""
+    FREEING: ClassVar[tuple[str, ...]] = ()
+    """Those of them that free a scope which friction holds: worlds that keep all others draw these."""
     PERIOD: ClassVar[int] = 25
     """Control steps after which worlds that work together change places."""
 
@@ -39,6 +41,7 @@ class ExpertBase(ABC):
         self.disturbance = torch.zeros(scene.num_envs, 3, device=scene.device)
         """Added to where the tip is steered, in its frame, as a share of a unit vector, shape (N, 3)."""
 
+        self._own: dict[str, torch.Tensor] = {}
         self.random: WorldRandom | None = None
         """Random numbers of the worlds' episodes, which make an expert's episode repeatable; None takes torch's."""
 
@@ -74,11 +77,26 @@ class ExpertBase(ABC):
             return torch.randn(self.scene.num_envs, *shape, device=self.scene.device)
         return self.random.normal(f"expert: {tag}", *shape)
 
-    def vary(self, env_ids: torch.Tensor, generator: torch.Generator | None = None) -> None:
-        """Draw the settings of the worlds ``env_ids``, int64, shape (n,), from their ranges."""
+    def vary(
+        self, env_ids: torch.Tensor, generator: torch.Generator | None = None, plain: torch.Tensor | None = None
+    ) -> None:
+        """Draw the settings of some worlds from their ranges.
+
+        Args:
+            env_ids: The worlds, int64, shape (n,).
+            generator: Random numbers; None takes torch's.
+            plain: Which of them take the settings that the expert was made with, shape (n,), bool, but for
+                :attr:`FREEING`, which they draw from the upper half of their ranges; None for none.
+        """
         for name, (low, high) in self.VARIED.items():
+            setting = getattr(self, name)
+            own = self._own.setdefault(name, setting.clone())
             share = torch.rand(len(env_ids), generator=generator, device=self.scene.device)
-            getattr(self, name)[env_ids] = low + (high - low) * share
+            drawn = low + (high - low) * share
+            if plain is not None:
+                kept = 0.5 * (high + drawn) if name in self.FREEING else own[env_ids]
+                drawn = torch.where(plain, kept, drawn)
+            setting[env_ids] = drawn
 
     def each(self, value: float | torch.Tensor) -> torch.Tensor:
         """Return a setting for every world, shape (N,)."""

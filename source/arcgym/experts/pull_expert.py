@@ -32,6 +32,7 @@ class PullExpert(ExpertBase):
         "back": (0.0, 0.8),
         "roll": (0.0, 12.0),
     }
+    FREEING = ("roll",)
 
     def __init__(
         self,

@@ -46,7 +46,7 @@ class PushExpert(ExpertBase):
         "slack": (0.04, 0.4),
         "slips": (0.02, 0.1),
     }
-
+    FREEING = ("twist",)
     PERIOD = 40
 
     def __init__(

@@ -25,6 +25,8 @@ NEAR = 0.03
 RENEWED = 0.25
 """Share of the worlds that go their own way in the rear half which get new settings at an exchange: a setting lasts for
 about four exchanges, 10 to 16 s, as what frees a scope may take that long."""
+PLAIN = 0.5
+"""Share of the worlds with new settings that take the expert's own, without disturbance, but for what frees a scope."""
 ON = 0.01
 """Way that the foremost has to get on between two exchanges, or it counts as stuck [m]."""
 STUCK = 0.1
@@ -49,7 +51,8 @@ class Ranking(NamedTuple):
 class Population:
     """The worlds of each patient: N worlds, P patients, at first N / P worlds of each: world ``n`` has ``n % P``.
 
-    The first of each patient's worlds keeps the expert's own settings and no disturbance until it falls behind.
+    The first of each patient's worlds keeps the expert's own settings and no disturbance until it falls behind. Of the
+    others half draw all settings and are disturbed, half draw only how they turn the scope.
     """
 
     def __init__(self, scene: InteractiveScene, expert: ExpertBase, seed: int = 0):
@@ -71,8 +74,8 @@ class Population:
         worlds = torch.arange(scene.num_envs, device=scene.device)
         self.owner = worlds % self.patients
         """Patient of each world, int64, shape (N,)."""
-        expert.vary(worlds[self.patients :], self.random)
         self._plain = worlds < self.patients
+        self._renew(worlds[self.patients :])
         self._farthest = torch.zeros(self.patients, device=scene.device)
         self._near = torch.full_like(self._farthest, NEAR)
 
@@ -207,9 +210,10 @@ class Population:
 
     def _renew(self, worlds: torch.Tensor) -> None:
         """Give worlds new settings."""
-        self.expert.vary(worlds, self.random)
+        plain = self._draw(len(worlds)) < PLAIN
+        self.expert.vary(worlds, self.random, plain)
         self.expert.disturbance[worlds] = 0.0
-        self._plain[worlds] = False
+        self._plain[worlds] = plain
 
     def _draw(self, count: int) -> torch.Tensor:
         """Draw numbers from [0, 1), shape (count,)."""
