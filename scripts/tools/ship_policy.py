@@ -1,41 +1,61 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Make a trained policy one that comes with ARCGym: its actor in half precision, and the parameters of its run.
+"""Make a trained policy one that comes with ARCGym, in ``policies/<segment>-<robot>/``.
 
     python scripts/tools/ship_policy.py logs/rsl_rl/left_colon/2026-11-22_20-00-00/model_93.pt
+    arcgym evaluate --suite left_colon --agent assets/policies/leftcolon-magnetic/model.pt --out results/shipped
+    python scripts/tools/ship_policy.py --evaluation results/shipped
 
-The robot is that of the run's task. Evaluate the file that is written, not the one it was made from.
+The first call writes the actor in a quarter of its size, the parameters and the curve of its run, and about.json. The
+second adds trials, which must be those of the file that was written: rounding changes actions in their third digit.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
+import shutil
 import sys
 from pathlib import Path
 
-from arcgym.rl.params import read_params
-from arcgym.rl.pretrained import FILE, policies_dir, robot_of, write_small
+from arcgym.evaluation.result_folder import read_run
+from arcgym.evaluation.results import find_results
+from arcgym.evaluation.results_keep import keep
+from arcgym.rl.checkpoint import file_sha256, read_checkpoint
+from arcgym.rl.first_episodes import write_rows
+from arcgym.rl.params import RunParams, read_params
+from arcgym.rl.pretrained import FILE, folder_of, policies_dir, write_small
 from arcgym.rl.run_folder import write_params
 from arcgym.utils.errors import UsageError
 
 OF_THE_MAKER = ("usd_path", "num_patients")
 """Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own."""
 
+ABOUT, CURVE = "about.json", "curves.csv"
+"""What a policy is, and its curve."""
+
 
 def main() -> None:
-    """Write ``policies/<robot>/model.pt`` and ``policies/<robot>/params``."""
+    """Write a policy's folder, or add an evaluation to it."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkpoint", type=Path, help="checkpoint of a run, in the run's folder")
+    parser.add_argument("checkpoint", type=Path, nargs="?", help="checkpoint of a run, in the run's folder")
+    parser.add_argument("--evaluation", type=Path, nargs="*", default=[], help="result folders of shipped policies")
+    parser.add_argument("--curve", type=Path, help="curves.csv of a study's cell (default: of the run's own log)")
+    parser.add_argument("--trained_on", help="patients of the training (default: as in the run's parameters)")
     parser.add_argument("--out", type=Path, help="folder of all shipped policies (default: beside the USD assets)")
     args = parser.parse_args()
+    out = args.out or policies_dir()
     try:
-        print(f"written: {ship(args.checkpoint, args.out or policies_dir())}")
+        if args.checkpoint:
+            print(f"written: {ship(args.checkpoint, out, args.curve, args.trained_on)}")
+        for folder in args.evaluation:
+            print(f"evaluation: {add_evaluation(folder, out)}")
     except UsageError as error:
         sys.exit(f"ship_policy: {error}")
 
 
-def ship(checkpoint: Path, out: Path) -> Path:
+def ship(checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str | None = None) -> Path:
     """Write a policy's folder, and return the file with its weights.
 
     Raises:
@@ -44,13 +64,56 @@ def ship(checkpoint: Path, out: Path) -> Path:
     saved = read_params(checkpoint.parent)
     if saved is None:
         raise UsageError(f"{checkpoint.parent} has no params/, which names task and agent; expected a run's folder.")
-    folder = out / robot_of(saved.task)
+    folder = out / folder_of(saved.task)
     write_small(checkpoint, folder / FILE)
+    (folder / ABOUT).write_text(json.dumps(_about(checkpoint, folder, saved, trained_on), indent=1) + "\n")
     for name in OF_THE_MAKER:
         saved.env.get("scene", {}).get("colon", {}).pop(name, None)
-    run = {"task": saved.task, "agent": saved.agent_key}
-    write_params(folder, run=run, env=saved.env, agent=saved.agent)
+    write_params(folder, run={"task": saved.task, "agent": saved.agent_key}, env=saved.env, agent=saved.agent)
+    _write_curve(checkpoint.parent, curve, folder / CURVE)
     return folder / FILE
+
+
+def add_evaluation(folder: Path, out: Path) -> Path:
+    """Put a small copy of an evaluation beside the policy that ran it, and return its place.
+
+    Raises:
+        UsageError: No shipped policy has the hash that the trials were run with, or the trials cannot be shown.
+    """
+    hashes = read_run(folder).get("checkpoint_sha256", [])
+    owners = [path.parent for path in out.glob(f"*/{FILE}") if [file_sha256(path)] == hashes]
+    if not owners:
+        raise UsageError(f"{folder} was run with {', '.join(hashes) or 'no checkpoint'}, which is no file in {out}.")
+    results, left_out = find_results([folder])
+    if left_out:
+        raise UsageError(f"{folder}: {'; '.join(left_out[folder])}.")
+    keep(results, owners[0] / "evaluation")
+    return owners[0] / "evaluation" / folder.name
+
+
+def _about(checkpoint: Path, folder: Path, saved: RunParams, trained_on: str | None) -> dict[str, object]:
+    infos = read_checkpoint(checkpoint)["infos"] or {}
+    return {
+        "task": saved.task,
+        "agent": saved.agent_key,
+        "trained_on": trained_on or saved.env["scene"]["colon"]["usd_path"],
+        "transitions": infos.get("transitions"),
+        "seconds_of_learning": infos.get("seconds"),
+        "sha256": file_sha256(folder / FILE),
+        "made_from_sha256": file_sha256(checkpoint),
+    }
+
+
+def _write_curve(run: Path, given: Path | None, out: Path) -> None:
+    """Write the curve that is given, or that of the run's log, if it has one."""
+    if given:
+        shutil.copy(given, out)
+    elif list(run.glob("events.*")):
+        from arcgym.rl.studies.curves import read_log
+
+        rows = [{"iteration": iteration, **row} for iteration, row in sorted(read_log(run).items())]
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        write_rows(out, [{name: row.get(name, "") for name in names} for row in rows])
 
 
 if __name__ == "__main__":

@@ -8,44 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from result_folders import PPO, write_result_folder
 
 from arcgym.cli.main import main
-from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.results import find_results, method_of
 from arcgym.evaluation.results_page import SECTIONS_FILE, read_sections
 from arcgym.evaluation.suites import read_suites
-from arcgym.evaluation.trials import read_conditions
 
 TASK = "ARC-Rectum-Magnetic"
-PPO = "rsl_rl_cfg_entry_point"
 LAGRANGIAN = "rsl_rl_ppo_lagrangian_cfg_entry_point"
 REWARD = {"reward": ["shaped", "paper"]}
 VELOCITY = {"actions.tip.forward_velocity": [None, 0.04]}
-
-
-def folder(path: Path, successes: int, task: str = TASK, suite: str = "paper", every: int = 1, **run: Any) -> Path:
-    """Write a result folder whose first trials succeed."""
-    conditions = read_conditions(read_suites()[suite].conditions_path)
-    about = {
-        "agent": "checkpoint",
-        "checkpoint": ["/far/away/cell/run_1/model_3.pt"],
-        "checkpoint_sha256": ["abcdef0123456789"],
-        "training": [{"agent": PPO, "transitions": 6144}],
-        "trained_on": ["colon_1/colon.usda"],
-        "suite": suite,
-        "conditions": conditions.name,
-        "conditions_sha256": conditions.sha256,
-        "overrides": [],
-        "versions": {"arcgym commit": "abc1234"},
-        "machine": "a machine",
-    }
-    out = ResultFolder(path, about | run)
-    for trial in conditions.trials[::every]:
-        success = len(out.rows) < successes
-        end = {"success": int(success), "end": "success" if success else "stuck", "progress": 1.0 if success else 0.5}
-        figures = {"reward": 1.0 / 3.0, "seconds": 2.0, "s_c": 0.5, "centered_rate": 0.5, "tip_time_above_unsafe": 0.25}
-        out.add({"task": task, "agent": "/far/away/cell/run_1/model_3.pt", **vars(trial), **end, **figures})
-    return path
 
 
 def page(folders: list[Path], tmp_path: Path, *more: str) -> str:
@@ -56,7 +29,7 @@ def page(folders: list[Path], tmp_path: Path, *more: str) -> str:
 
 def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_command(tmp_path: Path) -> None:
     """27 of 30: Wilson 74 to 97 %."""
-    ours = folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
+    ours = write_result_folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
     text = page([ours], tmp_path)
     label = "PPO, the paper's reward and constant velocity"
     assert f"| Magnetic | {label} | 90 (74–97) [20] | – [0] | – [40] | – [0] |" in text
@@ -68,14 +41,16 @@ def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_
 
 
 def test_more_training_seeds_are_shown_in_place_of_one(tmp_path: Path) -> None:
-    folder(tmp_path / "all" / "one", 30)
-    folder(tmp_path / "all" / "three", 3, checkpoint_sha256=["a", "b", "c"])
+    write_result_folder(tmp_path / "all" / "one", 30)
+    write_result_folder(tmp_path / "all" / "three", 3, checkpoint_sha256=["a", "b", "c"])
     assert "| Magnetic | PPO, shipped reward | 10 (3–26), 3 seeds | – | – | – |" in page([tmp_path / "all"], tmp_path)
 
 
 def test_a_small_copy_makes_the_same_page(tmp_path: Path) -> None:
-    folder(tmp_path / "all" / "rectum", 27)
-    folder(tmp_path / "all" / "left", 7, "ARC-LeftColon-Magnetic", "left_colon", training=[{"agent": LAGRANGIAN}])
+    write_result_folder(tmp_path / "all" / "rectum", 27)
+    write_result_folder(
+        tmp_path / "all" / "left", 7, "ARC-LeftColon-Magnetic", "left_colon", training=[{"agent": LAGRANGIAN}]
+    )
     keep = tmp_path / "keep"
     text = page([tmp_path / "all"], tmp_path, "--keep", str(keep))
     assert text == page([keep], tmp_path)
@@ -86,7 +61,10 @@ def test_a_small_copy_makes_the_same_page(tmp_path: Path) -> None:
 
 def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:
     training = [{"agent": LAGRANGIAN, "limits": {"tip_force": 0.3}}]
-    text = page([folder(tmp_path / "safe", 50, "ARC-LeftColon-Magnetic", "left_colon", training=training)], tmp_path)
+    text = page(
+        [write_result_folder(tmp_path / "safe", 50, "ARC-LeftColon-Magnetic", "left_colon", training=training)],
+        tmp_path,
+    )
     assert "| ppo_lagrangian `abcdef01`, limit tip_force 0.3 | 50 | 100 (93–100) | 1.00 (1.00–1.00) |" in text
     assert "| 0.25 |" in text.partition("## Safe ones")[2].partition("## Robust")[0]
 
@@ -94,7 +72,7 @@ def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:
 def test_rules_on_actions_are_marked(tmp_path: Path) -> None:
     inputs = {TASK: {"sees": ["policy"], "simulator_depth": True}}
     training = [{"agent": "rsl_rl_ppo_masked_cfg_entry_point"}]
-    text = page([folder(tmp_path / "masked", 30, inputs=inputs, training=training)], tmp_path)
+    text = page([write_result_folder(tmp_path / "masked", 30, inputs=inputs, training=training)], tmp_path)
     assert "| PPO with rules on actions, shipped reward | 100 (89–100)† |" in text
 
 
@@ -111,12 +89,12 @@ def test_rules_on_actions_are_marked(tmp_path: Path) -> None:
 def test_what_is_not_known_or_another_task_is_left_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], run: dict[str, Any], every: int, reason: str
 ) -> None:
-    text = page([folder(tmp_path / "ours", 2, every=every, **run)], tmp_path)
+    text = page([write_result_folder(tmp_path / "ours", 2, every=every, **run)], tmp_path)
     assert reason in capsys.readouterr().out and "PPO, shipped reward | – | – | – | – |" in text
 
 
 def test_each_tenth_trial_is_a_share_and_says_how_many(tmp_path: Path) -> None:
-    found, left_out = find_results([folder(tmp_path / "ours", 3, every=10)])
+    found, left_out = find_results([write_result_folder(tmp_path / "ours", 3, every=10)])
     assert len(found[0].rows) == 3 and not left_out
     assert "PPO, shipped reward | 100 (44–100) of 3 |" in page([tmp_path / "ours"], tmp_path)
 
@@ -144,6 +122,6 @@ def test_sections_ask_for_suites_that_there_are() -> None:
 
 def test_the_picture_is_drawn(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
-    folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
+    write_result_folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
     page([tmp_path / "ours"], tmp_path, "--figure", str(tmp_path / "images" / "results.png"))
     assert (tmp_path / "images" / "results.png").stat().st_size > 5000

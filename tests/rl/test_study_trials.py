@@ -9,7 +9,9 @@ import sys
 import pytest
 
 from arcgym.cli.study import report_trials
-from arcgym.evaluation.agents import file_sha256
+from arcgym.evaluation import result_folder
+from arcgym.rl.checkpoint import file_sha256
+from arcgym.rl.studies import suite_trials
 from arcgym.rl.studies.cell import Cell
 from arcgym.rl.studies.launch import LaunchOptions, launch
 from arcgym.rl.studies.study_cfg import StudyCfg
@@ -82,6 +84,10 @@ def test_cells_that_are_not_finished_have_no_trials_yet(tmp_path):
     assert seeds_of(cells) == {"rectum-magnetic_ppo_seed": [1, 2]}
     (trials,) = all_trials(cells, "paper")
     assert trials.state() == "waiting" and [cell.seed for cell in trials.cells] == [1, 2]
+
+
+def test_files_are_those_of_an_evaluation():
+    assert (suite_trials.RUN_FILE, suite_trials.TRIALS_FILE) == (result_folder.RUN_FILE, result_folder.TRIALS_FILE)
 
 
 def test_the_command_names_suite_task_and_checkpoints(tmp_path, monkeypatch):

@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
 
 import torch
+from result_folders import write_result_folder
 
-from arcgym.rl.checkpoint import read_checkpoint
+from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.params import read_params
 from arcgym.rl.run_folder import write_params
 from arcgym.utils.registry import load_cfg_from_registry
@@ -31,14 +33,33 @@ def test_a_run_becomes_a_policy_of_its_robot(tmp_path: Path) -> None:
     run = tmp_path / "run"
     run.mkdir()
     write_params(run, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env, agent=agent)
-    torch.save({"actor_state_dict": {"w": torch.ones(2)}, "iter": 3, "infos": {}}, run / "model_3.pt")
-    done = ship(str(run / "model_3.pt"), "--out", str(tmp_path / "policies"))
+    contents = {"actor_state_dict": {"w": torch.ones(2)}, "iter": 3, "infos": {"transitions": 96}}
+    torch.save(contents, run / "model_3.pt")
+    (tmp_path / "curves.csv").write_text("iteration,success\n0,0.5\n")
+    done = ship(str(run / "model_3.pt"), "--out", str(tmp_path / "policies"), "--curve", str(tmp_path / "curves.csv"))
     assert done.returncode == 0, done.stderr
-    saved = read_params(tmp_path / "policies" / "magnetic")
+    saved = read_params(tmp_path / "policies" / "rectum-magnetic")
     assert saved is not None and saved.task == TASK
     assert not {"usd_path", "num_patients"} & set(saved.env["scene"]["colon"])
-    weights = read_checkpoint(tmp_path / "policies" / "magnetic" / "model.pt")["actor_state_dict"]["w"]
+    weights = read_checkpoint(tmp_path / "policies" / "rectum-magnetic" / "model.pt")["actor_state_dict"]["w"]
     assert weights.dtype == torch.float16 and weights.tolist() == [1.0, 1.0]
+    about = json.loads((tmp_path / "policies" / "rectum-magnetic" / "about.json").read_text())
+    assert about["transitions"] == 96 and about["trained_on"] == ["/home/me/patient_0/colon.usda"]
+    assert about["sha256"] == file_sha256(tmp_path / "policies" / "rectum-magnetic" / "model.pt")
+    assert (tmp_path / "policies" / "rectum-magnetic" / "curves.csv").is_file()
+    _evaluations_are_of_the_shipped_file(tmp_path, about)
+
+
+def _evaluations_are_of_the_shipped_file(tmp_path: Path, about: dict[str, str]) -> None:
+    """One of the run's own checkpoint is refused, one of the file that was written is put beside it."""
+    for name, digest in (("own", about["made_from_sha256"]), ("shipped", about["sha256"])):
+        write_result_folder(tmp_path / name, 3, checkpoint_sha256=[digest])
+        done = ship("--evaluation", str(tmp_path / name), "--out", str(tmp_path / "policies"))
+        if name == "own":
+            assert done.returncode == 1 and "which is no file in" in done.stderr
+        else:
+            assert done.returncode == 0, done.stderr
+    assert (tmp_path / "policies" / "rectum-magnetic" / "evaluation" / "shipped" / "trials.csv").is_file()
 
 
 def test_a_checkpoint_without_its_run_is_refused(tmp_path: Path) -> None:

@@ -8,8 +8,9 @@
 Uses the -Play variant of the task with the run's own configurations; the command line's changes come on top and are
 printed. It ends when each world's first episode has ended: these are the episodes that the success rate counts. The
 video goes to videos/play of the run, the policy to exported. Where nothing was trained, and with
---use_pretrained_checkpoint, the policy shipped for the robot plays, if there is one. --policy zero, random and expert
-need no checkpoint; the scripted expert sees the centerline. --record writes every episode's trajectory to a file.
+--use_pretrained_checkpoint, the policy shipped for the task or a journey of its robot plays, if there is one. --policy
+zero, random and expert need no checkpoint; the scripted expert sees the centerline. --record writes every episode's
+trajectory to a file.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ class PlayArguments(RunArguments):
     observations: bool = argument("record what the policy observes too, for imitation", False)
     json: bool = argument("print the figures as JSON on the last line", False)
     use_pretrained_checkpoint: bool = argument(
-        "the policy shipped for this robot, if there is one (default where nothing was trained)", False
+        "the policy shipped for this task or robot, if there is one (default where nothing was trained)", False
     )
 
 

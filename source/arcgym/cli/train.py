@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.stopping import stopped_cleanly
 from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs
 
 TAKES_OVERRIDES = True
@@ -64,4 +65,5 @@ def run(namespace: argparse.Namespace) -> int:
         evaluates=args.evaluate,
         agent=agent_key(args.agent),
     )
-    return train(args.task, env_cfg, agent_cfg, options)
+    with stopped_cleanly("no update was under way"):
+        return train(args.task, env_cfg, agent_cfg, options)

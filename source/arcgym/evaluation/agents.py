@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from pathlib import Path
 from typing import Any
 
@@ -33,12 +32,3 @@ def inputs_of(agent_cfg: Any) -> dict[str, Any]:
 
 def _reads_truth(depth: Any) -> bool:
     return depth.weights is None or depth.align_to_simulator
-
-
-def file_sha256(path: Path) -> str:
-    """Return the SHA-256 of a file, by which results name a checkpoint."""
-    digest = hashlib.sha256()
-    with path.open("rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()

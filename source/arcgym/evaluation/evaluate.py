@@ -14,7 +14,7 @@ from typing import Any
 import torch
 
 from arcgym.envs.provenance import versions
-from arcgym.evaluation.agents import file_sha256, inputs_of, trained_agent
+from arcgym.evaluation.agents import inputs_of, trained_agent
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.run_trials import run_trials
 from arcgym.evaluation.sharing import Share
@@ -22,7 +22,7 @@ from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.managers import EventTermCfg
-from arcgym.rl.checkpoint import read_checkpoint
+from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.device import choose_device, place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.params import differences, read_params

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import shutil
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 import torch
 
 from arcgym.rl.run_folder import write_whole
+from arcgym.rl.small_weights import restore
 from arcgym.utils.errors import UsageError
 
 
@@ -35,7 +37,7 @@ def read_checkpoint(path: str | Path, device: str = "cpu") -> dict[str, Any]:
         ) from error
     if not isinstance(contents, dict) or "infos" not in contents:
         raise UsageError(f"{path} is no checkpoint of a training run; expected a file such as model_100.pt.")
-    return contents
+    return restore(contents)
 
 
 def write_checkpoint(path: str | Path, contents: dict[str, Any]) -> bool:
@@ -51,6 +53,15 @@ def write_checkpoint(path: str | Path, contents: dict[str, Any]) -> bool:
         print(f"checkpoint {path} not written: {disk_trouble(error, Path(path))}; training goes on", flush=True)
         return False
     return True
+
+
+def file_sha256(path: Path) -> str:
+    """Return the SHA-256 of a file, by which results name a checkpoint."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def disk_trouble(error: OSError, path: Path) -> str:

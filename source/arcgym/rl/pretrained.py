@@ -1,24 +1,26 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Policies that come with ARCGym: ``policies/<robot>/`` beside the USD assets, each with the parameters of its run.
+"""Policies that come with ARCGym: ``policies/<segment>-<robot>/`` beside the USD assets, each with what it is.
 
-There is none yet; ``scripts/tools/ship_policy.py`` puts a run's policy there.
+A folder has ``model.pt``, the parameters of its run in ``params/``, its curve in ``curves.csv``, and in ``evaluation/``
+the trials that this very file has run. ``scripts/tools/ship_policy.py`` makes it of a run.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
-
-import torch
 
 from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
+from arcgym.rl.small_weights import SCALES, shrink
 from arcgym.utils.errors import UsageError
 from arcgym.utils.paths import assets_dir
 
 FILE = "model.pt"
 """Name of the checkpoint in a policy's folder."""
+
+JOURNEYS = ("leftcolon", "cecum")
+"""Whose policies play the robot's other tasks, where these have none of their own: the first that there is."""
 
 
 def policies_dir() -> Path:
@@ -26,24 +28,31 @@ def policies_dir() -> Path:
     return assets_dir().parent / "policies"
 
 
+def folder_of(task: str) -> str:
+    """Return the name of a task's folder: ``sigmoid-magnetic`` for ``ARC-Sigmoid-Magnetic-Play``."""
+    return task.removesuffix("-Play").removeprefix("ARC-").lower()
+
+
 def robot_of(task: str) -> str:
     """Return the robot that a task is named after: ``magnetic`` for ``ARC-Sigmoid-Magnetic-Play``."""
-    return task.removesuffix("-Play").rpartition("-")[2].lower()
+    return folder_of(task).rpartition("-")[2]
 
 
 def pretrained_checkpoint(task: str) -> Path:
-    """Return the checkpoint of the policy that is shipped for a task's robot.
+    """Return the checkpoint of the policy that is shipped for a task: its own, or that of a journey of its robot.
 
     Raises:
-        UsageError: There is none, with the robots that have one.
+        UsageError: There is none, with the tasks that have one.
     """
-    path = policies_dir() / robot_of(task) / FILE
-    if path.is_file():
-        return path
+    names = [folder_of(task), *(f"{journey}-{robot_of(task)}" for journey in JOURNEYS)]
+    for name in names:
+        path = policies_dir() / name / FILE
+        if path.is_file():
+            return path
     plain = task.removesuffix("-Play")
     there = sorted(found.parent.name for found in policies_dir().glob(f"*/{FILE}"))
     raise UsageError(
-        f"No policy is shipped for '{robot_of(task)}', the robot of {plain}; there are some for: "
+        f"No policy is shipped for {plain}, and none for a journey of '{robot_of(task)}'; there are some for: "
         f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {plain}'."
     )
 
@@ -54,9 +63,9 @@ def is_pretrained(checkpoint: Path) -> bool:
 
 
 def write_small(checkpoint: Path, out: Path) -> None:
-    """Write the actor of a checkpoint alone, in half precision: what playing needs, in a fifth to a half of its size.
+    """Write the actor of a checkpoint alone and small, see :func:`arcgym.rl.small_weights.shrink`.
 
-    Weights are rounded to 11 bits, so that actions change in their fourth digit: evaluate the file that is written.
+    Actions change in their third digit: evaluate the file that is written.
 
     Args:
         checkpoint: File that a runner has saved.
@@ -70,11 +79,9 @@ def write_small(checkpoint: Path, out: Path) -> None:
         raise UsageError(
             f"{checkpoint} has no actor_state_dict; expected a checkpoint of rsl-rl's PPO or a runner here."
         )
-    actor = {name: _halved(value) for name, value in contents["actor_state_dict"].items()}
+    actor, scales = shrink(contents["actor_state_dict"])
+    infos = contents["infos"] or {}
+    kept = {name: infos[name] for name in ("transitions", "seconds") if name in infos}
     out.parent.mkdir(parents=True, exist_ok=True)
-    write_checkpoint(out, {"actor_state_dict": actor, "iter": contents.get("iter", 0), "infos": {}})
-
-
-def _halved(value: Any) -> Any:
-    """Return floating numbers in half precision, and anything else as it is."""
-    return value.half() if torch.is_tensor(value) and value.is_floating_point() else value
+    small = {"actor_state_dict": actor, SCALES: scales, "iter": contents.get("iter", 0), "infos": kept}
+    write_checkpoint(out, small)

@@ -8,19 +8,20 @@ Each is a run of ``arcgym evaluate`` with its condition file, and its folder is 
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, read_run
+from arcgym.rl.checkpoint import file_sha256
 from arcgym.rl.studies.cell import LOG_FILE, Cell
 
 FOLDER = "trials"
 """Folder of the result folders, in that of the study."""
 
-SUMMARY_FILE = "summary.md"
-"""What ``arcgym evaluate`` writes when all trials have ended."""
+RUN_FILE, TRIALS_FILE, SUMMARY_FILE = "run.json", "trials.csv", "summary.md"
+"""What ``arcgym evaluate`` writes: what is run, a row a trial, and the summary when all have ended."""
 
 
 @dataclass(frozen=True)
@@ -53,15 +54,14 @@ class SuiteTrials:
 
         Results of a checkpoint are not those of a later one: a cell that was trained further needs another folder.
         """
-        from arcgym.evaluation.agents import file_sha256
-
         checkpoints = [cell.checkpoint() for cell in self.cells]
         if not all(cell.read_state()["state"] == "finished" for cell in self.cells) or None in checkpoints:
             return "waiting"
         if not (self.folder / RUN_FILE).is_file():
             return "pending"
         now = list(dict.fromkeys(file_sha256(path) for path in checkpoints if path))
-        if list(dict.fromkeys(read_run(self.folder)["checkpoint_sha256"])) != now:
+        run = json.loads((self.folder / RUN_FILE).read_text())
+        if list(dict.fromkeys(run["checkpoint_sha256"])) != now:
             return "of other policies"
         return "finished" if (self.folder / SUMMARY_FILE).is_file() else "begun"
 
