@@ -132,6 +132,11 @@ def test_the_conditions_are_of_the_present_population() -> None:
     assert [trial.patient for trial in read_conditions(path).trials] == [
         f"population:{seed}" for seed in splits.seeds["test"]
     ]
+    path = read_suites()["population_withdrawal"].conditions_path
+    assert f"splits {splits.version}, generator {splits.generator}" in path.read_text()
+    assert [trial.patient for trial in read_conditions(path).trials] == [
+        f"population:{seed}" for seed in splits.seeds["test"][:20]
+    ]
 
 
 def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) -> None:

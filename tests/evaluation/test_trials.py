@@ -35,6 +35,7 @@ SHIPPED = {
     "paper_v1": "9daf4c1f73ff953c",
     "population_v2": "f9905f1ea7b45e90",
     "robustness_v2": "5c7867ef5b36f05c",
+    "withdrawal_population_v1": "1720de6d55c0da78",
 }
 """Begins of the hashes of the shipped files: a changed one gets another name, and a line here."""
 

@@ -10,6 +10,7 @@ import torch
 
 import arcgym_tasks  # noqa: F401
 from arcgym.envs import mdp
+from arcgym.managers import MetricsManager
 from arcgym.utils.configclass import validate
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import load_cfg_from_registry
@@ -44,6 +45,21 @@ def test_a_pressure_at_which_a_cecum_ruptured_costs(env) -> None:
     env.scene["colon"].data.lumen_pressure_mean[:] = torch.tensor([80.0, 82.0]) * 133.322
     cost = configured("env.gas=present").costs.lumen_pressure
     assert mdp.load_above(env, **cost.params).tolist() == [False, True]
+
+
+def test_pressures_of_an_episode(env) -> None:
+    """The mean of the steps' means, and the largest physics step of any of them."""
+    metrics = configured("env.gas=present").metrics
+    terms = {name: getattr(metrics, name) for name in ("mean_lumen_pressure", "max_lumen_pressure")}
+    manager, data = MetricsManager(terms, env), env.scene["colon"].data
+    manager.reset()
+    for mean, peak in ((1000.0, 1100.0), (1400.0, 2000.0), (1200.0, 1250.0)):
+        data.lumen_pressure_mean[:] = torch.tensor([mean, 500.0])
+        data.lumen_pressure_peak[:] = torch.tensor([peak, 500.0])
+        manager.compute()
+    manager.reset()
+    found = {name: values.tolist() for name, values in manager.finished.items()}
+    assert found == {"mean_lumen_pressure": [1200.0, 500.0], "max_lumen_pressure": [2000.0, 500.0]}
 
 
 def test_every_world_may_have_a_belly_of_its_own(env) -> None:
