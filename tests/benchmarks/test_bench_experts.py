@@ -6,10 +6,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arcgym.benchmarks.experts.measure import Attempt, row_of
+import pytest
+
+from arcgym.benchmarks.experts.measure import OUT_OF_TIME, Attempt, attempt, row_of
 from arcgym.benchmarks.experts.table import failures, read_rows, table
 from arcgym.cli.bench_experts import _missing
 from arcgym.start_states.route import Entry, Route
+from arcgym.utils.paths import assets_dir
 
 
 def test_a_route_ends_without_progress_or_time() -> None:
@@ -48,6 +51,17 @@ def test_scopes_of_another_length_have_rows_of_their_own() -> None:
     stages = [Path("a/colon.usda"), Path("b/colon.usda")]
     assert list(_missing([shipped], "magnetic", "paper", None, stages, 8)) == [stages[1:]]
     assert list(_missing([shipped], "magnetic", "paper", 2.2, stages, 8)) == [stages]
+
+
+@pytest.mark.slow
+def test_a_drive_that_was_cut_off_goes_on_from_the_kept_one(tmp_path: Path) -> None:
+    rows: list[dict] = []
+    for _ in range(2):  # the computing time is over after the first control step
+        plan = Attempt("capsule", "paper", 1, 240.0, "cpu", deadline=0.0, halts=tmp_path)
+        attempt(plan, [assets_dir() / "colon_1/colon.usda"], rows.append)
+    assert [row["time"] for row in rows] == [0.1, 0.2]
+    assert [row["problem"] for row in rows] == [OUT_OF_TIME] * 2
+    assert [path.name for path in tmp_path.iterdir()] == ["colon_1-capsule-paper.npz"]
 
 
 def test_overrides_are_part_of_a_row_s_tissue() -> None:

@@ -26,6 +26,9 @@ from arcgym.utils.configclass import replace, validate
 ROBOTS = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
 """Robots by name."""
 
+HALT_EVERY = 30.0
+"""Simulated time after which drives under way are kept again, should the process be killed [s]."""
+
 OUT_OF_TIME = "no computing time left"
 """Problem of a patient in which the drive was stopped from outside."""
 
@@ -57,7 +60,7 @@ class Attempt:
     overrides: tuple[str, ...] = ()
     """Overrides of the robot's task, such as ``env.clinical=[all]``."""
     halts: Path | None = None
-    """Folder in which drives are kept that were stopped from outside, and from which they go on; None for none."""
+    """Folder in which drives under way are kept, and from which they go on if they are stopped; None for none."""
 
     @property
     def label(self) -> str:
@@ -88,14 +91,15 @@ def attempt(
         for patient, route in enumerate(drive.routes):
             if route.running and time.monotonic() > plan.deadline:
                 route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
-                if plan.halts is not None:
-                    halt_of(drive, patient).save(_halt(plan, drive, patient))
+                _keep_halt(plan, drive, patient)
             if not route.running and patient not in written:
                 written.add(patient)
                 about = {"robot": plan.robot, "tissue": plan.label, "worlds": plan.worlds, "seed": plan.seed}
                 about |= {} if plan.length is None else {"scope_length": plan.length}
                 spent = {"wall_time": round(time.monotonic() - began, 1)}
                 done({"patient": scene.colon.patients[patient].name, **about, **row_of(route), **spent})
+            elif route.running and round(drive.time / CONTROL_STEP) % round(HALT_EVERY / CONTROL_STEP) == 0:
+                _keep_halt(plan, drive, patient)
 
         if round(drive.time / CONTROL_STEP) % 100 == 0:
             tell(_progress(drive, time.monotonic() - began))
@@ -105,17 +109,24 @@ def attempt(
         _keep(scene, drive)
 
 
-def _halt(plan: Attempt, drive: Drive, patient: int) -> Path:
+def _halt(folder: Path, plan: Attempt, drive: Drive, patient: int) -> Path:
     """Return the file of a drive that was stopped from outside."""
-    assert plan.halts is not None
     words = (drive.scene.colon.patients[patient].name, drive.scene.endoscope.path.stem, *plan.label.split())
-    return plan.halts / ("-".join(words) + ".npz")
+    return folder / ("-".join(words) + ".npz")
+
+
+def _keep_halt(plan: Attempt, drive: Drive, patient: int) -> None:
+    """Keep a drive that is under way, if there is a folder for it."""
+    if plan.halts is not None:
+        halt_of(drive, patient).save(_halt(plan.halts, plan, drive, patient))
 
 
 def _go_on(plan: Attempt, drive: Drive) -> None:
     """Let the drive go on where another one was stopped, in the patients in which one was."""
-    for patient in range(len(drive.routes)) if plan.halts is not None else ():
-        halt = Halt.load(_halt(plan, drive, patient))
+    if plan.halts is None:
+        return
+    for patient in range(len(drive.routes)):
+        halt = Halt.load(_halt(plan.halts, plan, drive, patient))
         if halt is not None:
             go_on(drive, patient, halt)
 
