@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.benchmarks.clinical.figures import Insertion, figures, read
-from arcgym.benchmarks.clinical.record import FIELDS, lineage
+from arcgym.benchmarks.clinical.record import FIELDS, Diary, lineage, past_code
 from arcgym.benchmarks.clinical.table import table, write_table
 from arcgym.envs.mdp.shaft_metrics import LOOPS
 
@@ -32,6 +33,21 @@ def test_a_history_follows_the_entries_that_were_taken_over() -> None:
     before = np.array([-1, -1, 0, 1, 2, 2])  # two worlds, three steps; the second took over the first after two steps
     assert lineage(before, 5) == [0, 2, 5]
     assert lineage(before, 3) == [1, 3]
+
+
+def test_a_history_goes_on_from_that_of_an_earlier_call() -> None:
+    diary = Diary.__new__(Diary)
+    diary._past = []
+    rows = torch.arange(4.0).repeat_interleave(len(FIELDS)).view(2, 2, -1)  # entries 0 to 3: two worlds, two steps
+    diary._rows, diary._before = list(rows), [torch.tensor([past_code(1), -1]), torch.tensor([0, 0])]
+    first = diary.add_past([np.full((3, len(FIELDS)), value, np.float32) for value in (8.0, 9.0)])
+    assert first == 0 and past_code(past_code(1)) == 1
+    assert [one[:, 0].tolist() for one in diary.histories([3, 1, past_code(0)])] == [
+        [9.0, 9.0, 9.0, 0.0, 3.0],
+        [1.0],
+        [8.0, 8.0, 8.0],
+    ]
+    assert diary.add_past([rows[0].numpy()]) == 2
 
 
 def test_forces_leave_out_the_step_after_a_change_of_worlds() -> None:
@@ -77,7 +93,11 @@ def test_the_colon_is_gathered_where_less_scope_is_inside_than_its_length() -> N
     assert found["shaft_at_cecum"] == pytest.approx(1.2)
     assert found["gathered_at_furthest"] == pytest.approx(0.8)  # of 0.6 and 1
     assert found["time"] == pytest.approx(2.0)
-    assert figures([stuck])["gathered"] is None
+    assert figures([stuck])["gathered"] is None and figures([stuck])["gathered_most"] is None
+    pulled = insertion(
+        segment=_then("splenic", SEGMENTS.index("splenic"), 10), arc=0.9, inserted=[0.4] * 15 + [0.6] * 5
+    )
+    assert figures([pulled, stuck])["gathered_most"] == pytest.approx(0.4 / 0.9)
 
 
 def test_demands_are_placed_by_the_tip_in_the_tenth_of_the_highest_tension() -> None:

@@ -104,6 +104,13 @@ def test_robots_without_wheels_keep_their_shaft(task: str) -> None:
     assert not cfg.scene.endoscope.grading.active and cfg.sim.weight.enabled
 
 
+def test_its_contact_is_as_stiff_as_in_situ() -> None:
+    soft, firm = configured(ALL), configured("env.clinical=[tissue]", "env.scene.colon.material=in_situ")
+    assert soft.sim.contact.tissue_share * 95.0e3 == pytest.approx(firm.sim.contact.tissue_share * 0.5e6, rel=0.01)
+    assert firm.sim.contact.tissue_share == pytest.approx(2 / 3)
+    assert configured(ALL, "env.sim.contact.tissue_share=1.0").sim.contact.tissue_share == 1.0
+
+
 def test_the_tissue_is_softer_than_in_situ_and_held_alike() -> None:
     soft, firm = tissue_preset("clinical"), tissue_preset("in_situ")
     assert soft.youngs_modulus == 95.0e3 and soft.anchor_slack == firm.anchor_slack

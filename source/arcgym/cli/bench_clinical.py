@@ -3,7 +3,8 @@
 """Compare scripted insertions of the pushed colonoscope with what is published of real ones.
 
 Each variant drives up all patients. The insertions are written to OUT/VARIANT/PATIENT.npz, the figures of all that are
-there to ``figures.json`` and, beside the published ones, to ``table.md``. Run for example::
+there to ``figures.json`` and, beside the published ones, to ``table.md``. Called again for the same folder, it goes on
+with insertions that ran out of ``--minutes``, and makes those that are not there. Run for example::
 
     arcgym bench clinical --colons population:validation --num_patients 20 --device cuda:0 --out logs/clinical
     arcgym bench clinical --colons colon_1 ct_1 --variants clinical --worlds 1 --out logs/clinical
@@ -26,8 +27,10 @@ VARIANTS: dict[str, tuple[str, ...]] = {
     "paper": (),
     "in_situ": ("env.scene.colon.material=in_situ",),
     "clinical": ("env.clinical=[all]",),
+    "examiner": ("env.clinical=[all]",),
 }
-"""Overrides by name."""
+"""Overrides by name; ``examiner`` has a script that pushes gently and pulls back."""
+EXAMINER = "examiner"
 GPU_WORLDS, CPU_WORLDS = 6, 1
 
 
@@ -84,7 +87,8 @@ def _drive(args: argparse.Namespace) -> None:
     for name in args.variants:
         deadline = began + 60.0 * args.minutes
         overrides = (*VARIANTS[name], *args.overrides)
-        plan = Plan(name, overrides, worlds, args.max_time, args.patience, device, args.seed, deadline)
+        examiner = name == EXAMINER
+        plan = Plan(name, overrides, worlds, args.max_time, args.patience, device, examiner, args.seed, deadline)
         insert(plan, stages, args.out, _say)
 
 

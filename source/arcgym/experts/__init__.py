@@ -10,17 +10,19 @@ from typing import TYPE_CHECKING
 from arcgym.utils.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from arcgym.experts.examiner_expert import ExaminerExpert
     from arcgym.experts.expert_base import ExpertBase, make_expert
     from arcgym.experts.pull_expert import PullExpert
     from arcgym.experts.push_expert import PushExpert
 
 _LAZY = {
+    "ExaminerExpert": "arcgym.experts.examiner_expert",
     "ExpertBase": "arcgym.experts.expert_base",
     "PullExpert": "arcgym.experts.pull_expert",
     "PushExpert": "arcgym.experts.push_expert",
     "make_expert": "arcgym.experts.expert_base",
 }
 
-__all__ = ["ExpertBase", "PullExpert", "PushExpert", "make_expert"]
+__all__ = ["ExaminerExpert", "ExpertBase", "PullExpert", "PushExpert", "make_expert"]
 
 __getattr__ = lazy_names(__name__, _LAZY)

@@ -46,7 +46,7 @@ class PushExpert(ExpertBase):
         "slack": (0.04, 0.4),
         "slips": (0.02, 0.1),
     }
-    FREEING = ("twist",)
+    FREEING: ClassVar[tuple[str, ...]] = ("twist",)
     PERIOD = 40
 
     def __init__(
@@ -97,10 +97,7 @@ class PushExpert(ExpertBase):
 
     def act(self) -> None:
         """Set bending and insertion commands."""
-        data, inserts = self.scene["endoscope"].data, self.speed > 0.0
-        backs, begins = self._retreat.update(data.tip_arc_length)
-        straightens, starts = self._loops.update(data.tip_arc_length, data.inserted_length)
-        backs, begins = (backs | straightens) & inserts, (begins | starts) & inserts
+        backs, begins = self._pulls_back()
         self._turn = torch.where(begins, 1.2 * self.uniform("turn") - 0.6, self._turn)
         self._steps += 1.0
         angle = self._bend(torch.where(backs, 0.5, 1.0))
@@ -112,6 +109,13 @@ class PushExpert(ExpertBase):
         endoscope = self.scene["endoscope"]
         endoscope.set_bending_command(self.bending[:, 0], self.bending[:, 1])
         endoscope.set_insertion_command(self.velocity + jiggle, torch.where(backs, self._turn, turning))
+
+    def _pulls_back(self) -> tuple[torch.Tensor, torch.Tensor]:
+        """Return which worlds are pulled back, and which begin to, both of shape (N,), bool."""
+        data, inserts = self.scene["endoscope"].data, self.speed > 0.0
+        backs, begins = self._retreat.update(data.tip_arc_length)
+        straightens, starts = self._loops.update(data.tip_arc_length, data.inserted_length)
+        return (backs | straightens) & inserts, (begins | starts) & inserts
 
     def reset(self, env_ids: torch.Tensor) -> None:
         """Take up the bending that some worlds start with, and stand still there."""

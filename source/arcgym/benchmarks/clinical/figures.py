@@ -22,6 +22,8 @@ INSERTED = 0.60
 """Length of scope at which the place of the tip is noted [m]; Painter et al. 1999."""
 LASTING = 1.0
 """Time that a loop has to be there to count [s]; our choice."""
+FLEXURE = SEGMENTS.index("splenic")
+"""Segment from which on an examiner has straightened the sigmoid colon."""
 STEP = 0.1
 """Control step [s]."""
 HIGHEST = 0.1
@@ -73,6 +75,7 @@ def figures(insertions: Sequence[Insertion]) -> dict[str, Any]:
         "gathered": median([ratio_at_end(one) for one in arrived]),
         "shaft_at_cecum": median([float(one["inserted"][-1]) for one in arrived]),
         "gathered_at_furthest": median([ratio_at_end(one) for one in insertions]),
+        "gathered_most": median([least_ratio(one) for one in insertions if (one["segment"] >= FLEXURE).any()]),
         "tip_speed": median([speed(one) for one in insertions]),
         "time": median([len(one.steps) * STEP for one in arrived]),
         **demands(insertions),
@@ -124,6 +127,12 @@ def ratio_at_end(one: Insertion) -> float:
     """Return the length of scope inside over that of the colon behind the tip, at rest, where the tip is furthest."""
     furthest = int(np.argmax(one["arc"]))
     return float(one["inserted"][furthest] / one["arc"][furthest])
+
+
+def least_ratio(one: Insertion) -> float:
+    """Return the least of that ratio in any step whose tip is at the splenic flexure or past it."""
+    past = one["segment"] >= FLEXURE
+    return float((one["inserted"][past] / one["arc"][past]).min())
 
 
 def speed(one: Insertion) -> float:

@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.benchmarks.clinical.record import FIELDS, RecordedPushExpert
+from arcgym.benchmarks.clinical.pausing import pause, resume
+from arcgym.benchmarks.clinical.record import FIELDS, Diary, RecordedExaminer, RecordedPushExpert
 from arcgym.benchmarks.worlds import load_env_cfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
@@ -26,6 +27,8 @@ TASK = "ARC-Cecum-Proximal"
 """Task whose scene is taken."""
 OUT_OF_TIME = "no computing time left"
 """Problem of a patient in which the drive was stopped from outside."""
+SPEED = 0.015
+"""Speed of the examiner's script [m/s]; a choice, real tips come on by 2 to 6 mm/s."""
 KEPT_EVERY = 200
 """Control steps after which insertions that are under way are written down."""
 
@@ -46,6 +49,8 @@ class Plan:
     """Simulated time without progress after which it is given up [s]."""
     device: str
     """Device of the simulation."""
+    examiner: bool = False
+    """Whether the script pushes gently and pulls back, :class:`arcgym.experts.ExaminerExpert`."""
     seed: int = 0
     """Seed of the experts' settings."""
     deadline: float = float("inf")
@@ -55,8 +60,9 @@ class Plan:
 def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], None]) -> None:
     """Drive up all patients and write ``NAME/PATIENT.npz`` of each: ``steps`` (T, F) by ``FIELDS``, and ``about``.
 
-    The insertion of a patient is that of the world that got furthest, see :class:`.record.RecordedPushExpert`. Its file
-    is written when it ends, and every 20 simulated seconds before.
+    The insertion of a patient is that of the world that got furthest, see :class:`.record.Diary`. Its file
+    is written when it ends, and every 20 simulated seconds before. Those that ran out of computing time go on with the
+    next call for the same folder; those that have ended are left as they are.
 
     Args:
         plan: What drives, and how long.
@@ -64,11 +70,17 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
         out: Folder.
         tell: Called with a line about all of them every 10 simulated seconds.
     """
+    stages = [stage for stage in stages if not _ended(out / plan.name / f"{stage.parent.name}.npz")]
+    if not stages:
+        return
     scene = build(plan, stages)
-    drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
+    speed = {"speed": SPEED} if plan.examiner else {}
+    drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed, **speed)
     expert = drive.expert
-    if not isinstance(expert, RecordedPushExpert):
-        raise TypeError(f"The drive has a {type(expert).__name__}, expected a RecordedPushExpert.")
+    if not isinstance(expert, Diary):
+        raise TypeError(f"The drive has a {type(expert).__name__}, expected one with a Diary.")
+    for patient, of in enumerate(scene.colon.patients):
+        resume(drive, expert, patient, _paused(plan, of.name, out))
     began, ended = time.monotonic(), set[int]()
 
     def keep(patients: Sequence[int]) -> None:
@@ -80,6 +92,7 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
         for patient, route in enumerate(drive.routes):
             if route.running and time.monotonic() > plan.deadline:
                 route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
+                pause(drive, expert, patient, _paused(plan, scene.colon.patients[patient].name, out))
         fresh = [k for k, route in enumerate(drive.routes) if not route.running and k not in ended]
         ended.update(fresh)
         count = round(drive.time / CONTROL_STEP)
@@ -100,9 +113,24 @@ def build(plan: Plan, stages: Sequence[Path]) -> InteractiveScene:
     validate(cfg)
     cfg.resolve()
     colon = replace(cfg.scene.colon, usd_path=[str(stage) for stage in stages], num_patients=None)
-    endoscope = replace(cfg.scene.endoscope, expert=RecordedPushExpert)
+    expert = RecordedExaminer if plan.examiner else RecordedPushExpert
+    endoscope = replace(cfg.scene.endoscope, expert=expert)
     count = plan.worlds * len(stages)
     return InteractiveScene(InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=endoscope), cfg.sim)
+
+
+def _paused(plan: Plan, patient: str, out: Path) -> Path:
+    """Return the file of an insertion that ran out of computing time."""
+    return out / plan.name / "paused" / f"{patient}.npz"
+
+
+def _ended(path: Path) -> bool:
+    """Whether an insertion has come to its end."""
+    if not path.is_file():
+        return False
+    with np.load(path) as file:
+        about = json.loads(str(file["about"]))
+    return bool(about["arrived"] or (about["problem"] and about["problem"] != OUT_OF_TIME))
 
 
 def _write(plan: Plan, drive: Drive, patient: int, steps: np.ndarray, out: Path) -> None:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""An expert that writes down every control step, so that the history of any world can be read afterwards."""
+"""Experts that write down every control step, so that the history of any world can be read afterwards."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import torch
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.materials import MESOCOLON_HEIGHT
 from arcgym.envs.mdp.shaft_metrics import find_loops
-from arcgym.experts import PushExpert
+from arcgym.experts import ExaminerExpert, PushExpert
 from arcgym.scene.interactive_scene import InteractiveScene
 
 FIELDS = ("inserted", "arc", "push", "torque", "segment", "loop", "mesentery", "attachments", "shaft", "went_on")
@@ -24,8 +24,8 @@ HANGING = tuple(SEGMENTS.index(name) for name in MESOCOLON_HEIGHT)
 """Segments that hang on a mesentery."""
 
 
-class RecordedPushExpert(PushExpert):
-    """The expert of a pushed scope with a diary.
+class Diary(PushExpert):
+    """An expert of a pushed scope that writes down what it does.
 
     Every control step of a world is an entry that knows the one before it. Who takes over another world's state takes
     over its last entry with the rest of its memory, so that going back from the last entry gives one continuous
@@ -40,10 +40,12 @@ class RecordedPushExpert(PushExpert):
         self._worlds = torch.arange(count, device=scene.device)
         self._rows: list[torch.Tensor] = []
         self._before: list[torch.Tensor] = []
+        self._past: list[np.ndarray] = []
 
     def act(self) -> None:
         """Write the last control step down and set the commands of the next."""
-        kept = self._last == self._worlds + (len(self._rows) - 1) * len(self._worlds)
+        newest = self._worlds + (len(self._rows) - 1) * len(self._worlds)
+        kept = (self._last == newest) & (newest >= 0)
         self._rows.append(torch.stack([*measure(self.scene), kept.float()], dim=1))
         self._before.append(self._last.clone())
         self._last.copy_(self._worlds + (len(self._rows) - 1) * len(self._worlds))
@@ -61,7 +63,34 @@ class RecordedPushExpert(PushExpert):
         """Return the insertions that end with some entries, each of shape (T, F): F fields, see :data:`FIELDS`."""
         rows = torch.stack(self._rows).flatten(0, 1).cpu().numpy()
         before = torch.stack(self._before).flatten().cpu().numpy()
-        return [rows[lineage(before, entry)] for entry in entries]
+        return [np.concatenate([self._past_of(before, entry), rows[lineage(before, entry)]]) for entry in entries]
+
+    def add_past(self, histories: list[np.ndarray]) -> int:
+        """Keep insertions of an earlier drive, and return the number of the first, see :func:`past_code`."""
+        self._past += histories
+        return len(self._past) - len(histories)
+
+    def _past_of(self, before: np.ndarray, entry: int) -> np.ndarray:
+        """Return the insertion of an earlier drive that one of this drive goes on from; empty if none."""
+        entries = lineage(before, entry)
+        root = int(before[entries[0]]) if entries else entry
+        return self._past[past_code(root)] if root < -1 else np.empty((0, len(FIELDS)), np.float32)
+
+
+class RecordedPushExpert(Diary):
+    """The shipped expert of a pushed scope, with a diary."""
+
+
+class RecordedExaminer(Diary, ExaminerExpert):
+    """The expert that pushes gently and pulls back, with a diary."""
+
+
+def past_code(number: Any) -> Any:
+    """Return what stands for the entry before the first of an insertion that goes on from that number of the past.
+
+    -2 for 0, -3 for 1 and so on, for -1 is none; the same function turns it back.
+    """
+    return -2 - number
 
 
 def lineage(before: np.ndarray, last: int) -> list[int]:

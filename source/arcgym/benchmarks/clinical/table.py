@@ -63,6 +63,12 @@ ROWS: tuple[tuple[str, str, str, Callable[[Figures], str]], ...] = (
         lambda f: _number(f["gathered_at_furthest"], 2),
     ),
     (
+        "The least of it, tip at the splenic flexure or past",
+        "–",
+        "after a pull",
+        lambda f: _number(f["gathered_most"], 2),
+    ),
+    (
         "Scope inside in the cecum [cm]",
         "70–90",
         "usual, straight",
