@@ -25,15 +25,15 @@ from arcgym.evaluation.results_keep import keep
 from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.first_episodes import write_rows
 from arcgym.rl.params import RunParams, read_params
-from arcgym.rl.pretrained import FILE, folder_of, policies_dir, write_small
+from arcgym.rl.pretrained import ABOUT, FILE, folder_of, policies_dir, write_small
 from arcgym.rl.run_folder import write_params
 from arcgym.utils.errors import UsageError
 
 OF_THE_MAKER = ("usd_path", "num_patients")
 """Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own."""
 
-ABOUT, CURVE = "about.json", "curves.csv"
-"""What a policy is, and its curve."""
+CURVE = "curves.csv"
+"""Name of a policy's curve in its folder."""
 
 
 def main() -> None:

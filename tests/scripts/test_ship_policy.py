@@ -12,6 +12,7 @@ from pathlib import Path
 import torch
 from result_folders import write_result_folder
 
+from arcgym.evaluation.evaluate import trained_on
 from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.params import read_params
 from arcgym.rl.run_folder import write_params
@@ -45,6 +46,8 @@ def test_a_run_becomes_a_policy_of_its_robot(tmp_path: Path) -> None:
     assert weights.dtype == torch.float16 and weights.tolist() == [1.0, 1.0]
     about = json.loads((tmp_path / "policies" / "rectum-magnetic" / "about.json").read_text())
     assert about["transitions"] == 96 and about["trained_on"] == ["/home/me/patient_0/colon.usda"]
+    shipped = tmp_path / "policies" / "rectum-magnetic" / "model.pt"
+    assert trained_on(shipped) == ["/home/me/patient_0/colon.usda"]
     assert about["sha256"] == file_sha256(tmp_path / "policies" / "rectum-magnetic" / "model.pt")
     assert (tmp_path / "policies" / "rectum-magnetic" / "curves.csv").is_file()
     _evaluations_are_of_the_shipped_file(tmp_path, about)

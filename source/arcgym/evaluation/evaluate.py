@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import json
 import platform
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -26,6 +27,7 @@ from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.device import choose_device, place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.params import differences, read_params
+from arcgym.rl.pretrained import ABOUT
 from arcgym.rl.rollout import UNTRAINED, Policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 from arcgym.utils.coerce import to_plain
@@ -145,9 +147,15 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
 
 
 def trained_on(checkpoint: Path) -> Any:
-    """Return the patients that a checkpoint was trained on, as its run's parameters name them; None if it has none."""
+    """Return the patients that a checkpoint was trained on; None where nothing beside it says so.
+
+    The parameters of its run name them; those of a shipped policy do not, but its description does.
+    """
+    about = checkpoint.with_name(ABOUT)
+    if about.is_file():
+        return json.loads(about.read_text()).get("trained_on")
     saved = read_params(checkpoint.parent)
-    return None if saved is None else saved.env["scene"]["colon"]["usd_path"]
+    return None if saved is None else saved.env["scene"]["colon"].get("usd_path")
 
 
 def training_of(checkpoint: Path) -> dict[str, Any]:

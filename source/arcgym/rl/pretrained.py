@@ -19,6 +19,9 @@ from arcgym.utils.paths import assets_dir
 FILE = "model.pt"
 """Name of the checkpoint in a policy's folder."""
 
+ABOUT = "about.json"
+"""Description of a policy in its folder: its task, its agent, what it was trained on and for how long."""
+
 JOURNEYS = ("leftcolon", "cecum")
 """Whose policies play the robot's other tasks, where these have none of their own: the first that there is."""
 
