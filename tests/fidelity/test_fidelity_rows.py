@@ -67,6 +67,7 @@ SLOW = [
 LONG = [
     "contact_search_missed,contact_search_dropped",
     "sigmoid_deep_force,sigmoid_deep_tip",
+    "step_damping_force,step_damping_tip",
     "newton_force,newton_tip",
     "random_magnetic",
     "random_proximal",

@@ -15,8 +15,9 @@ import warp as wp
 DT = 0.002
 
 
-def law() -> ContactLaw:
+def law(relief: float = 0.0) -> ContactLaw:
     out = ContactLaw()
+    out.relief = relief
     out.stiffness, out.hardening, out.search_gap, out.slip_velocity, out.static_friction = (
         1000.0,
         0.002,
@@ -74,3 +75,22 @@ def test_a_wall_that_is_near_resists_acceleration_alone(gap: float, velocity: fl
     out = wp.zeros(1, dtype=wp.vec2, device="cpu")
     wp.launch(load, 1, [law(), gap, velocity], [out], device="cpu")
     assert out.numpy()[0] == pytest.approx([force, mass], rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("relief", "gap", "velocity", "force"),
+    [
+        (0.0, -0.001, 0.5, 4.0),  # 2 mm deep at the end of the step
+        (1.0, -0.001, 0.5, 1.25),  # 1 mm at its beginning
+        (0.5, -0.001, 0.5, 1.5 * (1.0 + 0.75**2)),  # half way
+        (1.0, -0.001, 0.01, 1.01 * (1.0 + 0.505**2)),  # half way as well, for it is slow: 20 um in the step
+        (1.0, 0.0005, 0.5, 0.0),  # arrives in this step
+    ],
+)
+def test_damping_of_the_step_is_taken_off_the_force_alone(
+    relief: float, gap: float, velocity: float, force: float
+) -> None:
+    out, kept = (wp.zeros(1, dtype=wp.vec2, device="cpu") for _ in range(2))
+    wp.launch(load, 1, [law(relief), gap, velocity], [out], device="cpu")
+    wp.launch(load, 1, [law(), gap, velocity], [kept], device="cpu")
+    assert out.numpy()[0, 0] == pytest.approx(force, rel=1e-3) and out.numpy()[0, 1] == kept.numpy()[0, 1]

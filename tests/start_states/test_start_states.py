@@ -20,6 +20,7 @@ from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
 from arcgym.start_states import StartStateError, find, store
 from arcgym.start_states.ahead import make_ahead
+from arcgym.start_states.key import settings_of
 from arcgym.start_states.making import key_of
 from arcgym.utils.paths import cache_dir
 
@@ -99,6 +100,14 @@ def test_the_device_changes_nothing(tiny: TinySim) -> None:
     before = key_of(scene)
     scene.sim.cfg.device, scene.sim.cfg.use_graph = "cuda:3", False
     assert key_of(scene) == before
+
+
+def test_all_of_the_steps_damping_is_no_part_of_the_key(tiny: TinySim) -> None:
+    scene = build(tiny)
+    before = key_of(scene)
+    assert "step_damping" not in settings_of(scene.sim.cfg)["contact"]
+    scene.sim.cfg.contact.step_damping = 0.5
+    assert key_of(scene).changed({**vars(before)}) == ["solver"]
 
 
 def test_gas_takes_the_states_that_were_made_without_it(tiny: TinySim, cache: Path, monkeypatch) -> None:

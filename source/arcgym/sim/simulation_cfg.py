@@ -42,6 +42,10 @@ class ContactCfg:
     that depth it hardens faster: no wall is squeezed by more than its thickness."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
+    step_damping: float = 1.0
+    """Share kept of what the implicit step adds to the normal damping of a link's contact that is faster than 20 mm/s:
+    ``dt`` times its stiffness, 4 N s/m. With 0.5 slips come and go more as with smaller steps (docs/physics.md, known
+    limits); with less a limp shaft does not stay finite. Published forces are with 1."""
     friction: float = 0.1
     """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
@@ -87,6 +91,7 @@ class ContactCfg:
         require_positive(self, "hardening", "search_gap", unit="m")
         require_positive(self, "slip_velocity", unit="m/s")
         require_non_negative(self, "damping", unit="N s/m")
+        require(self, "step_damping", Range(0.5, 1.0))
         require_non_negative(self, "friction", "tissue_share")
         require_non_negative(self, "wall_radius", unit="m")
         require_at_least(self, 1, "search_reach", "capacity", "patch_capacity")

@@ -28,6 +28,8 @@ EFFECTS = ("wall_law", "weight", "grading", "abdomen", "mesentery", "loops")
 """Fields that change no state while they are not ``active``."""
 OF_DRIVES = ("play", "lag")
 """Fields of drives that change no state while they are zero."""
+OF_CONTACT = {"step_damping": 1.0}
+"""Fields of the contact that change no state while they have this value."""
 
 
 @dataclass(frozen=True)
@@ -74,20 +76,25 @@ def state_key(colon: Colon, endoscope: Endoscope, sim: SimulationCfg, patient: i
     stage = {name: value for name, value in stage.items() if name not in ("path", "name", "camera", "lights")}
     return StateKey(
         colon=_digest(mesh),
-        tissue=_digest({"cfg": _settings(colon.cfg), "preset": colon.tissue, "thickness": colon.thickness}),
-        robot=_digest({"cfg": _settings(endoscope.cfg), "stage": stage}),
+        tissue=_digest({"cfg": settings_of(colon.cfg), "preset": colon.tissue, "thickness": colon.thickness}),
+        robot=_digest({"cfg": settings_of(endoscope.cfg), "stage": stage}),
         expert=_digest({"class": endoscope.cfg.expert, "format": FORMAT}),
-        solver=_digest(_settings(sim)),
+        solver=_digest(settings_of(sim)),
     )
 
 
-def _settings(cfg: Any) -> dict[str, Any]:
+def settings_of(cfg: Any) -> dict[str, Any]:
+    """Return the settings of a configuration that states depend on."""
     off = [name for name in EFFECTS if hasattr(cfg, name) and not getattr(cfg, name).active]
     kept = {name: value for name, value in to_plain(cfg).items() if name not in (*NOT_IN_STATE, *off)}
     for drive in kept.get("actuators", {}).values():
         for name in OF_DRIVES:
             if drive.get(name) == 0.0:
                 del drive[name]
+    contact = kept.get("contact", {})
+    for name, value in OF_CONTACT.items():
+        if contact.get(name) == value:
+            del contact[name]
     return kept
 
 

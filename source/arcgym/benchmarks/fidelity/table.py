@@ -58,6 +58,7 @@ TABLE: tuple[Check, ...] = (
     line("folded_in_situ_force folded_in_situ_tip", "folded:folded", material="in_situ"),
     line("sigmoid_force sigmoid_tip", "insertion:sigmoid"),
     line("sigmoid_deep_force sigmoid_deep_tip", "insertion:sigmoid_deep"),
+    line("step_damping_force step_damping_tip", "insertion:sigmoid_deep", name="step_damping", step_damping=0.5),
     line("bend_rod_force bend_rod_tip", "rods:bend"),
     line("sigmoid_rod_force sigmoid_rod_tip", "rods:sigmoid"),
     line("newton_force newton_tip", "insertion:plain_newton"),

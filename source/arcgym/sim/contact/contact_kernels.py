@@ -72,6 +72,7 @@ class ContactLaw:
     tissue_share: float  # of it on a soft shell, over E t / (1 - nu^2); 0 where the wall itself is squeezed
     hardening: float  # depth at which the stiffness has doubled, as a secant [m]
     damping: float  # [N s/m], approach only
+    relief: float  # share taken off the damping that the step adds
     friction_stiffness: float  # across the wall, of a contact that sticks [N/m]
     static_friction: float  # static over dynamic friction
     slip_velocity: float  # speed at which friction has fallen to 1/e of the way from static to dynamic [m/s]

@@ -113,6 +113,7 @@ class ContactSearch:
         names = ("stiffness", "hardening", "damping", "friction_stiffness", "static_friction", "slip_velocity")
         for name in (*names, "wall_radius", "search_gap"):
             setattr(law, name, getattr(cfg, name))
+        law.relief = 1.0 - cfg.step_damping
         return law
 
     def _candidates(self, capacity: int) -> kernels.Candidates:

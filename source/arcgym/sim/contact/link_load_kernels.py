@@ -19,6 +19,10 @@ from arcgym.sim.contact.contact_kernels import (
 from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
 
+SLOW = wp.constant(0.02)
+"""Speed along the normal below which a contact keeps more of the damping that the step adds [m/s]: without it contacts
+at rest tremble, and friction lets go."""
+
 
 @wp.func
 def contact_load(
@@ -41,6 +45,10 @@ def contact_load(
     ``search_gap``, the contact's stiffness still resists acceleration, less the wider the gap: what presses on the link
     may bring it back within the step. Without, 30 N drove a light link that was rebounding from the wall 15 mm through
     it in one step. A steady motion is as it was.
+
+    A spring at its place at the end of the step damps as a damper of ``dt`` times its stiffness would. ``law.relief``
+    of that is taken off by counting the depth, for this share, as it is at the beginning, and less of it where link
+    and wall are slower than ``SLOW``; against acceleration the contact stays as stiff.
 
     Args:
         law: Contact law.
@@ -69,6 +77,11 @@ def contact_load(
         push = share * normal_force(law, -end)
         stiffness = wp.max(-push[0] / end, 0.5 * push[1])
         out.force = (damping * approach + push[0]) * normal + hold * end_slide
+        if law.relief > 0.0:
+            relief = law.relief * wp.min(wp.abs(wp.dot(normal, lin)) / SLOW, 1.0)
+            depth = relief * (-gap) + (1.0 - relief) * (-end)
+            early = share * normal_force(law, wp.max(depth, 0.0))
+            out.force = (damping * approach + early[0]) * normal + hold * end_slide
         along = wp.outer(normal, normal)
         across = wp.identity(n=3, dtype=float) - along
         out.ll = (dt * (damping + dt * stiffness)) * along + (dt * dt * hold) * across

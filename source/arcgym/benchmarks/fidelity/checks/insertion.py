@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from arcgym.benchmarks.fidelity.pushes import (
@@ -18,6 +20,7 @@ from arcgym.benchmarks.fidelity.pushes import (
 )
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, absolute, relative
 from arcgym.benchmarks.fidelity.tubes import Tube
+from arcgym.sim import ContactCfg
 
 PRESETS = {"stiff": "paper", "soft": "in_situ"}
 """Tissue presets by stiffness."""
@@ -61,29 +64,38 @@ def sigmoid(run: Run) -> list[Row]:
     return compare_pushes(run, "sigmoid", None, SIGMOID_DEPTH)
 
 
-def sigmoid_deep(run: Run) -> list[Row]:
+def sigmoid_deep(run: Run, name: str = "sigmoid_deep", step_damping: float | None = None) -> list[Row]:
     """Push through the S of the shipped colon against a converged run.
 
     Now and then the tip snaps past a fold a moment earlier or later than in the reference, so that the tips are some
     millimetres apart meanwhile; the row is their mean distance, as the force is a mean.
+
+    Args:
+        run: Device and folder.
+        name: Begin of the rows' names.
+        step_damping: ``ContactCfg.step_damping`` of both runs; the default if None.
     """
-    force, tip = compare_pushes(run, "sigmoid_deep", None, DEEP)
-    mean = float(np.mean(late_distances(run, None, DEEP)))
+    changes: dict[str, Any] = {} if step_damping is None else {"contact": ContactCfg(step_damping=step_damping)}
+    force, tip = compare_pushes(run, name, None, DEEP, **changes)
+    mean = float(np.mean(late_distances(run, None, DEEP, **changes)))
     return [force, absolute(tip.name, mean, 0.0, tip.bound, "m", f"on average; {1.0e3 * tip.value:.1f} mm at most")]
 
 
-def late_distances(run: Run, tube: Tube | None, depth: float, rest: float = 0.0) -> np.ndarray:
+def late_distances(run: Run, tube: Tube | None, depth: float, rest: float = 0.0, **changes: Any) -> np.ndarray:
     """Return how far the tips of the push and of the converged one are apart in the second half [m]."""
-    ours, limit = push(run, tube, depth, rest=rest), push(run, tube, depth, **converged())
+    ours, limit = push(run, tube, depth, rest=rest, **changes), push(run, tube, depth, **converged(), **changes)
     apart = np.linalg.norm(np.array(ours.tip) - np.array(limit.tip), axis=1)
     return apart[len(apart) // 2 :]
 
 
-def compare_pushes(run: Run, name: str, tube: Tube | None, depth: float) -> list[Row]:
-    """Compare the mean force of the second half, and the largest distance of the tips in it."""
+def compare_pushes(run: Run, name: str, tube: Tube | None, depth: float, **changes: Any) -> list[Row]:
+    """Compare the mean force of the second half, and the largest distance of the tips in it.
+
+    ``changes`` of ``SimulationCfg`` are those of both runs.
+    """
     rest = 2.0 if tube == BEND else 0.0
-    ours, limit = push(run, tube, depth, rest=rest), push(run, tube, depth, **converged())
-    late = late_distances(run, tube, depth, rest)
+    ours, limit = push(run, tube, depth, rest=rest, **changes), push(run, tube, depth, **converged(), **changes)
+    late = late_distances(run, tube, depth, rest, **changes)
     plot = Plot(f"{name}_force", "inserted length [m]", "push on the base [N]")
     plot.lines.append(("converged", limit.inserted, limit.force))
     plot.points.append(("shipped settings", ours.inserted, ours.force))
