@@ -12,7 +12,7 @@ CODE := source scripts tests docs/conf.py docs/_ext
 .DEFAULT_GOAL := help
 
 help:
-	@echo "make demo      set up, train for a few iterations, play, record a video"
+	@echo "make demo      set up, train for a few iterations, film the policy that comes with ARCGym"
 	@echo "make test      set up, lint, run the fast tests"
 	@echo "make test-all  lint and run every test"
 	@echo "make lint      ruff and mypy"

@@ -30,6 +30,20 @@ def author_colon(name: str, out: Path) -> None:
     print(f"  length {stage.length:.3f} m, wall {wall} vertices, render {visual}, proxy {proxy}")
 
 
+def share_textures(out: Path) -> int:
+    """Let colons whose textures are the same use the first one's, remove the copies, and return how many went."""
+    first: dict[bytes, Path] = {}
+    removed = 0
+    for texture in sorted(out.glob("colon_*/mucosa_*")):
+        kept = first.setdefault(texture.read_bytes(), texture)
+        stage = texture.parent / "colon.usda"
+        if kept != texture and stage.is_file():
+            stage.write_text(stage.read_text().replace(f"@./{texture.name}@", f"@../{kept.parent.name}/{kept.name}@"))
+            texture.unlink()
+            removed += 1
+    return removed
+
+
 def asset_authors() -> dict[str, Callable[[Path], object]]:
     """Return the function that writes each asset below a folder, by asset name."""
     from arcgym.anatomy.generator.patients import PATIENTS
@@ -61,6 +75,7 @@ def main() -> None:
         print(f"{name} ...", flush=True)
         authors[name](args.out)
         print(f"  {time.perf_counter() - started:.1f} s", flush=True)
+    print(f"{share_textures(args.out)} textures are another colon's")
 
 
 if __name__ == "__main__":
