@@ -123,5 +123,6 @@ def test_sections_ask_for_suites_that_there_are() -> None:
 def test_the_picture_is_drawn(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     write_result_folder(tmp_path / "ours", 27, changes={TASK: REWARD | VELOCITY})
-    page([tmp_path / "ours"], tmp_path, "--figure", str(tmp_path / "images" / "results.png"))
+    text = page([tmp_path / "ours"], tmp_path, "--figure", str(tmp_path / "images" / "results.png"))
+    assert "](images/results.png)" in text
     assert (tmp_path / "images" / "results.png").stat().st_size > 5000

@@ -12,6 +12,7 @@ the others are named, with the reason. --keep writes what the page needs of them
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 SHOWN = 3
@@ -44,11 +45,13 @@ def run(namespace: argparse.Namespace) -> None:
         print(f"kept: {count} result folders in {namespace.keep}")
         folders = [namespace.keep]
         results, _ = find_results([Path(namespace.keep)])
-    text = results_page(results, folders, sections)
+    figure = None
     if namespace.figure:
         from arcgym.evaluation.results_figure import draw_results
 
         draw_results(results, sections[0], Path(namespace.figure))
         print(f"picture: {namespace.figure}")
+        figure = os.path.relpath(namespace.figure, Path(namespace.out).parent)
+    text = results_page(results, folders, sections, figure)
     write_whole(Path(namespace.out), text.encode())
     print(f"page: {namespace.out}, {len(results)} results")

@@ -15,6 +15,7 @@ from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, Row
 from arcgym.evaluation.results import Result
 from arcgym.evaluation.results_page import METRICS
 from arcgym.evaluation.summary import KEY_METRICS
+from arcgym.utils.errors import UsageError
 
 COLUMNS = tuple(dict.fromkeys((*BASIC, *KEY_METRICS, *METRICS)))
 """Columns that are kept."""
@@ -32,12 +33,13 @@ def keep(results: Sequence[Result], out: Path) -> int:
     Paths of checkpoints lose all but their last names; hashes, seeds and trials stay.
 
     Raises:
-        ValueError: Two folders have one name.
+        UsageError: Two folders have one name.
     """
     folders = list(dict.fromkeys(one.folder for one in results))
     names = [folder.name for folder in folders]
     if len(set(names)) < len(names):
-        raise ValueError(f"Result folders need names of their own; got {', '.join(sorted(names))}.")
+        twice = sorted({name for name in names if names.count(name) > 1})
+        raise UsageError(f"Result folders need names of their own to be kept; there are several {', '.join(twice)}.")
     for folder in folders:
         own = [one for one in results if one.folder == folder]
         _write(out / folder.name, own[0].run, [row for one in own for row in one.rows])

@@ -43,6 +43,9 @@ TRAINED = "model.pt"
 NOTHING = "–"
 """Stands in a cell for which nothing was run."""
 
+FIGURE = "Success in 30 trials of each task, with intervals, and the paper's own figures"
+"""What the picture shows."""
+
 INTRODUCTION = """# Results
 
 Made by `arcgym results summary {folders} --out docs/results.md` and nothing else. A cell has the share
@@ -54,13 +57,16 @@ see. What was run where is in the [last table](#what-was-run).
 """
 
 
-def results_page(results: Sequence[Result], folders: Sequence[str], sections: Sequence[dict[str, Any]]) -> str:
+def results_page(
+    results: Sequence[Result], folders: Sequence[str], sections: Sequence[dict[str, Any]], figure: str | None = None
+) -> str:
     """Return the page in Markdown.
 
     Args:
         results: What can be shown, see :func:`arcgym.evaluation.results.find_results`.
         folders: Where they were looked for, for the record.
         sections: Those of :data:`SECTIONS_FILE`.
+        figure: Picture of the first section's table, as the page finds it; None has none.
     """
     used: list[Result] = []
     parts = [INTRODUCTION.format(folders=" ".join(folders))]
@@ -71,6 +77,7 @@ def results_page(results: Sequence[Result], folders: Sequence[str], sections: Se
         parts.append(f"## {section['title']}\n")
         parts += [f"{section['text']}\n"] if "text" in section else []
         parts += [text] if text else []
+        parts += [f"![{FIGURE}]({figure})\n"] if figure and section is sections[0] else []
         parts += [_commands(missing)] if missing else []
     return "\n".join([*parts, "## What was run\n", _provenance(used)])
 
