@@ -70,3 +70,17 @@ def test_another_patient_is_refused(tmp_path: Path) -> None:
 
 def test_a_missing_file_is_no_drive(tmp_path: Path) -> None:
     assert Halt.load(tmp_path / "none.npz") is None
+
+
+def test_worlds_of_a_patient_that_is_done_go_to_the_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drive = Drive(scene_of(tmp_path, 4))
+    monkeypatch.setattr(drive.expert, "PERIOD", 2)
+
+    def report(drive: Drive) -> None:
+        drive.routes[0].problem = "cut off"
+
+    assert not drive.run("sigmoid", report)
+    assert drive.population.owner.tolist() == drive.scene.colon.data.patient.tolist() == [1] * 4
+    assert list(drive.routes[1].states) == ["rectum", "sigmoid"] and list(drive.routes[0].states) == ["rectum"]
+    length = drive.routes[1].bounds["sigmoid"][0]
+    assert drive.scene["endoscope"].data.tip_arc_length.max() > length  # settling has put the worlds back
