@@ -68,6 +68,7 @@ LONG = [
     "contact_search_missed,contact_search_dropped",
     "sigmoid_deep_force,sigmoid_deep_tip",
     "step_damping_force,step_damping_tip",
+    "light_dent",
     "newton_force,newton_tip",
     "random_magnetic",
     "random_proximal",

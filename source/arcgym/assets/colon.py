@@ -21,7 +21,7 @@ from arcgym.assets.anchors import AnchorSprings, anchor_springs
 from arcgym.assets.colon_cfg import ColonCfg
 from arcgym.assets.colon_data import ColonData
 from arcgym.assets.materials import Value, anchor_scale, shell_moduli, solid_moduli, tissue_preset
-from arcgym.assets.patient import Patient
+from arcgym.assets.patient import Patient, on_average_patient
 from arcgym.assets.patient_cache import load_patients
 from arcgym.assets.patient_checks import check_patients
 from arcgym.assets.patient_files import find_stages
@@ -65,6 +65,8 @@ class Colon:
         paths = find_stages(cfg.usd_path, cfg.num_patients)
         self.patients: tuple[Patient, ...] = load_patients(paths, thickness, shell)
         """Colons, of which each world has one."""
+        if cfg.wall_law.mean_surface:
+            self.patients = tuple(on_average_patient(patient) for patient in self.patients)
         tissue = ("youngs_modulus", "poissons_ratio", "density")
         own = [name for name in tissue if getattr(cfg, name) is None and getattr(self.tissue, name) is None]
         check_patients(self.patients, own)

@@ -5,14 +5,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from arcgym.anatomy.segments import SEGMENTS
-from arcgym.anatomy.shell import ShellMesh, mid_surface, wall_thickness
+from arcgym.anatomy.shell import ShellMesh, mid_surface, on_average, wall_thickness
 from arcgym.anatomy.stage import (
     Centerline,
     ColonStage,
@@ -102,6 +102,15 @@ def patient_of_stage(
     )
     patient.__dict__["stage"] = stage
     return patient
+
+
+def on_average_patient(patient: Patient) -> Patient:
+    """Return a patient whose shell's faces lie on the colon's surface on average, see :func:`~.shell.on_average`."""
+    assert isinstance(patient.wall, ShellMesh)  # as ColonCfg checks
+    out = replace(patient, wall=on_average(patient.wall))
+    if "stage" in patient.__dict__:
+        out.__dict__["stage"] = patient.__dict__["stage"]
+    return out
 
 
 def span_table(patients: Sequence[Patient]) -> np.ndarray:

@@ -35,10 +35,20 @@ class WallLawCfg:
     """Time constants of the two [s]. A choice, as there is no measurement; one relaxation function serves all
     regions and ages (Watters et al. 1985)."""
 
+    cell_strain: bool = False
+    """Whether the two triangles between two rings and two sectors share one strain, their mean, so that a coarse wall
+    bends and dents as a finer one (docs/physics.md, Wall law). Off, each triangle has its own, and a wall with the
+    shipped spacing is a fifth too stiff under a light tip. Published forces are without it."""
+
+    mean_surface: bool = False
+    """Whether the wall's faces lie on the colon's surface on average. Off, its vertices lie there, and the faces
+    between them cut the bends, so that the lumen is narrower by 0.3 mm of 17 (colon 1). Goes with ``cell_strain``."""
+
     @property
     def active(self) -> bool:
         """Whether any of it is on."""
-        return self.stiffening is not None or self.thickness_by_diameter or self.relaxation
+        parts = (self.thickness_by_diameter, self.relaxation, self.cell_strain, self.mean_surface)
+        return self.stiffening is not None or any(parts)
 
     def validate_config(self) -> None:
         """Check bounds.

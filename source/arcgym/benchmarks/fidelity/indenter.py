@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from arcgym.assets import WallLawCfg
 from arcgym.assets.endoscope_spec import EndoscopeSpec, capsule_spec
 from arcgym.benchmarks.fidelity.models import build
 from arcgym.benchmarks.fidelity.processes import in_processes
@@ -46,6 +47,10 @@ PLACES = {"vertex": 0.0, "triangle": 1.0 / 3.0}
 """Where the tip meets the wall: distance from a vertex, in sectors around and in rings along."""
 DEPTHS = {"paper": 0.016, "in_situ": 0.030}
 """Way of the indenter beyond the undented wall [m]."""
+
+
+AHEAD = 2.0e-3
+"""Distance of the indenter's end from the wall where it begins [m]."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +89,8 @@ def indent(
     thickness: float | None = None,
     places: Sequence[str] = tuple(PLACES),
     top: float = math.inf,
+    law: WallLawCfg | None = None,
+    touched: bool = True,
     **cfg: Any,
 ) -> Curve:
     """Drive the indenter into a tube's wall, one world a place.
@@ -95,9 +102,11 @@ def indent(
         thickness: Thickness of its wall [m]; the tissue's by default.
         places: Which of :data:`PLACES`.
         top: Force at which it ends, once every place has reached it [N].
+        law: Law of the wall; the plain one if None.
+        touched: Whether depths count from the first touch; else from the round tube through the mesh's vertices.
         cfg: Changes of ``SimulationCfg``.
     """
-    colon = {"material": material, "wall_thickness": thickness}
+    colon = {"material": material, "wall_thickness": thickness, "wall_law": law or WallLawCfg()}
     sim = build(run, indenter(), tube, len(places), colon, **cfg)
     data, measures = sim.endoscope.data, wall_measures()
     shares = torch.tensor([PLACES[place] for place in places], device=sim.device)
@@ -105,7 +114,7 @@ def indent(
     across = torch.stack([angle.cos(), angle.sin(), 0.0 * angle], dim=1)
     middle = (round(0.5 * tube.length / tube.spacing()) + shares) * tube.spacing()
     radius = measures.radius if tube.radius is None else tube.radius
-    start = (radius - 0.5 * LENGTH - 2.0e-3) * across
+    start = (radius - 0.5 * LENGTH - AHEAD) * across
     start[:, 2] = middle
     data.joint_pos[:, :3] = start
     data.joint_pos[:, 3:] = torch.stack(
@@ -115,7 +124,7 @@ def indent(
     sim.contact.ring.fill_(-1)
     sim.forward()
     way, force = [], []
-    for _ in range(round((DEPTHS[material] + 2.0e-3) / STRIDE)):
+    for _ in range(round((DEPTHS[material] + AHEAD) / STRIDE)):
         data.joint_vel[:, :3] = STRIDE / MOVE * across
         sim.step(round(MOVE / sim.physics_dt))
         data.joint_vel.zero_()
@@ -126,7 +135,7 @@ def indent(
         if (force[-1] > top).all():
             break
     depth, forces = np.array(way).T, np.array(force).T
-    touch = [_crossing(x, f, TOUCH) for x, f in zip(depth, forces, strict=True)]
+    touch = [_crossing(x, f, TOUCH) if touched else AHEAD for x, f in zip(depth, forces, strict=True)]
     return Curve(depth - np.array(touch)[:, None], forces)
 
 
@@ -145,13 +154,18 @@ def indent_both(run: Run, material: str, top: float) -> tuple[Curve, Curve]:
     return join_curves(ours), join_curves(limit)
 
 
-def indent_places(device: str, folder: Path, fine: bool, material: str, places: tuple[str, ...], top: float) -> Curve:
-    """Return the curves at some places, of the refined mesh or of the shipped one; what a process of its own does."""
+def indent_places(
+    device: str, folder: Path, fine: bool, material: str, places: tuple[str, ...], top: float, **more: Any
+) -> Curve:
+    """Return the curves at some places, of the refined mesh or of the shipped one; what a process of its own does.
+
+    ``more`` is for :func:`indent`.
+    """
     torch.set_num_threads(1)
     own = folder / f"indent_{'fine' if fine else 'shipped'}_{'_'.join(places)}"
     own.mkdir(parents=True, exist_ok=True)
     tube, cfg = (REFINED, converged()) if fine else (TUBE, {})
-    return indent(Run(device, own), tube, material, places=places, top=top, **cfg)
+    return indent(Run(device, own), tube, material, places=places, top=top, **more, **cfg)
 
 
 def join_curves(curves: Sequence[Curve]) -> Curve:

@@ -49,6 +49,7 @@ TABLE: tuple[Check, ...] = (
     line("loop_friction", "loops:slide", quick=True),
     line("indentation_paper", "indentation:indentation", material="paper"),
     line("indentation_in_situ", "indentation:indentation", material="in_situ"),
+    line("light_dent", "indentation:light"),
     line("indentation_solid_paper", "solids:indentation", material="paper"),
     line("indentation_solid_in_situ", "solids:indentation", material="in_situ"),
     line("straight_advance", "insertion:straight_advance", quick=True),

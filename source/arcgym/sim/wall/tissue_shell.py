@@ -10,11 +10,14 @@ from collections.abc import Sequence
 import torch
 import warp as wp
 
+from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import gas_shell_kernels, shell_kernels
 from arcgym.sim.wall import tissue_shell_kernels as kernels
 from arcgym.sim.wall.band_kernels import band_kernel
+from arcgym.sim.wall.cell_strain import cell_partners, partner_edges
+from arcgym.sim.wall.cell_strain_kernels import Cells
 from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.shell_elements import Shell
 from arcgym.sim.wall.shell_kernels import STIFFENING
@@ -69,8 +72,29 @@ class TissueShell:
         self.data.share = patient_array(shares, float, device)
         shape = (len(self.corners), len(patient)) if law.relaxation else (0, 0)
         self._quick, self._slow, self.data.relief = (wp.zeros(shape, dtype=wp.vec3, device=device) for _ in range(3))
+        self.data.cells = self._cells(law, walls, geometries, patient, device)
         self._shares = wp.vec2(*law.relaxing_share)
         self._ways = wp.vec2(*(1.0 - math.exp(-dt / time) for time in law.relaxing_time))
+
+    def _cells(
+        self,
+        law: WallLawCfg,
+        walls: Sequence[WallParameters],
+        geometries: Sequence[ShellGeometry],
+        patient: wp.array,
+        device: str,
+    ) -> Cells:
+        cells = Cells()
+        cells.enabled = int(law.cell_strain)
+        if not law.cell_strain:
+            return cells
+        partner = cell_partners(geometries[0], walls[0].ring)
+        cells.partner = wp.array(partner, dtype=int, device=device)
+        weights = [one.area[partner] / (one.area + one.area[partner]) for one in geometries]
+        edges = [partner_edges(one, wall.points, partner) for one, wall in zip(geometries, walls, strict=True)]
+        cells.weight, cells.edges = patient_array(weights, float, device), patient_array(edges, wp.mat33, device)
+        cells.excess = wp.zeros((len(partner), len(patient)), dtype=wp.vec3, device=device)
+        return cells
 
     @property
     def memory(self) -> dict[str, torch.Tensor]:

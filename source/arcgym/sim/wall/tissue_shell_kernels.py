@@ -1,7 +1,8 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Shell whose wall stiffens as chosen, is thinner where the colon is wider, and relaxes, with gas inside or without.
+"""Shell whose wall stiffens as chosen, is thinner where the colon is wider, relaxes, and may strain by cells, with gas
+inside or without.
 
 A triangle's membrane has the moduli of the tissue times its share of the thickness; its hinges have the cube of it in
 their rest shape.
@@ -19,6 +20,7 @@ import warp as wp
 
 from arcgym.sim.wall.band_kernels import Rings, band_fields
 from arcgym.sim.wall.band_matrix_kernels import BandMatrix, add_edge, add_next_edge, add_own_edge
+from arcgym.sim.wall.cell_strain_kernels import Cells, cell_excess
 from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.gas_shell_kernels import gas_pressure, gas_ties
 from arcgym.sim.wall.shell_kernels import (
@@ -50,6 +52,7 @@ class TissueShellElements:
     share: wp.array2d[float]  # thickness of each triangle over the tissue's, shape (F, P)
     relaxing: int  # whether tension fades
     relief: wp.array2d[wp.vec3]  # tension that has faded, along the edges opposite to the corners [N/m], shape (F, W)
+    cells: Cells
 
 
 @wp.func
@@ -128,6 +131,9 @@ def relax(
     corners = elements.shell.triangles[t]
     x0 = x[corners[0], w]
     tension = tension_at_once(elements, t, w, x[corners[1], w] - x0, x[corners[2], w] - x0, tissue.moduli[w])
+    if elements.cells.enabled == 1:
+        own = triangle_moduli(elements, t, w, tissue.moduli[w])
+        tension -= cell_excess(elements.shell, elements.cells, x, t, w, own, elements.stiffening)
     one = quick[t, w] + ways[0] * (tension - quick[t, w])
     two = slow[t, w] + ways[1] * (tension - slow[t, w])
     quick[t, w] = one
@@ -147,6 +153,11 @@ def measure_tissue(x: wp.array2d[wp.vec3], tissue: Tissue, elements: TissueShell
     pull = tension_at_once(elements, t, w, d1, d2, moduli)
     if elements.relaxing == 1:
         pull = pull - elements.relief[t, w]
+    if elements.cells.enabled == 1:
+        own = triangle_moduli(elements, t, w, moduli)
+        excess = cell_excess(elements.shell, elements.cells, x, t, w, own, elements.stiffening)
+        elements.cells.excess[t, w] = excess
+        pull = pull - excess
     measure_triangle(elements.shell, t, w, d1, d2, pull, moduli[2], elements.shell.edges[t])
 
 
@@ -222,7 +233,8 @@ def add_tissue_elements(
 ) -> VertexBlock:
     """Add triangles, hinges and gas around vertex ``i`` of world ``w``, as :func:`.shell_kernels.add_elements`.
 
-    What has faded counts for the force alone: the Hessian is that of the tension at once, which is larger.
+    What has faded, or is beyond the cell's, counts for the force alone: the Hessian is that of the triangle's tension
+    at once, which is larger.
     """
     shell = elements.shell
     out = block
@@ -239,6 +251,10 @@ def add_tissue_elements(
             relief = elements.relief[triangle.index, w]
             corner = shell.fan_corner[k] - 3 * triangle.index
             out.force -= relief[(corner + 2) % 3] * d1 + relief[(corner + 1) % 3] * d2
+        if elements.cells.enabled == 1:
+            excess = elements.cells.excess[triangle.index, w]
+            corner = shell.fan_corner[k] - 3 * triangle.index
+            out.force -= excess[(corner + 2) % 3] * d1 + excess[(corner + 1) % 3] * d2
         out = add_fan_hinges(out, shell, triangle, own, x, here, d1, d2, w, moduli[2])
     if elements.gassy == 1:
         out = add_gas_terms(out, shell, elements.gas, x, i, w)

@@ -8,12 +8,16 @@ import math
 
 import numpy as np
 
-from arcgym.benchmarks.fidelity.indenter import PLACES, Curve, indent_both
+from arcgym.assets import WallLawCfg
+from arcgym.benchmarks.fidelity.indenter import PLACES, TUBE, Curve, indent, indent_both, indent_places
 from arcgym.benchmarks.fidelity.rows import Plot, Row, Run, relative
+from arcgym.sim import ContactCfg
 
 LOADS = {"paper": (5.0, 10.0, 15.0), "in_situ": (2.0, 4.0, 6.0)}
 """Forces whose depths are compared, by tissue preset [N]. At 6 N most of the indenter is in the dent of the soft
 wall."""
+LIGHT = (0.1, 0.2, 0.5)
+"""Forces under which a coarse wall is too stiff the most [N]: what a tip that is steered bears in soft tissue."""
 BEYOND = 1.3
 """Share of the largest of them up to which curves go: the shipped mesh's force where the finer one bears that load."""
 PORCINE = (0.8, 2.4)
@@ -47,6 +51,34 @@ def indentation(run: Run, material: str) -> list[Row]:
     note = f"{errors}; force at the reference's depth under {top:g} N {ours.force_at(deep) / top - 1.0:+.1%}; "
     note += f"{stiffness:.2f} N/mm at {top:g} N, porcine {PORCINE[0]} to {PORCINE[1]}"
     return [relative(name, worst.value, worst.reference, 0.10, "m", note)]
+
+
+def light(run: Run) -> list[Row]:
+    """Measure the light dent of a wall that strains by cells and whose faces lie on its surface on average.
+
+    Depths count from the round tube, so that faces which cut its bend count, and a contact that gives less than the
+    shipped one does not make up for them. The row is of the load with the largest error; the plain wall's go into the
+    note.
+    """
+    stiff = ContactCfg(tissue_share=0.0)
+    mended = WallLawCfg(cell_strain=True, mean_surface=True)
+    curves = {
+        name: indent(run, TUBE, "in_situ", top=LIGHT[-1], law=law, touched=False, contact=stiff)
+        for name, law in {"plain": WallLawCfg(), "mended": mended}.items()
+    }
+    limit = indent_places(run.device, run.folder, True, "in_situ", tuple(PLACES), LIGHT[-1], touched=False)
+    reference = [float(limit.depth_at(load).mean()) for load in LIGHT]
+    rows = {
+        name: [
+            relative("light_dent", float(curve.depth_at(load).mean()), deep, 0.10, "m")
+            for load, deep in zip(LIGHT, reference, strict=True)
+        ]
+        for name, curve in curves.items()
+    }
+    notes = [f"{name} " + ", ".join(f"{row.error:+.1%}" for row in of) for name, of in rows.items()]
+    worst = max(rows["mended"], key=lambda row: abs(row.error))
+    note = "; ".join(notes) + f" under {', '.join(f'{load:g}' for load in LIGHT)} N"
+    return [relative("light_dent", worst.value, worst.reference, 0.10, "m", note)]
 
 
 def _shown(curve: Curve, place: int, top: float) -> tuple[np.ndarray, np.ndarray]:
