@@ -20,7 +20,7 @@ import numpy as np
 
 from arcgym.benchmarks.clinical.figures import Insertion, read
 
-COLORS = {"paper": "tab:gray", "in_situ": "tab:blue", "clinical": "tab:red"}
+COLORS = {"paper": "tab:gray", "in_situ": "tab:blue", "clinical": "tab:red", "examiner": "tab:orange"}
 GATHERED, SHAFT = 0.56, (0.7, 0.9)
 """Published: scope inside over length of colon, and scope inside [m], in the cecum."""
 APPLEYARD = ((10.0, 0.05), (43.0, 0.0))
