@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from arcgym.experts.pull_back import PRESSED, REST, PullBack
+from arcgym.experts.pull_back import LONGEST, PRESSED, REST, PullBack
 
 
 @pytest.fixture
@@ -59,3 +59,12 @@ def test_after_a_pull_it_goes_on_for_a_while(pulls: PullBack) -> None:
     for _ in range(REST):
         assert look(pulls, push=(11.0, 0.0))[0] == [False, False]
     assert look(pulls, push=(11.0, 0.0))[0] == [True, False]
+
+
+def test_it_is_asked_for_again_once_what_was_pulled_out_is_in(pulls: PullBack) -> None:
+    look(pulls, asked=(True, True))
+    look(pulls, inserted=(0.4, 0.4))
+    assert look(pulls, inserted=(0.61, 0.55), asked=(True, True))[1] == [True, False]
+    for _ in range(LONGEST):
+        look(pulls, inserted=(0.4, 0.55))
+    assert look(pulls, inserted=(0.4, 0.55), asked=(False, True))[1] == [False, True]

@@ -10,6 +10,8 @@ PRESSED = 5
 """Control steps in a row above the largest push after which the scope is pulled back."""
 REST = 20
 """Control steps for which it then goes on at least."""
+LONGEST = 400
+"""Control steps after which a pull may be asked for again though less scope is inside than at the last one's start."""
 NEAR_ANUS = 0.15
 """Arc length of the tip below which there is nothing to straighten [m]: the rectum."""
 
@@ -43,7 +45,7 @@ class PullBack:
             arc: Arc length of each tip.
             inserted: Length of scope inside.
             push: Push on the base.
-            asked: Where a pull is to begin for another reason, bool.
+            asked: Where a pull is to begin for another reason, bool; heard once what was pulled out is in again.
 
         Returns:
             Which worlds are pulled back, and which begin to be, both of shape (N,), bool.
@@ -51,7 +53,8 @@ class PullBack:
         self._pressed.copy_(torch.where(push > self.most_push, self._pressed + 1.0, 0.0))
         self._rested.copy_(torch.where(self._pulling, 0.0, self._rested + 1.0))
         hard = (self._pressed >= PRESSED) & (self._rested > REST)
-        begins = (hard | asked) & ~self._pulling & (arc > NEAR_ANUS)
+        heard = asked & ((inserted >= self._inserted) | (self._rested > LONGEST))
+        begins = (hard | heard) & ~self._pulling & (arc > NEAR_ANUS)
         self._arc.copy_(torch.where(begins, arc, self._arc))
         self._inserted.copy_(torch.where(begins, inserted, self._inserted))
         holds = (arc > self._arc - self.slips) & (inserted > self._inserted - self.pull) & (push > -self.most_push)
