@@ -21,6 +21,11 @@ ROOT = Path(__file__).resolve().parents[1]
 TASK = "ARC-LeftColon-Magnetic"
 TRAIN = ["--num_envs", "2", "--max_iterations", "3", "--run_name", "demo", "agent.num_steps_per_env=16"]
 PLAY = ["--use_pretrained_checkpoint", "--num_envs", "1", "--video", "--video_length", "300", "--json"]
+PLAY += [
+    "env.viewer.samples=1",
+    "env.viewer.outside.width=456",
+    "env.viewer.outside.height=416",
+]  # drawn in half the time
 
 THREADS = "ARCGYM_CPU_THREADS"
 """Environment variable with the threads that physics and drawing use; two give the same bits as one."""

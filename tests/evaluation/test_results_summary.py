@@ -40,6 +40,15 @@ def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_
     )
 
 
+def test_other_metrics_have_tables_of_their_own(tmp_path: Path) -> None:
+    """15 of 30 arrive, and the others come half the way: the middle half of the trials is 0.5 and 1 in equal parts."""
+    text = page([write_result_folder(tmp_path / "ours", 15)], tmp_path)
+    centred = text.partition("how well the lumen is centred")[2].partition("\n## ")[0]
+    way = text.partition("share of the way")[2].partition("\n## ")[0]
+    assert "| Magnetic | PPO, shipped reward | 0.50 (0.50–0.50) | – | – | – |" in centred
+    assert "| Magnetic | PPO, shipped reward | 0.75 (0.5" in way
+
+
 def test_more_training_seeds_are_shown_in_place_of_one(tmp_path: Path) -> None:
     write_result_folder(tmp_path / "all" / "one", 30)
     write_result_folder(tmp_path / "all" / "three", 3, checkpoint_sha256=["a", "b", "c"])

@@ -9,6 +9,7 @@ Figures are those of :mod:`arcgym.evaluation.summary`, :mod:`~arcgym.evaluation.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -27,6 +28,7 @@ SECTIONS_FILE = FOLDER / "results.yaml"
 METRICS = {
     "progress": ("progress", 2),
     "seconds": ("time [s]", 1),
+    "s_c": ("centred view s_c", 2),
     "coverage": ("mucosa seen", 2),
     "polyps_seen": ("polyps seen", 2),
     "tip_time_above_unsafe": ("tip above unsafe [s]", 2),
@@ -68,18 +70,21 @@ def results_page(
         sections: Those of :data:`SECTIONS_FILE`.
         figure: Picture of the first section's table, as the page finds it; None has none.
     """
-    used: list[Result] = []
+    used: dict[tuple[Path, str], Result] = {}
+    asked: dict[str, None] = {}
     parts = [INTRODUCTION.format(folders=" ".join(folders))]
     for section in sections:
         own = [result for result in results if result.suite == section["suite"]]
         shown, text, missing = KINDS[section["kind"]](section, own)
-        used += shown
+        used |= {(one.folder, one.task): one for one in shown}
+        missing = [command for command in missing if command not in asked]
+        asked |= dict.fromkeys(missing)
         parts.append(f"## {section['title']}\n")
         parts += [f"{section['text']}\n"] if "text" in section else []
         parts += [text] if text else []
         parts += [f"![{FIGURE}]({figure})\n"] if figure and section is sections[0] else []
         parts += [_commands(missing)] if missing else []
-    return "\n".join([*parts, "## What was run\n", _provenance(used)])
+    return "\n".join([*parts, "## What was run\n", _provenance(list(used.values()))])
 
 
 def read_sections() -> list[dict[str, Any]]:
@@ -112,7 +117,8 @@ def _methods(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[R
         asked = section.get("not_asked", {}).get(robot, {}).get(method, section["segments"])
         published: Sequence[float | None] = published_figures(section, robot, method) or [None] * len(found)
         pairs = zip(found, published, strict=True)
-        cells = [_success(one) + ("" if figure is None else f" [{figure:g}]") for one, figure in pairs]
+        metric = section.get("metric", "success")
+        cells = [_cell(one, metric) + ("" if figure is None else f" [{figure:g}]") for one, figure in pairs]
         lines.append(_row([robot, section["labels"][method], *cells]))
         used += [one for one in found if one]
         none = [name for name, one in zip(section["segments"], found, strict=True) if one is None and name in asked]
@@ -182,11 +188,13 @@ KINDS = {"methods": _methods, "agents": _agents, "robustness": _robustness, "pap
 """What makes the sections of each kind."""
 
 
-def _success(result: Result | None) -> str:
+def _cell(result: Result | None, metric: str) -> str:
     """Return a cell of a table of methods; † where rules on actions read what the policy does not see."""
     if result is None:
         return NOTHING
     (of,) = summarize(result.rows).values()
+    if metric != "success":
+        return _interval(of[metric], METRICS[metric][1])
     seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""
     few = f" of {of['trials']}" if of["trials"] != 30 else ""
     return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "")
