@@ -64,7 +64,8 @@ def test_a_small_copy_makes_the_same_page(tmp_path: Path) -> None:
     text = page([tmp_path / "all"], tmp_path, "--keep", str(keep))
     assert text == page([keep], tmp_path)
     rows = (keep / "rectum" / "trials.csv").read_text().splitlines()
-    assert "cell/run_1/model_3.pt" in rows[1] and "/far/away" not in rows[1] and "0.333333," in rows[1]
+    assert ",abcdef012345," in rows[1] and "/far/away" not in rows[1] and ",0.33333," in rows[1]
+    assert "away/cell" not in (keep / "rectum" / "run.json").read_text()
     assert "| `ARC-LeftColon-Magnetic` | ppo_lagrangian `abcdef01` | 50 | 14 (7–26) |" in text
 
 

@@ -14,14 +14,16 @@ from arcgym.evaluation.check import BASIC
 from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, Row
 from arcgym.evaluation.results import Result
 from arcgym.evaluation.results_page import METRICS
-from arcgym.evaluation.summary import KEY_METRICS
 from arcgym.utils.errors import UsageError
 
-COLUMNS = tuple(dict.fromkeys((*BASIC, *KEY_METRICS, *METRICS)))
-"""Columns that are kept."""
+COLUMNS = tuple(dict.fromkeys((*BASIC, *METRICS, "centered_rate")))
+"""Columns that are kept: those of the page's tables, and what the check of a result folder asks for."""
 
-DIGITS = 6
+DIGITS = 5
 """Significant digits that are kept: a figure of the page has three."""
+
+HASH = 12
+"""Digits of a checkpoint's hash that stand for it in the rows."""
 
 PARTS = 3
 """Names of a checkpoint's path that are kept: cell, run and file."""
@@ -30,7 +32,7 @@ PARTS = 3
 def keep(results: Sequence[Result], out: Path) -> int:
     """Write a small copy of each result folder, named after it, and return their number.
 
-    Paths of checkpoints lose all but their last names; hashes, seeds and trials stay.
+    Paths of checkpoints lose all but their last names, and rows name them by their hash; seeds and trials stay.
 
     Raises:
         UsageError: Two folders have one name.
@@ -51,15 +53,17 @@ def _write(folder: Path, run: dict[str, Any], rows: Sequence[Row]) -> None:
     short = {**run, "checkpoint": [_short(path) for path in run.get("checkpoint", [])]}
     (folder / RUN_FILE).write_text(json.dumps(short, indent=1, sort_keys=True) + "\n")
     columns = [name for name in COLUMNS if name in rows[0]]
+    digests = zip(run.get("checkpoint", []), run.get("checkpoint_sha256", []), strict=True)
+    agents = {path: digest[:HASH] for path, digest in digests}
     with (folder / TRIALS_FILE).open("w", newline="") as out:
         writer = csv.writer(out, lineterminator="\n")
         writer.writerow(columns)
-        writer.writerows([_text(name, row[name]) for name in columns] for row in rows)
+        for row in rows:
+            named = {**row, "agent": agents.get(row["agent"], row["agent"])}
+            writer.writerow([_text(named[name]) for name in columns])
 
 
-def _text(name: str, value: Any) -> str:
-    if name == "agent":
-        return _short(value)
+def _text(value: Any) -> str:
     return f"{value:.{DIGITS}g}" if isinstance(value, float) else str(value)
 
 
