@@ -48,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--patience", type=float, default=30.0, help="simulated time without progress after which it gives up [s] (30)"
     )
+    parser.add_argument("--speed", type=float, help="speed of the scripts [m/s] (0.04, of the examiner's 0.015)")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="longest time in all (no limit)")
     parser.add_argument("--seed", type=int, default=0, help="seed of the experts' settings (0)")
     parser.add_argument("--device", help="cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)")
@@ -63,6 +64,8 @@ def run(args: argparse.Namespace) -> None:
     """
     from arcgym.benchmarks.clinical.table import write_table
 
+    if args.speed is not None and args.speed <= 0.0:
+        raise UsageError(f"--speed is {args.speed:g}, expected more than 0")
     if not args.table:
         _drive(args)
     try:
@@ -88,7 +91,9 @@ def _drive(args: argparse.Namespace) -> None:
         deadline = began + 60.0 * args.minutes
         overrides = (*VARIANTS[name], *args.overrides)
         examiner = name == EXAMINER
-        plan = Plan(name, overrides, worlds, args.max_time, args.patience, device, examiner, args.seed, deadline)
+        plan = Plan(
+            name, overrides, worlds, args.max_time, args.patience, device, examiner, args.speed, args.seed, deadline
+        )
         insert(plan, stages, args.out, _say)
 
 

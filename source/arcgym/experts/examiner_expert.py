@@ -32,7 +32,6 @@ class ExaminerExpert(PushExpert):
     """
 
     VARIED: ClassVar[dict[str, tuple[float, float]]] = {
-        "speed": (0.01, 0.025),
         "look": (0.015, 0.05),
         "gain": (0.1, 0.5),
         "largest": (1.5, LARGEST_BENDING),

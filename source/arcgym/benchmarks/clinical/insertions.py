@@ -19,6 +19,7 @@ from arcgym.benchmarks.worlds import load_env_cfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.start_states import Drive
+from arcgym.start_states.making import SPEED
 from arcgym.start_states.route import what_holds
 from arcgym.start_states.settling import CONTROL_STEP
 from arcgym.utils.configclass import replace, validate
@@ -27,7 +28,7 @@ TASK = "ARC-Cecum-Proximal"
 """Task whose scene is taken."""
 OUT_OF_TIME = "no computing time left"
 """Problem of a patient in which the drive was stopped from outside."""
-SPEED = 0.015
+EXAMINER_SPEED = 0.015
 """Speed of the examiner's script [m/s]; a choice, real tips come on by 2 to 6 mm/s."""
 KEPT_EVERY = 200
 """Control steps after which insertions that are under way are written down."""
@@ -51,6 +52,8 @@ class Plan:
     """Device of the simulation."""
     examiner: bool = False
     """Whether the script pushes gently and pulls back, :class:`arcgym.experts.ExaminerExpert`."""
+    speed: float | None = None
+    """Speed of the script [m/s]; None for the script's own."""
     seed: int = 0
     """Seed of the experts' settings."""
     deadline: float = float("inf")
@@ -74,8 +77,8 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
     if not stages:
         return
     scene = build(plan, stages)
-    speed = {"speed": SPEED} if plan.examiner else {}
-    drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed, **speed)
+    speed = plan.speed or (EXAMINER_SPEED if plan.examiner else SPEED)
+    drive = Drive(scene, speed, plan.patience, plan.max_time, plan.seed)
     expert = drive.expert
     if not isinstance(expert, Diary):
         raise TypeError(f"The drive has a {type(expert).__name__}, expected one with a Diary.")
@@ -137,7 +140,13 @@ def _write(plan: Plan, drive: Drive, patient: int, steps: np.ndarray, out: Path)
     """Write the file of one insertion."""
     route, of = drive.routes[patient], drive.scene.colon.patients[patient]
     about: dict[str, Any] = {"patient": of.name, "name": plan.name, "overrides": plan.overrides, "worlds": plan.worlds}
-    about |= {"seed": plan.seed, "bounds": route.bounds, "arrived": "cecum" in route.entries, "reached": route.arc}
+    about |= {
+        "seed": plan.seed,
+        "speed": plan.speed,
+        "bounds": route.bounds,
+        "arrived": "cecum" in route.entries,
+        "reached": route.arc,
+    }
     about |= {"problem": route.problem, "held_by": route.held_by}
     about |= {"entries": {name: asdict(entry) for name, entry in route.entries.items()}, "fields": FIELDS}
     folder = out / plan.name
