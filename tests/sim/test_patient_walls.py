@@ -57,6 +57,20 @@ def test_the_cache_gives_what_was_made(paths: list[str], made: list[str]) -> Non
         assert before.moduli == after.moduli and before.colors[0].tolist() == after.colors[0].tolist()
 
 
+def test_what_is_kept_outlives_the_link_by_which_it_was_read(paths: list[str], made: list[str], tmp_path: Path) -> None:
+    links = tmp_path / "links"
+    links.mkdir()
+    for path in paths:
+        (links / Path(path).parent.name).symlink_to(Path(path).parent)
+    Colon(ColonCfg(usd_path=[str(links / "straight" / "colon.usda"), str(links / "bent" / "colon.usda")]))
+    made.clear()
+    for path in paths:
+        (links / Path(path).parent.name).unlink()
+    patients = Colon(ColonCfg(usd_path=paths)).patients
+    assert not made
+    assert [patient.albedo_texture.is_file() for patient in patients] == [True, True]
+
+
 def test_one_patient_alone_is_not_kept(paths: list[str], made: list[str], tmp_path: Path) -> None:
     patient_walls(Colon(ColonCfg(usd_path=paths[1])))
     assert made == ["bent", "wall of bent"] and not (tmp_path / "cache").exists()

@@ -69,8 +69,9 @@ def _load(path: Path, thickness: float | None, shell: bool) -> Patient:
     content = stage_content(path)
     if not content:
         return read_patient(path, thickness, shell)
-    key = (content, str(path.resolve()), thickness, shell, source_digest(*CODE))
-    name = path.resolve().parent.name
+    path = path.resolve()  # what is kept names the files themselves: a link to them may be gone tomorrow
+    key = (content, str(path), thickness, shell, source_digest(*CODE))
+    name = path.parent.name
     return replace(cached("patients", key, name, lambda: read_patient(path, thickness, shell)), content=content)
 
 
