@@ -14,7 +14,18 @@ from arcgym.utils.registry import list_tasks, load_cfg_from_registry
 from arcgym.utils.threads import one_thread
 
 TASK = "ARC-Rectum-Magnetic"
-KEYS = ("ppo", "ppo_recurrent", "ppo_masked", "ppo_lagrangian", "a2c", "sac", "sac_squint", "sac_paper", "ppo_teacher")
+KEYS = (
+    "ppo",
+    "ppo_recurrent",
+    "ppo_masked",
+    "ppo_lagrangian",
+    "ppo_predicting",
+    "a2c",
+    "sac",
+    "sac_squint",
+    "sac_paper",
+    "ppo_teacher",
+)
 """Agents that learn from the environment alone."""
 
 

@@ -16,6 +16,7 @@ from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
 from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
 from arcgym.rl.agent_cfgs.ppo_lagrangian import RslRlPpoLagrangianAlgorithmCfg, RslRlPpoLagrangianRunnerCfg
 from arcgym.rl.agent_cfgs.ppo_masked import RslRlConstrainedRunnerCfg
+from arcgym.rl.agent_cfgs.ppo_predicting import RslRlPpoPredictingAlgorithmCfg
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
 
@@ -77,6 +78,23 @@ class NavigationLagrangianPPORunnerCfg(NavigationPPORunnerCfg, RslRlPpoLagrangia
 
     algorithm: RslRlPpoAlgorithmCfg = RslRlPpoLagrangianAlgorithmCfg(
         limits={"tip_force": 0.5, "view_blocked": 1.0},
+        num_learning_epochs=3,
+        num_mini_batches=6,
+        learning_rate=3.0e-4,
+        schedule="fixed",
+        gamma=0.97,
+        lam=0.95,
+        clip_param=0.2,
+        entropy_coef=0.003,
+        max_grad_norm=0.5,
+    )
+
+
+@configclass
+class NavigationPredictingPPORunnerCfg(NavigationPPORunnerCfg):
+    """PPO whose features also learn to predict what its critic sees: lumen, centerline ahead, forces."""
+
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoPredictingAlgorithmCfg(
         num_learning_epochs=3,
         num_mini_batches=6,
         learning_rate=3.0e-4,
