@@ -10,6 +10,8 @@ import pytest
 
 from arcgym.cli.arguments import RunArguments
 from arcgym.cli.task import load_run_cfgs
+from arcgym.envs.mdp import rgb
+from arcgym.managers import ObservationTermCfg
 from arcgym.rl.run_folder import write_params
 from arcgym.utils.registry import load_cfg_from_registry
 
@@ -26,3 +28,16 @@ def test_the_agent_is_that_of_the_run(tmp_path: Path, agent: str) -> None:
     checkpoint.write_bytes(b"")
     _, found, path = load_run_cfgs(RunArguments(task=TASK, checkpoint=str(checkpoint)))
     assert type(found) is type(agent_cfg) and path == checkpoint
+
+
+def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -> None:
+    env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
+    past = ObservationTermCfg(func=rgb, delay_min_lag=20, delay_max_lag=20)
+    env_cfg.observations.policy.terms = {"rgb_20": past}
+    env_cfg.observations.policy.rgb.history_length = 3
+    agent_cfg = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
+    write_params(tmp_path, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    (tmp_path / "model_0.pt").write_bytes(b"")
+    other, _, _ = load_run_cfgs(RunArguments(task="ARC-Sigmoid-Capsule", checkpoint=str(tmp_path / "model_0.pt")))
+    assert other.observations.policy.terms["rgb_20"].delay_min_lag == 20
+    assert other.observations.policy.rgb.history_length == 5

@@ -74,6 +74,7 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
             restore(env_cfg, saved.env, "env", keep=list(differences(to_plain(plain), to_plain(env_cfg))))
             print(f"params: {saved.folder}")
         else:
+            restore(env_cfg, _further_terms(saved.env, agent_cfg), "env")
             print(f"params: agent of {saved.folder}; it was trained in {trained}, and {task} is as registered")
     before = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
     _write(args, env_cfg, agent_cfg)
@@ -83,6 +84,14 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
         if path not in passing:
             print(f"changed: {path}: {old} -> {new}")
     return env_cfg, agent_cfg, checkpoint
+
+
+def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:
+    """Return what a policy's observation groups have in ``terms``: without it the network does not fit another task."""
+    groups = agent_cfg.obs_groups.get("actor") or agent_cfg.obs_groups.get("student", [])
+    saved = env.get("observations", {})
+    terms = {group: (saved.get(group) or {}).get("terms") for group in groups}
+    return {"observations": {group: {"terms": added} for group, added in terms.items() if added}}
 
 
 def _with_trained_agent(args: RunArguments) -> RunArguments:
