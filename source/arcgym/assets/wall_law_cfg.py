@@ -37,12 +37,11 @@ class WallLawCfg:
 
     cell_strain: bool = False
     """Whether the two triangles between two rings and two sectors share one strain, their mean, so that a coarse wall
-    bends and dents as a finer one (docs/physics.md, Wall law). Off, each triangle has its own, and a wall with the
-    shipped spacing is a fifth too stiff under a light tip. Published forces are without it."""
-
+    locks less (docs/physics.md, Wall law). Off, each triangle has its own. Try it with ``mean_surface`` where contacts
+    are light; it does not make the tip's force of a pushed scope independent of the mesh."""
     mean_surface: bool = False
     """Whether the wall's faces lie on the colon's surface on average. Off, its vertices lie there, and the faces
-    between them cut the bends, so that the lumen is narrower by 0.3 mm of 17 (colon 1). Goes with ``cell_strain``."""
+    between them cut the bends, so that a lumen of 17 mm is narrower by 0.3 mm. Try it with ``cell_strain``."""
 
     @property
     def active(self) -> bool:

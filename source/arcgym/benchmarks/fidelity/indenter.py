@@ -103,7 +103,8 @@ def indent(
         places: Which of :data:`PLACES`.
         top: Force at which it ends, once every place has reached it [N].
         law: Law of the wall; the plain one if None.
-        touched: Whether depths count from the first touch; else from the round tube through the mesh's vertices.
+        touched: Whether depths count from the first touch; else from where the round tube through the mesh's vertices
+            would be touched.
         cfg: Changes of ``SimulationCfg``.
     """
     colon = {"material": material, "wall_thickness": thickness, "wall_law": law or WallLawCfg()}
@@ -135,7 +136,8 @@ def indent(
         if (force[-1] > top).all():
             break
     depth, forces = np.array(way).T, np.array(force).T
-    touch = [_crossing(x, f, TOUCH) if touched else AHEAD for x, f in zip(depth, forces, strict=True)]
+    skin = AHEAD - sim.cfg.contact.wall_radius
+    touch = [_crossing(x, f, TOUCH) if touched else skin for x, f in zip(depth, forces, strict=True)]
     return Curve(depth - np.array(touch)[:, None], forces)
 
 
@@ -154,18 +156,13 @@ def indent_both(run: Run, material: str, top: float) -> tuple[Curve, Curve]:
     return join_curves(ours), join_curves(limit)
 
 
-def indent_places(
-    device: str, folder: Path, fine: bool, material: str, places: tuple[str, ...], top: float, **more: Any
-) -> Curve:
-    """Return the curves at some places, of the refined mesh or of the shipped one; what a process of its own does.
-
-    ``more`` is for :func:`indent`.
-    """
+def indent_places(device: str, folder: Path, fine: bool, material: str, places: tuple[str, ...], top: float) -> Curve:
+    """Return the curves at some places, of the refined mesh or of the shipped one; what a process of its own does."""
     torch.set_num_threads(1)
     own = folder / f"indent_{'fine' if fine else 'shipped'}_{'_'.join(places)}"
     own.mkdir(parents=True, exist_ok=True)
     tube, cfg = (REFINED, converged()) if fine else (TUBE, {})
-    return indent(Run(device, own), tube, material, places=places, top=top, **more, **cfg)
+    return indent(Run(device, own), tube, material, places=places, top=top, **cfg)
 
 
 def join_curves(curves: Sequence[Curve]) -> Curve:
