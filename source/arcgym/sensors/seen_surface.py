@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import torch
 import warp as wp
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from arcgym.anatomy.measures import face_normals
 from arcgym.sensors.seen_kernels import mark_seen
@@ -116,6 +114,9 @@ def vertex_polyps(visual: VisualMesh) -> np.ndarray:
     corners = visual.faces[marked[visual.faces].all(axis=1)]
     edges = place.ravel()[np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]]])]
     count = int(place.max()) + 1
+    from scipy.sparse import coo_array  # takes 0.4 s, which most starts can do without
+    from scipy.sparse.csgraph import connected_components
+
     graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(count, count))
     _, patch = connected_components(graph, directed=False)
     in_patch = np.isin(place.ravel(), edges)

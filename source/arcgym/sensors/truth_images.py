@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import torch
 import warp as wp
-from scipy.spatial import cKDTree
 
 from arcgym.sensors.camera_rays import fisheye_rays
 from arcgym.sensors.shaft_picture import ShaftPicture
@@ -107,6 +106,8 @@ def vertex_labels(patient: Patient) -> np.ndarray:
     visual, line = patient.visual, patient.centerline
     points = _refined(np.asarray(line.points, float))
     radius = np.interp(np.linspace(0.0, 1.0, len(points)), np.linspace(0.0, 1.0, len(line.radius)), line.radius)
+    from scipy.spatial import cKDTree  # takes 0.1 s, which most starts can do without
+
     distance, nearest = cKDTree(points).query(visual.points)
     labels = np.full(len(visual.points), LABELS.index("mucosa"), np.uint8)
     labels[distance < (1.0 - FOLD_DEPTH) * radius[nearest]] = LABELS.index("fold")
