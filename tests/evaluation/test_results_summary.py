@@ -65,6 +65,7 @@ def test_a_small_copy_makes_the_same_page(tmp_path: Path) -> None:
     assert text == page([keep], tmp_path)
     rows = (keep / "rectum" / "trials.csv").read_text().splitlines()
     assert ",abcdef012345," in rows[1] and "/far/away" not in rows[1] and ",0.33333," in rows[1]
+    assert (keep / "left" / "trials.csv.gz").is_file() and not (keep / "left" / "trials.csv").exists()
     assert "away/cell" not in (keep / "rectum" / "run.json").read_text()
     assert "| `ARC-LeftColon-Magnetic` | ppo_lagrangian `abcdef01` | 50 | 14 (7–26) |" in text
 
@@ -101,6 +102,17 @@ def test_what_is_not_known_or_another_task_is_left_out(
 ) -> None:
     text = page([write_result_folder(tmp_path / "ours", 2, every=every, **run)], tmp_path)
     assert reason in capsys.readouterr().out and "PPO, shipped reward | – | – | – | – |" in text
+
+
+def test_settings_of_an_effect_that_is_off_change_nothing(tmp_path: Path) -> None:
+    """Unless it is switched on: then its switch is a change, and its settings are changes as well."""
+    shape = {"scene.colon.abdomen.squareness": [6.0, 4.0]}
+    off = write_result_folder(tmp_path / "off", 3, changes={TASK: shape})
+    on = write_result_folder(tmp_path / "on", 3, changes={TASK: shape | {"scene.colon.abdomen.enabled": [False, True]}})
+    found, left_out = find_results([off, on])
+    assert [one.folder for one in found] == [off]
+    named = {text.partition(" = ")[0].rpartition(".")[2] for text in left_out[on]}
+    assert named == {"squareness", "enabled"}
 
 
 def test_each_tenth_trial_is_a_share_and_says_how_many(tmp_path: Path) -> None:

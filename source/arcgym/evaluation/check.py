@@ -22,6 +22,9 @@ AGENTS_OWN = (
 FORWARD_VELOCITY, FASTEST = "actions.tip.forward_velocity", 0.045
 """A constant velocity of the tip, and the largest that actions command [m/s]."""
 
+SWITCH = "enabled"
+"""Field of an effect's configuration that says whether there is the effect at all."""
+
 SEEDS = 3
 """Training seeds that are asked for where a condition file has groups."""
 
@@ -77,9 +80,26 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
         asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
         allowed = {path: value for path, _, value in asked}
         for path, (registered, used) in changes.items():
-            if not _is_agents(path, used) and str(used).lower() != allowed.get(path, "").lower():
+            own = _is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed})
+            if not own and str(used).lower() != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
     return found
+
+
+def _is_of_nothing(task: str, path: str, changed: set[str]) -> bool:
+    """Return whether a field is one of an effect that is off in the registered task, and that nothing switches on.
+
+    Policies bring along the settings that such effects had when they were trained.
+    """
+    effect, _, name = path.rpartition(".")
+    if name == SWITCH or f"{effect}.{SWITCH}" in changed:
+        return False
+    from arcgym.utils.registry import load_cfg_from_registry
+
+    found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
+    for part in effect.split(".") if effect else ():
+        found = getattr(found, part, None)
+    return getattr(found, SWITCH, None) is False
 
 
 def _unfit_to_compete(run: dict[str, Any], conditions: Conditions) -> list[str]:

@@ -8,6 +8,7 @@ Importing this loads neither torch nor Warp.
 from __future__ import annotations
 
 import csv
+import gzip
 import json
 import os
 from pathlib import Path
@@ -17,6 +18,8 @@ from arcgym.utils.errors import UsageError
 
 TRIALS_FILE = "trials.csv"
 """A row a trial; rows are added as trials end."""
+PACKED_FILE = f"{TRIALS_FILE}.gz"
+"""The same rows, packed, in small copies of result folders."""
 RUN_FILE = "run.json"
 """Agent, checkpoint, suite, conditions, versions."""
 IDENTITY = ("agent", "checkpoint_sha256", "suite", "conditions_sha256", "overrides")
@@ -90,11 +93,11 @@ class ResultFolder:
 
 
 def read_trial_rows(path: Path) -> list[Row]:
-    """Return the rows of a result folder, numbers as numbers; none if it has none."""
-    file = path / TRIALS_FILE
-    if not file.is_file():
+    """Return the rows of a result folder, numbers as numbers; none if it has none. They may be packed by gzip."""
+    file, packed = path / TRIALS_FILE, path / PACKED_FILE
+    if not file.is_file() and not packed.is_file():
         return []
-    with file.open(newline="") as text:
+    with file.open(newline="") if file.is_file() else gzip.open(packed, "rt", newline="") as text:
         return [{name: _value(name, cell) for name, cell in row.items()} for row in csv.DictReader(text)]
 
 

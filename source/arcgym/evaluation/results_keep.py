@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 import csv
+import gzip
+import io
 import json
 from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from arcgym.evaluation.check import BASIC
-from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, Row
+from arcgym.evaluation.result_folder import PACKED_FILE, RUN_FILE, TRIALS_FILE, Row
 from arcgym.evaluation.results import Result
 from arcgym.evaluation.results_page import METRICS
 from arcgym.utils.errors import UsageError
@@ -21,6 +23,9 @@ COLUMNS = tuple(dict.fromkeys((*BASIC, *METRICS, "centered_rate")))
 
 DIGITS = 5
 """Significant digits that are kept: a figure of the page has three."""
+
+LONG = 40
+"""Trials beyond which a file is packed."""
 
 HASH = 12
 """Digits of a checkpoint's hash that stand for it in the rows."""
@@ -55,12 +60,17 @@ def _write(folder: Path, run: dict[str, Any], rows: Sequence[Row]) -> None:
     columns = [name for name in COLUMNS if name in rows[0]]
     digests = zip(run.get("checkpoint", []), run.get("checkpoint_sha256", []), strict=True)
     agents = {path: digest[:HASH] for path, digest in digests}
-    with (folder / TRIALS_FILE).open("w", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(columns)
-        for row in rows:
-            named = {**row, "agent": agents.get(row["agent"], row["agent"])}
-            writer.writerow([_text(named[name]) for name in columns])
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(columns)
+    for row in rows:
+        named = {**row, "agent": agents.get(row["agent"], row["agent"])}
+        writer.writerow([_text(named[name]) for name in columns])
+    content = out.getvalue().encode()
+    if len(rows) > LONG:
+        (folder / PACKED_FILE).write_bytes(gzip.compress(content, mtime=0))
+    else:
+        (folder / TRIALS_FILE).write_bytes(content)
 
 
 def _text(value: Any) -> str:
