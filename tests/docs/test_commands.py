@@ -24,8 +24,9 @@ GIVEN_AWAY = {"env.simm.dt", "env.path", "agent.path", "env.rewards.bending"}
 
 
 def commands(text: str) -> list[str]:
-    """Lines of the shell blocks that call ``arcgym`` or ``python -m arcgym``, joined where they go on."""
+    """Lines of the shell blocks that call ``arcgym`` or ``python -m arcgym``, one a command."""
     blocks = "".join(re.findall(r"^```bash\n(.*?)^```", text, re.DOTALL | re.MULTILINE)).replace("\\\n", " ")
+    blocks = blocks.replace(" && ", "\n")
     return re.findall(r"(?:^|-m )arcgym (.+)$", blocks, re.MULTILINE)
 
 

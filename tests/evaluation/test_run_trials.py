@@ -146,6 +146,21 @@ def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) 
     assert not [path for path in changes if path.startswith("scene.colon")]
 
 
+def test_fields_of_an_effect_that_is_off_change_no_task() -> None:
+    """The default of the abdomen's shape changed, and a policy trained before meets the same task, without abdomen."""
+    from arcgym.evaluation.evaluate import changes_of
+    from arcgym.utils.registry import load_cfg_from_registry
+
+    task = "ARC-LeftColon-Magnetic"
+    cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
+    usual = cfg.scene.colon.abdomen.squareness
+    cfg.scene.colon.abdomen.squareness = 4.0
+    assert changes_of(task, cfg) == {}
+    cfg.scene.colon.abdomen.enabled = True
+    prefix = "scene.colon.abdomen"
+    assert changes_of(task, cfg) == {f"{prefix}.enabled": [False, True], f"{prefix}.squareness": [usual, 4.0]}
+
+
 def test_the_expert_withdraws_and_sees_mucosa(tmp_path: Path, tiny_colon_path: Path) -> None:
     """From 16 cm deep back to 5 cm at 10 mm/s: success after about 11 s, with most of that mucosa seen on the way."""
     path = tmp_path / "back_v1.csv"

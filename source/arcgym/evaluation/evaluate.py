@@ -172,10 +172,25 @@ def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
     """Return registered and used value of every field of the environment, by path, where they differ.
 
     A policy runs with the settings that it was trained with: what was made easier in training is easier here, too.
+    Fields of an effect that is off in both change nothing and are left out: a policy is not another task's because
+    the default of such a field has changed since it was trained.
     """
-    registered = to_plain(load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point"))
-    found = differences(registered, to_plain(env_cfg))
-    return {path: list(values) for path, values in found.items() if path not in SET_HERE}
+    registered = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
+    found = differences(to_plain(registered), to_plain(env_cfg))
+    return {
+        path: list(values)
+        for path, values in found.items()
+        if path not in SET_HERE and not (_is_off(path, registered) and _is_off(path, env_cfg))
+    }
+
+
+def _is_off(path: str, cfg: Any) -> bool:
+    """Return whether a field, by its dotted path, is one of an effect that is switched off."""
+    for name in path.split(".")[:-1]:
+        cfg = cfg.get(name) if isinstance(cfg, dict) else getattr(cfg, name, None)
+        if getattr(cfg, "active", True) is False:
+            return True
+    return False
 
 
 def _batches(trials: Sequence[Trial], agents: Sequence[str], most: int) -> list[tuple[str, list[Trial]]]:
