@@ -10,7 +10,7 @@ import torch
 from pixel_tasks import SteerToDot
 from small_agents import runner_cfg
 
-from arcgym.rl import OnPolicyRunner, RslRlMlpModelCfg, RslRlPpoAlgorithmCfg
+from arcgym.rl import OnPolicyRunner, RslRlMlpModelCfg, RslRlPpoAlgorithmCfg, export_policy_as_jit
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
@@ -54,7 +54,8 @@ def test_loss_by_hand():
     runner = _runner()
     alg = runner.alg
     obs = runner.env.get_observations()
-    alg.actor(obs, stochastic_output=True)
+    with alg.features:
+        alg.actor(obs, stochastic_output=True)
     features = torch.nn.functional.elu(alg.actor.mlp[0](alg.actor.get_latent(obs)))
     mean, std = alg.critic.obs_normalizer._mean, alg.critic.obs_normalizer._std
     target = (obs["critic"] - mean) / (std + alg.critic.obs_normalizer.eps)
@@ -72,6 +73,16 @@ def test_checkpoint_keeps_the_head(tmp_path):
     assert not torch.equal(other.alg.head.weight, runner.alg.head.weight)
     other.load(str(tmp_path / "model_0.pt"))
     torch.testing.assert_close(other.alg.head.weight, runner.alg.head.weight)
+
+
+@one_thread()
+def test_policy_that_has_learnt_is_exported(tmp_path):
+    runner = _runner()
+    _roll_and_update(runner)
+    obs = runner.env.get_observations()
+    exported = torch.jit.load(str(export_policy_as_jit(runner.alg.get_policy(), tmp_path)))
+    actions = exported(torch.zeros(16, 0), [obs["policy"]])
+    torch.testing.assert_close(actions, runner.get_inference_policy()(obs))
 
 
 def test_scale_is_needed():

@@ -50,11 +50,13 @@ class PPOPredicting(PPO):
         super().__init__(actor, critic, storage, **kwargs)
         self.head = nn.Linear(actor.mlp[-1].in_features, critic.obs_dim).to(self.device)
         self.optimizer.add_param_group({"params": self.head.parameters()})
-        self.symmetry = _Prediction(self, FeatureReader(actor.mlp[-1]), prediction_coef)  # type: ignore[assignment]
+        self.features = FeatureReader(actor.mlp[-1])
+        self.symmetry = _Prediction(self, prediction_coef)  # type: ignore[assignment]
 
     def update(self) -> dict[str, float]:
         """Make the gradient steps of an iteration and return the mean losses."""
-        losses = super().update()
+        with self.features:
+            losses = super().update()
         losses["prediction"] = losses.pop("symmetry")
         return losses
 
@@ -74,8 +76,8 @@ class _Prediction:
 
     use_mirror_loss = True
 
-    def __init__(self, alg: PPOPredicting, features: FeatureReader, coef: float):
-        self.alg, self.features, self.mirror_loss_coeff = alg, features, coef
+    def __init__(self, alg: PPOPredicting, coef: float):
+        self.alg, self.mirror_loss_coeff = alg, coef
 
     def augment_batch(self, batch: Any, size: int) -> None:
         """Leave the mini-batch as it is."""
@@ -85,4 +87,4 @@ class _Prediction:
         critic = self.alg.critic
         with torch.no_grad():
             target = critic.get_latent(batch.observations).clamp(-FARTHEST, FARTHEST)
-        return (self.alg.head(self.features.last) - target).square().mean()
+        return (self.alg.head(self.alg.features.last) - target).square().mean()
