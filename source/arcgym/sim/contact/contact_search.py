@@ -11,13 +11,12 @@ import warp as wp
 from arcgym.sim.contact import contact_list_kernels as list_kernels
 from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
-from arcgym.sim.contact import lumen_kernels, patch_list_kernels
+from arcgym.sim.contact import lumen_kernels
 from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
 from arcgym.utils.warp_setup import GPU_BLOCK
-from arcgym.utils.warp_vote_kernels import LANES
 
 FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
@@ -83,8 +82,8 @@ class ContactSearch:
         self._ring_before = wp.clone(self.ring)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         self.bounds = lumen_kernels.Bounds()
-        self.bounds.ring = wp.zeros((num_envs, self.ring_count), dtype=wp.vec4, device=device)
-        self.bounds.patch = wp.zeros((num_envs, len(topology.patch_start) - 1), dtype=wp.vec4, device=device)
+        self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
+        self.bounds.patch = wp.zeros((len(topology.patch_start) - 1, num_envs), dtype=wp.vec4, device=device)
         self.candidates = self._candidates(cfg.patch_capacity * room)
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
@@ -226,19 +225,6 @@ class ContactSearch:
         """Find the patches near each link."""
         links = (self.num_envs, self.link_count)
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
-        if self.device != "cpu":
-            threads = self.records.threads
-            inputs = [*of_links, self.ring, self.ring_distance, threads, LANES]
-            outputs = [self.candidates, self.records.dropped]
-            wp.launch(
-                patch_list_kernels.find_patches,
-                (self.num_envs, threads),
-                inputs=inputs,
-                outputs=outputs,
-                device=self.device,
-                block_dim=threads,
-            )
-            return
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)

@@ -177,13 +177,13 @@ def count_patches(
         center = wp.transform_get_translation(body_q[row])
         axis = link_axis(body_q, row, links.half_length[link])
         limit = links.radius[link] + law.wall_radius + law.search_gap
-        for r in range(bounds.ring.shape[1]):
-            if sphere_reached(bounds.ring[w, r], center, axis, limit):
+        for r in range(bounds.ring.shape[0]):
+            if sphere_reached(bounds.ring[r, w], center, axis, limit):
                 if last == 0:
                     first = r
                 last = r + 1
                 for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if sphere_reached(bounds.patch[w, p], center, axis, limit):
+                    if sphere_reached(bounds.patch[p, w], center, axis, limit):
                         n += 1
     candidates.rings[w, link] = wp.vec2i(first, last)
     candidates.patches[w, link] = n
@@ -229,10 +229,10 @@ def list_patches(
         limit = links.radius[link] + law.wall_radius + law.search_gap
         rings = candidates.rings[w, link]
         for r in range(rings[0], rings[1]):
-            if sphere_reached(bounds.ring[w, r], center, axis, limit):
+            if sphere_reached(bounds.ring[r, w], center, axis, limit):
                 both_sides = int(wp.abs(r - ring[w, link]) <= surface.reach)
                 for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if k < end and sphere_reached(bounds.patch[w, p], center, axis, limit):
+                    if k < end and sphere_reached(bounds.patch[p, w], center, axis, limit):
                         candidates.link[w, k] = link
                         candidates.patch[w, k] = 2 * p + both_sides
                         k += 1

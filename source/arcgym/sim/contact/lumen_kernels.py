@@ -38,8 +38,8 @@ class LumenSurface:
 class Bounds:
     """Spheres around the faces of each patch and of each ring: center [m] and radius [m]."""
 
-    patch: wp.array2d[wp.vec4]  # shape (W, P)
-    ring: wp.array2d[wp.vec4]  # shape (W, R)
+    patch: wp.array2d[wp.vec4]  # shape (P, W)
+    ring: wp.array2d[wp.vec4]  # shape (R, W)
 
 
 @wp.kernel
@@ -133,14 +133,14 @@ def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
         radius = float(0.0)
         for k in range(vertices):
             radius = wp.max(radius, wp.length_sq(x[surface.patch_vertices[p, k], w] - center))
-        bounds.patch[w, p] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
+        bounds.patch[p, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
         middle += center
     middle = middle / float(wp.max(1, last - first))
     radius = float(0.0)
     for p in range(first, last):
-        sphere = bounds.patch[w, p]
+        sphere = bounds.patch[p, w]
         radius = wp.max(radius, wp.length(wp.vec3(sphere[0], sphere[1], sphere[2]) - middle) + sphere[3])
-    bounds.ring[w, r] = wp.vec4(middle[0], middle[1], middle[2], radius)
+    bounds.ring[r, w] = wp.vec4(middle[0], middle[1], middle[2], radius)
 
 
 @wp.func

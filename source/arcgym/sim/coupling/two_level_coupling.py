@@ -10,8 +10,6 @@ import warp as wp
 
 from arcgym.sim.contact import link_load_kernels as kernels
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
-from arcgym.utils.warp_setup import GPU_BLOCK
-from arcgym.utils.warp_vote_kernels import GROUP, LANES
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -55,8 +53,8 @@ class TwoLevelCoupling:
         self.solver.resistance = sim.actuation.resistance
         self.body_q_prev = wp.clone(sim.state.body_q)
         """Link poses at the start of the last step, shape (W*L,), transform."""
-        self._on_gpu = wp.get_device(sim.device).is_cuda
-        self._scope_stream = wp.Stream(sim.device, priority=-1) if self._on_gpu else None
+        on_gpu = wp.get_device(sim.device).is_cuda
+        self._scope_stream = wp.Stream(sim.device, priority=-1) if on_gpu else None
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
@@ -107,17 +105,12 @@ class TwoLevelCoupling:
         sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
         inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
         inputs += [contact.links, contact.records, contact.law, contact.friction, self.body_q_prev, elapsed, dt]
-        outputs, (links, worlds) = [loads, sim.scope_readout.penetrated], loads.wrench.shape
-        if not self._on_gpu:
-            wp.launch(kernels.load_contacts, (links, worlds), inputs=inputs, outputs=outputs, device=sim.device)
-            return
         wp.launch(
-            kernels.load_contacts_in_groups,
-            (worlds, links + -links % (LANES // GROUP), GROUP),
-            inputs=[*inputs, GROUP],
-            outputs=outputs,
+            kernels.load_contacts,
+            loads.wrench.shape,
+            inputs=inputs,
+            outputs=[loads, sim.scope_readout.penetrated],
             device=sim.device,
-            block_dim=GPU_BLOCK,
         )
 
     def _record(self, weight: float) -> None:

@@ -16,13 +16,12 @@ from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
-from arcgym.sim.wall import coarse_kernels, packed_contact_kernels, wall_kernels
+from arcgym.sim.wall import coarse_kernels, wall_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.gas_rings import GasRings
 from arcgym.sim.wall.lumen_gas import LumenGas
-from arcgym.sim.wall.packed_contact_kernels import FOURS
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_elements import wall_elements
@@ -103,7 +102,8 @@ class WallSolver:
         self.nodes = wall_nodes(walls, patient, device)
         self.gas, self.weight, self.surroundings = gas, weight, surroundings
         self.elements = wall_elements(walls, patient, dt, device, None if gas is None else gas.loads, law)
-        self._kernels = self.elements.plain if surroundings is None else self.elements.surrounded
+        kernels = (self.elements.sweep_color, self.elements.residual)
+        self._sweep_color, self._sum_forces = kernels if surroundings is None else self.elements.surrounded
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
@@ -119,10 +119,6 @@ class WallSolver:
         self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
         self.bands = wp.zeros((self.ring_count, ENTRIES, ENTRIES, num_envs), dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
-        self.on_gpu = wp.get_device(device).is_cuda
-        """Whether contacts are packed, see :mod:`.packed_contact_kernels`."""
-        self.packed = wp.zeros(FOURS * contact_slots if self.on_gpu else 1, dtype=wp.vec4, device=device)
-        """The packed contacts."""
         self._prepared = False
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.gas_rings = None if gas is None else GasRings(gas, self.vertex_count, self.ring_count)
@@ -204,7 +200,7 @@ class WallSolver:
         if not self._prepared:
             self.prepare(x, v)
         self._prepared = False
-        contacts = self._contacts(contact, self.x_prev, body_q, body_q_prev)
+        contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
         self._launch(
             wall_kernels.share_debts, contact.debt.shape, [contact.links, contact.law, contact.debt], [contact.records]
         )
@@ -230,28 +226,18 @@ class WallSolver:
 
         ``link_force`` is the mean force of the wall on each link in this step [N], shape (W*L,), vec3.
         """
-        contacts = self._contacts(contact, self.x_prev if self.moves else x, body_q, body_q_prev)
+        contacts = wall_contacts(contact, self.dt, self.x_prev if self.moves else x, body_q, body_q_prev)
         shape, measured = (self.num_envs, contacts.records.threads), self.measured
-        packed = self.on_gpu and self.moves
-        advance = packed_contact_kernels.advance_packed if packed else wall_kernels.advance_slides
-        self._launch(advance, shape, [contacts, x], [measured])
+        self._launch(wall_kernels.advance_slides, shape, [contacts, x], [measured])
         if self.moves:
             inputs = [contact.records, measured, link_force]
             self._launch(wall_kernels.settle_debts, contact.debt.shape, inputs, [contact.debt])
 
-    def _contacts(
-        self, contact: ContactSearch, x_prev: wp.array, body_q: wp.array, body_q_prev: wp.array
-    ) -> wall_kernels.WallContacts:
-        contacts = wall_contacts(contact, self.dt, x_prev, body_q, body_q_prev)
-        contacts.packed = self.packed
-        return contacts
-
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
-        sweep = self._kernels.sweep_packed if self.on_gpu else self._kernels.sweep_color
         for color in self.colors:
             inputs = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
             self._launch(
-                sweep,
+                self._sweep_color,
                 (len(color), self.num_envs),
                 [*inputs, self.cfg.largest_move, ROUNDING * self.elements.size, self.force],
                 [x],
@@ -266,7 +252,7 @@ class WallSolver:
             body_q: Link poses, shape (W*L,).
         """
         force = wp.zeros_like(x)
-        contacts = self._contacts(contact, x, body_q, body_q)
+        contacts = wall_contacts(contact, self.dt, x, body_q, body_q)
         self.self_contact.measure(x)
         if self.surroundings is not None:
             self.surroundings.measure(x, self.tissue, self.dt)
@@ -296,10 +282,9 @@ class WallSolver:
             contacts.outer = self.surroundings.force
         shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
-        measure = packed_contact_kernels.measure_packed if self.on_gpu else wall_kernels.measure_contacts
-        self._launch(measure, shape, [contacts, x], [measured])
+        self._launch(wall_kernels.measure_contacts, shape, [contacts, x], [measured])
         self._launch(
-            self._kernels.residual,
+            self._sum_forces,
             x.shape,
             [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x],
             [force],
