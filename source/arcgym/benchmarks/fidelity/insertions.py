@@ -57,7 +57,7 @@ STEERING: dict[str, dict[str, float]] = {
     "magnetic": {},
     "proximal": {"look": 0.015, "gain": 0.15, "patience": 25.0, "least_pace": 0.15},
 }
-"""Settings of their experts. Those of the pushed scope were chosen by a rule, see docs/what_a_force_means.md."""
+"""Settings of their experts. Those of the pushed scope were chosen by a rule, see docs/force_studies.md."""
 SETTINGS = {
     "contact_double": "contact stiffness times 2",
     "contact_half": "contact stiffness over 2",
@@ -104,7 +104,7 @@ SCENES = (
     Insertion("magnetic", "paper"),
     Insertion("magnetic", "in_situ"),
 )
-"""Insertions with the shipped settings. The third is there for its time above 5 N, see docs/what_a_force_means.md."""
+"""Insertions with the shipped settings. The third is there for its time above 5 N, see docs/force_studies.md."""
 
 
 def numbers_on(device: str, robot: str) -> range:
