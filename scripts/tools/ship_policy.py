@@ -9,6 +9,7 @@
 
 The first call writes the actor in a quarter of its size, the parameters and the curve of its run, and about.json. The
 second adds trials, which must be those of the file that was written: rounding changes actions in their third digit.
+Of a path on the machine of the training only folder and file are kept: ``patient_0/colon.usda``.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ import argparse
 import json
 import shutil
 import sys
-from pathlib import Path
+from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any
 
 from arcgym.evaluation.result_folder import read_run
 from arcgym.evaluation.results import find_results
@@ -31,6 +33,9 @@ from arcgym.utils.errors import UsageError
 
 OF_THE_MAKER = ("usd_path", "num_patients")
 """Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own."""
+
+NAMES = 2
+"""Last names of a path that are kept: folder and file, by which results tell patients apart."""
 
 CURVE = "curves.csv"
 """Name of a policy's curve in its folder."""
@@ -69,7 +74,8 @@ def ship(checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str
     (folder / ABOUT).write_text(json.dumps(_about(checkpoint, folder, saved, trained_on), indent=1) + "\n")
     for name in OF_THE_MAKER:
         saved.env.get("scene", {}).get("colon", {}).pop(name, None)
-    write_params(folder, run={"task": saved.task, "agent": saved.agent_key}, env=saved.env, agent=saved.agent)
+    env, agent = without_folders(saved.env), without_folders(saved.agent)
+    write_params(folder, run={"task": saved.task, "agent": saved.agent_key}, env=env, agent=agent)
     _write_curve(checkpoint.parent, curve, folder / CURVE)
     return folder / FILE
 
@@ -91,16 +97,42 @@ def add_evaluation(folder: Path, out: Path) -> Path:
     return owners[0] / "evaluation" / folder.name
 
 
+def without_folders(value: Any) -> Any:
+    """Return plain values, nested at will, in which every absolute path is cut to its last :data:`NAMES` names."""
+    if isinstance(value, dict):
+        return {name: without_folders(child) for name, child in value.items()}
+    if isinstance(value, list):
+        return [without_folders(child) for child in value]
+    if not isinstance(value, str):
+        return value
+    kinds = (PurePosixPath(value), PureWindowsPath(value))
+    return next(("/".join(path.parts[1:][-NAMES:]) for path in kinds if path.is_absolute()), value)
+
+
 def _about(checkpoint: Path, folder: Path, saved: RunParams, trained_on: str | None) -> dict[str, object]:
     infos = read_checkpoint(checkpoint)["infos"] or {}
     return {
         "task": saved.task,
         "agent": saved.agent_key,
-        "trained_on": trained_on or saved.env["scene"]["colon"]["usd_path"],
+        "trained_on": without_folders(trained_on or saved.env["scene"]["colon"]["usd_path"]),
+        "began_with": _began_with(saved.agent.get("init_policy")),
         "transitions": infos.get("transitions"),
         "seconds_of_learning": infos.get("seconds"),
         "sha256": file_sha256(folder / FILE),
         "made_from_sha256": file_sha256(checkpoint),
+    }
+
+
+def _began_with(init_policy: str | None) -> dict[str, Any] | None:
+    """Return name, task and hash of the policy that a training began with, as far as its file is still there."""
+    if init_policy is None:
+        return None
+    path = Path(init_policy)
+    run = read_params(path.parent)
+    return {
+        "policy": "/".join(path.parts[-NAMES:]),
+        "task": None if run is None else run.task,
+        "sha256": file_sha256(path) if path.is_file() else None,
     }
 
 

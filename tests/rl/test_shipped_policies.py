@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -36,3 +37,13 @@ def test_its_evaluations_are_whole_and_of_this_very_file(folder: Path) -> None:
     results, left_out = find_results([folder])
     assert left_out == {}
     assert all(read_run(one.folder)["checkpoint_sha256"] == [file_sha256(folder / FILE)] for one in results)
+
+
+@pytest.mark.parametrize("folder", POLICIES, ids=lambda path: path.name)
+def test_it_names_no_folder_of_the_machine_that_trained_it_and_says_what_it_began_with(folder: Path) -> None:
+    texts = {path.name: path.read_text() for path in (*folder.glob("params/*.yaml"), folder / ABOUT)}
+    assert [name for name, text in texts.items() if re.search(r"[\s\"'](/|~|[A-Za-z]:\\)\w", text)] == []
+    params, about = read_params(folder), json.loads(texts[ABOUT])
+    assert params is not None
+    began_with = about["began_with"] and about["began_with"]["policy"]
+    assert began_with == params.agent.get("init_policy")

@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 import json
+import runpy
 import subprocess
 import sys
+from hashlib import sha256
 from pathlib import Path
 
 import torch
@@ -30,7 +32,9 @@ def ship(*arguments: str) -> subprocess.CompletedProcess[str]:
 def test_a_run_becomes_a_policy_of_its_robot(tmp_path: Path) -> None:
     env = load_cfg_from_registry(TASK, "env_cfg_entry_point")
     env.scene.colon.usd_path = ["/home/me/patient_0/colon.usda"]
+    env.log_dir = "/home/me/logs/rectum/run_1"
     agent = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
+    agent.init_policy = str(_first_policy(tmp_path / "sigmoid"))
     run = tmp_path / "run"
     run.mkdir()
     write_params(run, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env, agent=agent)
@@ -42,15 +46,32 @@ def test_a_run_becomes_a_policy_of_its_robot(tmp_path: Path) -> None:
     saved = read_params(tmp_path / "policies" / "rectum-magnetic")
     assert saved is not None and saved.task == TASK
     assert not {"usd_path", "num_patients"} & set(saved.env["scene"]["colon"])
+    assert saved.env["log_dir"] == "rectum/run_1" and saved.agent["init_policy"] == "sigmoid/model_9.pt"
     weights = read_checkpoint(tmp_path / "policies" / "rectum-magnetic" / "model.pt")["actor_state_dict"]["w"]
     assert weights.dtype == torch.float16 and weights.tolist() == [1.0, 1.0]
     about = json.loads((tmp_path / "policies" / "rectum-magnetic" / "about.json").read_text())
-    assert about["transitions"] == 96 and about["trained_on"] == ["/home/me/patient_0/colon.usda"]
+    assert about["transitions"] == 96 and about["trained_on"] == ["patient_0/colon.usda"]
+    first = {"policy": "sigmoid/model_9.pt", "task": "ARC-Sigmoid-Magnetic", "sha256": sha256(b"weights").hexdigest()}
+    assert about["began_with"] == first
     shipped = tmp_path / "policies" / "rectum-magnetic" / "model.pt"
-    assert trained_on(shipped) == ["/home/me/patient_0/colon.usda"]
+    assert trained_on(shipped) == ["patient_0/colon.usda"]
     assert about["sha256"] == file_sha256(tmp_path / "policies" / "rectum-magnetic" / "model.pt")
     assert (tmp_path / "policies" / "rectum-magnetic" / "curves.csv").is_file()
     _evaluations_are_of_the_shipped_file(tmp_path, about)
+
+
+def _first_policy(run: Path) -> Path:
+    """Write the run that the training begins with, and return its checkpoint."""
+    run.mkdir()
+    write_params(run, run={"task": "ARC-Sigmoid-Magnetic"}, env={}, agent={})
+    (run / "model_9.pt").write_bytes(b"weights")
+    return run / "model_9.pt"
+
+
+def test_of_a_path_folder_and_file_are_kept() -> None:
+    given = {"a": ["/home/me/runs/one/model.pt", "colon_1/colon.usda", "population:train"], "b": "C:\\me\\x\\y", "c": 3}
+    kept = {"a": ["one/model.pt", "colon_1/colon.usda", "population:train"], "b": "x/y", "c": 3}
+    assert runpy.run_path(str(SCRIPT))["without_folders"](given) == kept
 
 
 def _evaluations_are_of_the_shipped_file(tmp_path: Path, about: dict[str, str]) -> None:
