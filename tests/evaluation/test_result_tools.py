@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -224,39 +222,6 @@ def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) ->
     changes[task]["robustness"][1] = "none"
     other = ResultFolder(tmp_path / "b", {**run, "changes": changes})
     assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]
-
-
-def test_the_tables_of_the_floor_are_made_from_the_folders(tmp_path: Path) -> None:
-    """Of two agents: the third has not run all trials, so that its rows are those that ended early."""
-    script = Path(__file__).parents[2] / "scripts" / "tools" / "floor_tables.py"
-    for agent, count in (("random", 30), ("expert", 30), ("zero", 29)):
-        run = {**RUN, "agent": agent, "machine": "a machine", "versions": {"arcgym commit": "abc1234"}}
-        folder = ResultFolder(tmp_path / agent, run)
-        for trial in CONDITIONS.trials[:count]:
-            folder.add(
-                {"task": TASKS[0], "agent": agent, **vars(trial), "success": int(agent == "expert"), "seconds": 4.0}
-            )
-    words = [sys.executable, str(script), str(tmp_path)]
-    text = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout
-    assert "Machine: a machine; commit abc1234." in text and "**`paper`**" in text
-    lines = [line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`")]
-    assert lines[0].startswith(f"| `{TASKS[0]}` | random | 30 | 0 (0–11) | 4.0 (4.0–4.0) |")
-    assert lines[1].startswith(f"| `{TASKS[0]}` | expert | 30 | 100 (89–100) |") and len(lines) == 2
-
-
-def test_the_floor_shows_a_whole_share(tmp_path: Path) -> None:
-    """Each fifth trial of 30; another agent lacks the last one of them."""
-    script = Path(__file__).parents[2] / "scripts" / "tools" / "floor_tables.py"
-    for agent, numbers in (("random", range(0, 30, 5)), ("zero", range(0, 25, 5))):
-        run = {**RUN, "agent": agent, "machine": "a machine", "versions": {"arcgym commit": "abc1234"}}
-        folder = ResultFolder(tmp_path / agent, run)
-        for number in numbers:
-            trial = CONDITIONS.trials[number]
-            folder.add({"task": TASKS[0], "agent": agent, **vars(trial), "success": 0, "seconds": 4.0})
-    words = [sys.executable, str(script), str(tmp_path)]
-    text = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60).stdout
-    lines = [line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`")]
-    assert len(lines) == 1 and lines[0].startswith(f"| `{TASKS[0]}` | random | 6 | 0 (0–39) |")
 
 
 ENTRY = "name: Mine\nby: A. Author\nsees: policy\ntrained_on: colon 1\ntransitions: 2.0e+6\ngpu_hours: 1.5\n"

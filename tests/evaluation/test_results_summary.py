@@ -12,9 +12,10 @@ from result_folders import PPO, write_result_folder
 
 from arcgym.cli.main import main
 from arcgym.evaluation.results import find_results, method_of
-from arcgym.evaluation.results_page import SECTIONS_FILE, read_sections
+from arcgym.evaluation.results_page import SECTIONS_FILE, read_sections, results_page
 from arcgym.evaluation.suites import read_suites
 
+ROOT = Path(__file__).parents[2]
 TASK = "ARC-Rectum-Magnetic"
 LAGRANGIAN = "rsl_rl_ppo_lagrangian_cfg_entry_point"
 REWARD = {"reward": ["shaped", "paper"]}
@@ -38,6 +39,21 @@ def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_
     assert (
         "| paper | `ARC-Rectum-Magnetic` | ppo_paper | 30 | 6 144 | abcdef012345 | abc1234 | a machine | ours |" in text
     )
+
+
+def test_the_committed_page_is_made_of_the_committed_folders(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the command that its first lines name."""
+    monkeypatch.chdir(ROOT)
+    text = (ROOT / "docs" / "results.md").read_text()
+    command = text.partition("Made by `")[2].partition("`")[0]
+    assert command == "arcgym results summary docs/data/results --out docs/results.md --figure docs/images/results.png"
+    results, left_out = find_results([Path("docs/data/results")])
+    assert results_page(results, command, read_sections(), "images/results.png") == text and not left_out
+
+
+def test_the_page_names_the_command_that_made_it(tmp_path: Path) -> None:
+    ours = write_result_folder(tmp_path / "ours", 3)
+    assert f"Made by `arcgym results summary {ours} --out {tmp_path / 'results.md'}`" in page([ours], tmp_path)
 
 
 def test_other_metrics_have_tables_of_their_own(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Write all tables of result folders as one page, with what was not run and the command that would make it.
 
-    arcgym results summary docs/data/results --out docs/results.md
+    arcgym results summary docs/data/results --out docs/results.md --figure docs/images/results.png
     arcgym results summary logs/studies/paper_table/trials results --out docs/results.md --keep docs/data/results
 
 Result folders lie anywhere below the given ones. Shown are those whose code, checkpoint and condition file are known;
@@ -52,6 +52,8 @@ def run(namespace: argparse.Namespace) -> None:
         draw_results(results, sections[0], Path(namespace.figure))
         print(f"picture: {namespace.figure}")
         figure = os.path.relpath(namespace.figure, Path(namespace.out).parent)
-    text = results_page(results, folders, sections, figure)
+    command = f"arcgym results summary {' '.join(folders)} --out {namespace.out}"
+    command += f" --figure {namespace.figure}" if namespace.figure else ""
+    text = results_page(results, command, sections, figure)
     write_whole(Path(namespace.out), text.encode())
     print(f"page: {namespace.out}, {len(results)} results")

@@ -50,7 +50,8 @@ FIGURE = "Success in 30 trials of each task, with intervals, and the paper's own
 
 INTRODUCTION = """# Results
 
-Made by `arcgym results summary {folders} --out docs/results.md` and nothing else. A cell has the share
+Made by `{command}`
+and nothing else. A cell has the share
 of successful trials [%] with Wilson's interval (95 %), and behind it the number of trials where they are not all of the
 suite's; other figures are interquartile means with bootstrap intervals. `–` was not run: the command that would make it
 is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
@@ -60,19 +61,19 @@ see. What was run where is in the [last table](#what-was-run).
 
 
 def results_page(
-    results: Sequence[Result], folders: Sequence[str], sections: Sequence[dict[str, Any]], figure: str | None = None
+    results: Sequence[Result], command: str, sections: Sequence[dict[str, Any]], figure: str | None = None
 ) -> str:
     """Return the page in Markdown.
 
     Args:
         results: What can be shown, see :func:`arcgym.evaluation.results.find_results`.
-        folders: Where they were looked for, for the record.
+        command: What makes the page, for the record.
         sections: Those of :data:`SECTIONS_FILE`.
         figure: Picture of the first section's table, as the page finds it; None has none.
     """
     used: dict[tuple[Path, str], Result] = {}
     asked: dict[str, None] = {}
-    parts = [INTRODUCTION.format(folders=" ".join(folders))]
+    parts = [INTRODUCTION.format(command=command)]
     for section in sections:
         own = [result for result in results if result.suite == section["suite"]]
         shown, text, missing = KINDS[section["kind"]](section, own)

@@ -1,0 +1,143 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""What agents reach that learn nothing, a row a task and agent in one small file. Loads neither torch nor Warp.
+
+Result folders come and go; this file stays, and each of its rows says by what commit and on which machine it was made.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from arcgym.evaluation.results import Result, best
+from arcgym.evaluation.statistics import Interval
+from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.summary import summarize
+from arcgym.utils.errors import UsageError
+
+AGENTS = ("zero", "random", "expert")
+"""Agents of the floor, in the order of the rows."""
+
+FIGURES = {
+    "success": ("success [%]", 0),
+    "progress": ("progress", 2),
+    "seconds": ("time [s]", 1),
+    "p95_tip_force": ("p95 tip force [N]", 2),
+    "p95_shaft_force": ("p95 shaft force [N]", 2),
+    "looping_ratio": ("looping ratio", 2),
+    "path_efficiency": ("path efficiency", 2),
+    "coverage": ("coverage", 2),
+}
+"""Heading and digits of the figures, where trials have them."""
+
+BOUNDS = ("", "_low", "_high")
+"""Ends of the columns of an estimate and of its bounds."""
+
+ABOUT = ("suite", "task", "agent", "trials", "commit", "machine")
+"""Columns before those of the figures."""
+
+DIGITS = 4
+"""Significant digits in the file; a table shows three."""
+
+
+@dataclass(frozen=True)
+class Floor:
+    """Figures of one agent in one task of a suite."""
+
+    suite: str
+    """Name of the suite."""
+    task: str
+    """Registered name, with ``:variant`` behind it or without."""
+    agent: str
+    """One of :data:`AGENTS`."""
+    trials: int
+    """Number of trials: all of the suite's, or each n-th one."""
+    commit: str
+    """Commit of the code that ran them."""
+    machine: str
+    """Processor and accelerator."""
+    figures: dict[str, Interval]
+    """Estimates with their bounds, by name in :data:`FIGURES`."""
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Suite, task and agent: there is one row of each."""
+        return self.suite, self.task, self.agent
+
+
+def floors_of(results: Iterable[Result]) -> list[Floor]:
+    """Return the floors in results, of each suite, task and agent the one with the most trials."""
+    of: dict[tuple[str, str, str], list[Result]] = {}
+    for one in results:
+        if one.method in AGENTS:
+            of.setdefault((one.suite, one.task, one.method), []).append(one)
+    return [_floor(chosen) for own in of.values() if (chosen := best(own))]
+
+
+def updated(known: Sequence[Floor], new: Sequence[Floor]) -> list[Floor]:
+    """Return the known rows with new ones in their places, in the order of suites, tasks and agents.
+
+    A new row takes a place if it has at least as many trials and every figure of the one before: fewer trials, or a
+    small copy of a folder without some columns, replace nothing.
+    """
+    rows = {one.key: one for one in known}
+    for one in new:
+        old = rows.get(one.key)
+        if old is None or (one.trials >= old.trials and set(old.figures) <= set(one.figures)):
+            rows[one.key] = one
+    suites = list(read_suites())
+    return sorted(rows.values(), key=lambda one: (suites.index(one.suite), one.task, AGENTS.index(one.agent)))
+
+
+def read_floors(path: Path) -> list[Floor]:
+    """Return the rows of a file; none if there is no file.
+
+    Raises:
+        UsageError: A row names a suite or an agent that there is not.
+    """
+    if not path.is_file():
+        return []
+    with path.open(newline="") as file:
+        floors = [_read(row) for row in csv.DictReader(file)]
+    for one in floors:
+        if one.suite not in read_suites() or one.agent not in AGENTS:
+            raise UsageError(f"{path} has {one.agent} in '{one.suite}'; expected {', '.join(AGENTS)} in a suite.")
+    return floors
+
+
+def write_floors(path: Path, floors: Sequence[Floor]) -> None:
+    """Write rows into a file."""
+    out = io.StringIO()
+    columns = [*ABOUT, *(name + bound for name in FIGURES for bound in BOUNDS)]
+    writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(_cells(one) for one in floors)
+    path.write_text(out.getvalue())
+
+
+def _floor(result: Result) -> Floor:
+    (of,) = summarize(result.rows).values()
+    figures = {name: of[name] for name in FIGURES if name in of}
+    about = (result.suite, result.task, result.method, of["trials"], result.commit, result.run["machine"])
+    return Floor(*about, figures)
+
+
+def _cells(one: Floor) -> dict[str, Any]:
+    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT}
+    for name, of in one.figures.items():
+        values = zip(BOUNDS, (of.value, of.low, of.high), strict=True)
+        cells |= {name + bound: f"{value:.{DIGITS}g}" for bound, value in values}
+    return cells
+
+
+def _read(row: dict[str, str]) -> Floor:
+    figures = {
+        name: Interval(*(float(row[name + bound]) for bound in BOUNDS)) for name in FIGURES if row.get(name, "") != ""
+    }
+    about = {name: row[name] for name in ABOUT}
+    return Floor(**{**about, "trials": int(row["trials"])}, figures=figures)  # type: ignore[arg-type]
