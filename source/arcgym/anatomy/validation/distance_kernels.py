@@ -30,3 +30,17 @@ def distances(mesh: wp.uint64, points: wp.array[wp.vec3], out: wp.array[float]):
     i = wp.tid()
     found = wp.mesh_query_point_no_sign(mesh, points[i], FAR)
     out[i] = wp.length(wp.mesh_eval_position(mesh, found.face, found.u, found.v) - points[i])
+
+
+@wp.kernel
+def any_nearer(mesh: wp.uint64, points: wp.array2d[wp.vec3], limit: wp.array[float], out: wp.array[bool]):
+    """Whether a point of each group lies within a distance of the mesh [m], on whatever side. Launch (n,)."""
+    i = wp.tid()
+    out[i] = False
+    for k in range(points.shape[1]):
+        found = wp.mesh_query_point_no_sign(mesh, points[i, k], limit[i])
+        if found.result:
+            nearest = wp.mesh_eval_position(mesh, found.face, found.u, found.v)
+            if wp.length(nearest - points[i, k]) <= limit[i]:
+                out[i] = True
+                return

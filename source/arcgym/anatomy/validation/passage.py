@@ -15,7 +15,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation, label, minimum
 
 from arcgym.anatomy.measures import inner_faces
-from arcgym.anatomy.stage.types import ColonStage, WallMesh
+from arcgym.anatomy.stage.types import Centerline, ColonStage, ContactSurface, WallMesh
 
 HEAD_RADIUS = 0.0066
 """Radius of the shipped scopes' heads [m]."""
@@ -25,6 +25,9 @@ HEAD_LENGTH = 0.043
 
 Clearance = Callable[[np.ndarray], np.ndarray]
 """Function that returns the distance to the wall [m], negative outside the lumen, of points (..., 3)."""
+
+Touched = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Function that returns which groups of points (n, m, 3) come within a distance (n,) [m] of the wall, shape (n,)."""
 
 _STATION = 0.004
 """Distance of the places at which the head is laid [m]."""
@@ -95,10 +98,30 @@ def head_passage(stage: ColonStage, radius: float = HEAD_RADIUS, length: float =
         length: Its length with both round ends [m].
     """
     line = stage.centerline
-    if stage.contact is None:
-        return wall_passage(stage.wall, line.points.astype(float), line.arc.astype(float), radius, length)
-    surface = _WallDistance(stage.contact.points.astype(float), stage.contact.faces())
-    return find_passage(surface.clearance, line.points.astype(float), line.arc.astype(float), radius, length)
+    if stage.contact is not None:
+        return contact_passage(stage.contact, line, radius, length)
+    return wall_passage(stage.wall, line.points.astype(float), line.arc.astype(float), radius, length)
+
+
+def contact_passage(
+    contact: ContactSurface,
+    line: Centerline,
+    radius: float = HEAD_RADIUS,
+    length: float = HEAD_LENGTH,
+    until: float = np.inf,
+) -> Passage:
+    """Return the room for a stiff head inside of a contact surface at rest.
+
+    Args:
+        contact: The surface.
+        line: The centerline in it.
+        radius: Radius of the head [m].
+        length: Its length with both round ends [m].
+        until: Room everywhere at which the search ends [m].
+    """
+    surface = _WallDistance(contact.points.astype(float), contact.faces())
+    points, arc = line.points.astype(float), line.arc.astype(float)
+    return find_passage(surface.clearance, points, arc, radius, length, surface.touched, until)
 
 
 def wall_passage(
@@ -114,7 +137,7 @@ def wall_passage(
         length: Its length with both round ends [m].
     """
     surface = _WallDistance(wall.points.astype(float), inner_faces(wall.tets, wall.layer))
-    return find_passage(surface.clearance, points, arc, radius, length)
+    return find_passage(surface.clearance, points, arc, radius, length, surface.touched)
 
 
 class _WallDistance:
@@ -139,12 +162,26 @@ class _WallDistance:
         wp.launch(signed_distances, len(places), inputs=[self._mesh.id, places], outputs=[out], device="cpu")
         return out.numpy().astype(float).reshape(points.shape[:-1])
 
+    def touched(self, points: np.ndarray, limit: np.ndarray) -> np.ndarray:
+        """Return whether any point of a group is within a distance of the wall [m], shape (n,), of points (n, m, 3)."""
+        import warp as wp
+
+        from arcgym.anatomy.validation.distance_kernels import any_nearer
+
+        places = wp.array(np.ascontiguousarray(points, np.float32), dtype=wp.vec3, ndim=2, device="cpu")
+        out = wp.zeros(len(points), dtype=bool, device="cpu")
+        limits = wp.array(limit, dtype=float, device="cpu")
+        wp.launch(any_nearer, len(points), inputs=[self._mesh.id, places, limits], outputs=[out], device="cpu")
+        return out.numpy()
+
 
 class _Heads:
     """Heads at all places, each between its neighbors."""
 
-    def __init__(self, clearance: Clearance, points: np.ndarray, arc: np.ndarray, half: float) -> None:
-        self.clearance, self.half = clearance, half
+    def __init__(
+        self, clearance: Clearance, points: np.ndarray, arc: np.ndarray, half: float, touched: Touched | None
+    ) -> None:
+        self.clearance, self.half, self.touched = clearance, half, touched
         first = arc[0] + half
         self.arc = np.arange(first, max(arc[-1] - half - _BLIND, first + _STATION), _STATION)
         at = lambda s: np.stack([np.interp(s, arc, points[:, k]) for k in range(3)], 1)  # noqa: E731
@@ -155,23 +192,39 @@ class _Heads:
 
     def worst(self, index: np.ndarray) -> np.ndarray:
         """Return the least distance to the wall [m] of heads at some places, and half-way to both neighbors."""
+        return self._least(self._poses(index))
+
+    def _poses(self, index: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return middles and axes of heads at some places, and half-way to both neighbors."""
         middle, axis = self.middle[index], self.axis[index]
         poses = [(middle, axis)]
         for step in (-1, 1):
             other = np.clip(index + step, 0, len(self.arc) - 1)
             poses.append((0.5 * (middle + self.middle[other]), _unit(axis + self.axis[other])))
-        return self._least(poses)
+        return poses
 
     def _least(self, poses: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-        beads = self.half * np.linspace(-1.0, 1.0, _BEADS)[:, None]
-        points = np.stack([middle[:, None] + beads * axis[:, None] for middle, axis in poses], 1)
-        return self.clearance(points).min((1, 2))
+        return self.clearance(self._beads(poses)).min((1, 2))
 
-    def search(self, rng: np.random.Generator, enough: float) -> None:
-        """Lay heads anew wherever there is less room than ``enough`` [m]: each alone first, then with its neighbors."""
+    def _beads(self, poses: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+        """Return points along the axes of heads in some poses [m], shape (n, poses, beads, 3)."""
+        beads = self.half * np.linspace(-1.0, 1.0, _BEADS)[:, None]
+        return np.stack([middle[:, None] + beads * axis[:, None] for middle, axis in poses], 1)
+
+    def _sure_to_lose(self, index: np.ndarray, room: np.ndarray) -> np.ndarray:
+        """Return which heads have no more than some room [m], as far as that can be told without the wall's side."""
+        if self.touched is None or not len(index):
+            return np.zeros(len(index), bool)
+        return self.touched(self._beads(self._poses(index)).reshape(len(index), -1, 3), room)
+
+    def search(self, rng: np.random.Generator, enough: float, until: float) -> None:
+        """Lay heads anew wherever there is less room than ``enough`` [m]: each alone first, then with its neighbors.
+
+        What a place has is never lost again, so that the search may end where all have ``until`` [m].
+        """
         for attempt in range(_ATTEMPTS):
             poor = self.room < enough
-            if not poor.any():
+            if self.room.min() >= until:
                 return
             stretch, count = label(binary_dilation(poor, iterations=_AROUND))
             before = self.middle.copy(), self.axis.copy(), self.room.copy()
@@ -222,9 +275,10 @@ class _Heads:
 
     def _improve(self, index: np.ndarray, rng: np.random.Generator, move: float, turn: float) -> None:
         """Try a random move of heads of which no two are neighbors, and keep what gives more room."""
-        before = self.middle[index], self.axis[index], self.worst(index)
+        before = self.middle[index], self.axis[index], self.room[index]
         self.middle[index], self.axis[index] = self._moved(index, rng, move, turn)
-        worse = self.worst(index) <= before[2]
+        worse = self._sure_to_lose(index, before[2])
+        worse[~worse] = self.worst(index[~worse]) <= before[2][~worse]
         self.middle[index[worse]], self.axis[index[worse]] = before[0][worse], before[1][worse]
         near = np.unique(np.clip(index[~worse, None] + [-1, 0, 1], 0, len(self.arc) - 1))
         self.room[near] = self.worst(near)
@@ -243,7 +297,15 @@ class _Heads:
         return self.middle[index] + shift, np.where(along, axis, self.axis[index])
 
 
-def find_passage(clearance: Clearance, points: np.ndarray, arc: np.ndarray, radius: float, length: float) -> Passage:
+def find_passage(
+    clearance: Clearance,
+    points: np.ndarray,
+    arc: np.ndarray,
+    radius: float,
+    length: float,
+    touched: Touched | None = None,
+    until: float = np.inf,
+) -> Passage:
     """Lay a head along a line and move it about until it has most room, seeded so that results repeat.
 
     Args:
@@ -252,9 +314,11 @@ def find_passage(clearance: Clearance, points: np.ndarray, arc: np.ndarray, radi
         arc: Its arc length [m], shape (n,).
         radius: Radius of the head [m].
         length: Its length with both round ends [m].
+        touched: A faster way to tell that a head has no more than some room; the result is the same to the bit.
+        until: Room everywhere at which the search ends [m]; else it ends where no place can have more.
     """
-    heads = _Heads(clearance, points, arc, 0.5 * length - radius)
-    heads.search(np.random.default_rng(0), radius + _ENOUGH)
+    heads = _Heads(clearance, points, arc, 0.5 * length - radius, touched)
+    heads.search(np.random.default_rng(0), radius + _ENOUGH, min(until, radius + _ENOUGH))
     return Passage(heads.arc, np.minimum(heads.room, radius + _ENOUGH), heads.middle, heads.axis)
 
 
