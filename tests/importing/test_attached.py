@@ -13,10 +13,10 @@ from label_volumes import RADIUS, course, write_volume
 from arcgym.anatomy.importing.anal_end import into_the_canal
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.clearance import coarse_clearance
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.path_search import FoundPath, find_path
 from arcgym.anatomy.importing.tree import lumen_tree
 from arcgym.anatomy.importing.volumes import read_volume
+from arcgym.anatomy.voxel_grid import Grid
 
 
 def found_in(path: Path, label: tuple[int, ...] | None = None) -> tuple[Grid, FoundPath]:

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from arcgym.anatomy.importing.canal import least_bend_radius, straighten_canal
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.headroom import room_for_head, widen_for_head
 from arcgym.anatomy.importing.polar import cast_rings
 from arcgym.anatomy.importing.smooth_centerline import plain_curve
-from arcgym.anatomy.importing.tubes import draw_tube
 from arcgym.anatomy.polyline import resample, smooth
+from arcgym.anatomy.tubes import draw_tube
 from arcgym.anatomy.validation.passage import HEAD_RADIUS
+from arcgym.anatomy.voxel_grid import Grid
 
 ZIGZAG = 1e-3 * np.array([(0, -30, 18), (0, 0, 18), (0, 0, 33), (0, 40, 45), (0, 55, 90), (0, 20, 170), (80, 20, 240)])
 """Way that leaves the anus level, turns up by a right angle, and forwards by nearly one after 15 mm [m]."""

@@ -9,8 +9,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.cecum_fit import lead_to_fitted_pole
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.polyline import resample
+from arcgym.anatomy.voxel_grid import Grid
 
 RADIUS, LENGTH, BEND = 0.030, 0.25, 4.0
 

@@ -13,11 +13,11 @@ from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing import ColonImportError
 from arcgym.anatomy.importing.doubts import check_doubts, path_doubts, refuse
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.loop_windows import close_windows
 from arcgym.anatomy.importing.path_search import find_path
-from arcgym.anatomy.importing.tubes import draw_tube
 from arcgym.anatomy.polyline import resample
+from arcgym.anatomy.tubes import draw_tube
+from arcgym.anatomy.voxel_grid import Grid
 
 RADIUS = 0.016
 SITES = 1e-3 * np.array(

@@ -13,9 +13,9 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy import ColonStage
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.surfaces import read_surface
 from arcgym.anatomy.polyline import resample, smooth
+from arcgym.anatomy.voxel_grid import Grid
 
 SPACING = np.array([0.75, 0.75, 1.0])
 """Voxels of the label volumes [mm]."""

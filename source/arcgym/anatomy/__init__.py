@@ -7,7 +7,8 @@ In reading order:
 - :mod:`segments` and :mod:`landmarks` name the parts; :mod:`stage` holds a colon as arrays, and reads and writes files;
 - :mod:`generator` makes colons from specifications, :mod:`importing` from CT; :mod:`validation` checks any;
 - both build on :mod:`curve`, a centerline with frames, on :mod:`meshing` and :mod:`mucosa`, and on
-  :mod:`polyline`, :mod:`blending` and :mod:`measures`;
+  :mod:`polyline`, :mod:`blending` and :mod:`measures`; :mod:`head_drawing` makes room for a scope's stiff head, with
+  :mod:`tubes` on a :mod:`voxel_grid`;
 - :mod:`bends` counts acute bends, :mod:`shell` gives the wall's mid-surface to the simulation.
 
 What reads stages alone imports no SciPy, which takes 0.7 s: the generator is imported when it is asked for.

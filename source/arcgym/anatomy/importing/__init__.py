@@ -6,7 +6,8 @@ In reading order:
 
 - :mod:`settings`, :mod:`formats`, :mod:`arguments`, :mod:`preflight`, :mod:`errors`: settings, files and their checks;
 - :mod:`output` makes the folder, :mod:`pipeline` runs the stages in between;
-- :mod:`volumes` and :mod:`surfaces` read a file onto a :mod:`grid`; :mod:`openings` finds where a surface is open;
+- :mod:`volumes` and :mod:`surfaces` read a file onto a :mod:`arcgym.anatomy.voxel_grid`; :mod:`openings` finds where a
+  surface is open;
 - :mod:`cleaning` keeps the colon's pieces, with :mod:`bridging` between them;
 - :mod:`path_search` finds the path through the lumen on voxels: :mod:`clearance` and :mod:`tree` of the lumen,
   :mod:`colon_path` in the tree with its :mod:`anal_end`, :mod:`cecal_end` and :mod:`attached_lumen`, which

@@ -12,8 +12,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.clearance import coarse_clearance
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.tree import LumenTree, caliber, lumen_tree
+from arcgym.anatomy.voxel_grid import Grid
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,10 @@ import numpy as np
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.headroom import other_loops
-from arcgym.anatomy.importing.tubes import WALL, box_near, draw_tube, padded_for
+from arcgym.anatomy.head_drawing import other_loops
 from arcgym.anatomy.polyline import resample, smooth
+from arcgym.anatomy.tubes import WALL, box_near, draw_tube, padded_for
+from arcgym.anatomy.voxel_grid import Grid
 
 
 @dataclass(frozen=True)

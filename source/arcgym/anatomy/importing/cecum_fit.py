@@ -18,8 +18,8 @@ from scipy.spatial import cKDTree
 
 from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.polar import cast_rings
+from arcgym.anatomy.voxel_grid import Grid
 
 
 @dataclass(frozen=True)

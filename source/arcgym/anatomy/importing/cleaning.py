@@ -12,8 +12,8 @@ from scipy import ndimage
 
 from arcgym.anatomy.importing.bridging import Bridge, Piece, join_pieces, make_piece
 from arcgym.anatomy.importing.errors import ColonImportError
-from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.tubes import draw_tube
+from arcgym.anatomy.tubes import draw_tube
+from arcgym.anatomy.voxel_grid import Grid
 
 _SMALLEST_PIECE = 5e-7
 """Volume below which a piece is a speck and dropped [m^3]."""

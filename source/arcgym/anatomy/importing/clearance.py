@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import maximum_filter
 
-from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.voxel_grid import Grid
 
 OUTSIDE = -1.0
 """Cost of voxels that no path may enter, as scikit-image wants it."""

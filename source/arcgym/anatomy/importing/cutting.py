@@ -12,8 +12,8 @@ from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.attached_lumen import AttachedLumen
 from arcgym.anatomy.importing.cleaning import in_millimeters
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.tree import caliber
+from arcgym.anatomy.voxel_grid import Grid
 
 _MARGIN = 0.006
 """How far beyond the piece's largest clearance voxels are looked at [m]."""

@@ -8,25 +8,18 @@ from typing import Any
 
 import numpy as np
 from scipy.ndimage import map_coordinates
-from scipy.spatial import cKDTree
 
+from arcgym.anatomy.head_drawing import draw_heads
 from arcgym.anatomy.importing.cleaning import in_millimeters
-from arcgym.anatomy.importing.grid import Grid
-from arcgym.anatomy.importing.tubes import WALL, box_near, draw_tube
 from arcgym.anatomy.polyline import arc_lengths
 from arcgym.anatomy.validation.passage import HEAD_LENGTH, HEAD_RADIUS, Passage, find_passage
+from arcgym.anatomy.voxel_grid import Grid
 
 _SPARED = 1.0, 0.0005, 0.0
 """What a head must be spared at least so as not to be drawn, in turn [m]: first all that was asked for, later less."""
 
 _ENTRANCE = 0.008
 """Length at the verge that a head's axis does not enter [m]: on voxels the lumen is closed there."""
-
-_GROUP = 8
-"""Heads that are drawn at once."""
-
-LOOP = 0.045
-"""How much farther along the lumen another loop is [m]."""
 
 
 def signed_clearance(grid: Grid) -> Grid:
@@ -79,7 +72,7 @@ def widen_for_head(grid: Grid, line: np.ndarray, radius: float) -> tuple[Grid, d
         poor = np.flatnonzero(found.room < min(radius, HEAD_RADIUS + spared))
         if not len(poor):
             break
-        _draw_heads(out, grid, line, found, poor, radius)
+        draw_heads(out, grid, line, found, poor, radius)
         found = room_for_head(out, line)
     added = float((out.values > 0.5).sum() - (grid.values > 0.5).sum()) * grid.spacing**3
     tightest = line[min(int(np.searchsorted(arc_lengths(line), found.tightest)), len(line) - 1)]
@@ -91,44 +84,3 @@ def widen_for_head(grid: Grid, line: np.ndarray, radius: float) -> tuple[Grid, d
         "place_mm": in_millimeters(tightest),
         "added_ml": round(1e6 * added, 1),
     }
-
-
-def _draw_heads(out: Grid, lumen: Grid, line: np.ndarray, found: Passage, places: np.ndarray, radius: float) -> None:
-    """Draw the heads at some places into a lumen, in place."""
-    half = 0.5 * HEAD_LENGTH - HEAD_RADIUS
-    beads = np.linspace(-half, half, round(2 * half / out.spacing) + 1)[:, None]
-    for part in _groups(places):
-        axis = _beads(found, part, beads)
-        keep_off = other_loops(lumen, line, axis, radius, found.arc[part])
-        draw_tube(out, axis, np.full(len(axis), radius), keep_off)
-
-
-def _groups(places: np.ndarray) -> list[np.ndarray]:
-    """Return stretches of consecutive places, none longer than a group."""
-    runs = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
-    return [run[k : k + _GROUP] for run in runs for k in range(0, len(run), _GROUP)]
-
-
-def _beads(found: Passage, part: np.ndarray, beads: np.ndarray) -> np.ndarray:
-    """Return points along the heads at some places and half-way to the next ones [m], shape (n, 3)."""
-    after = np.minimum(part + 1, len(found.arc) - 1)
-    axis = found.axis[part] + found.axis[after]
-    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-    middle = np.concatenate([found.middle[part], 0.5 * (found.middle[part] + found.middle[after])])
-    return (middle[:, None] + beads * np.concatenate([found.axis[part], axis])[:, None]).reshape(-1, 3)
-
-
-def other_loops(grid: Grid, line: np.ndarray, points: np.ndarray, radius: float, arc: np.ndarray) -> np.ndarray:
-    """Return the lumen near points that belongs to other loops than a stretch of the centerline [m], shape (m, 3).
-
-    Args:
-        grid: The lumen.
-        line: Its centerline [m], shape (n, 3).
-        points: Where to look [m], shape (k, 3).
-        radius: How far round them, apart from two walls [m].
-        arc: Arc lengths of the stretch [m].
-    """
-    box = box_near(grid, points, radius + WALL + grid.spacing)
-    lumen = grid.points(np.argwhere(grid.values[box] > 0.5) + [part.start for part in box])
-    at = arc_lengths(line)[cKDTree(line).query(lumen)[1]]
-    return lumen[(at < arc.min() - LOOP) | (at > arc.max() + LOOP)]

@@ -10,8 +10,8 @@ import numpy as np
 
 from arcgym.anatomy.importing.cleaning import in_millimeters
 from arcgym.anatomy.importing.errors import ColonImportError
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.meshing import voxel_surface
+from arcgym.anatomy.voxel_grid import Grid
 
 
 def close_windows(grid: Grid, line: np.ndarray) -> tuple[Grid, list[dict[str, Any]]]:

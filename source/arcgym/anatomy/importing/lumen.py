@@ -18,7 +18,6 @@ from arcgym.anatomy.importing.cecal_openings import CecalOpening, cecal_openings
 from arcgym.anatomy.importing.cleaning import keep_colon
 from arcgym.anatomy.importing.doubts import path_doubts, refuse
 from arcgym.anatomy.importing.formats import FRAMES, VOLUME_SUFFIXES
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.headroom import widen_for_head
 from arcgym.anatomy.importing.loop_windows import close_windows
 from arcgym.anatomy.importing.openings import Opening, find_openings
@@ -31,6 +30,7 @@ from arcgym.anatomy.importing.size_limits import check_filling
 from arcgym.anatomy.importing.smooth_centerline import center_path
 from arcgym.anatomy.importing.surfaces import fill_surface, load_surface
 from arcgym.anatomy.importing.volumes import read_volume
+from arcgym.anatomy.voxel_grid import Grid
 
 _LOGGER = logging.getLogger(__name__)
 

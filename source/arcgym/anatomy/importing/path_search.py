@@ -18,12 +18,12 @@ from arcgym.anatomy.importing.clearance import coarse_clearance
 from arcgym.anatomy.importing.colon_path import ColonPath, find_colon_path
 from arcgym.anatomy.importing.cutting import as_report, cut_off, fill_tube
 from arcgym.anatomy.importing.errors import ColonImportError
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.poles import lead_to_pole, trim_open_end
 from arcgym.anatomy.importing.short_cuts import without_short_cuts
 from arcgym.anatomy.importing.tree import LumenTree, caliber, lumen_tree
-from arcgym.anatomy.importing.tubes import box_near
 from arcgym.anatomy.polyline import resample
+from arcgym.anatomy.tubes import box_near
+from arcgym.anatomy.voxel_grid import Grid
 
 _SHORTEST = 0.4
 """Least length of a path through a colon [m]; adults have three times as much."""

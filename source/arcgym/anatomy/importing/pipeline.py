@@ -16,7 +16,6 @@ from arcgym.anatomy.importing.border_uncertainty import border_uncertainty
 from arcgym.anatomy.importing.cecal_openings import VALVE
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.formats import GRAVITY
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.lumen import Lumen, Progress, find_lumen
 from arcgym.anatomy.importing.placement import describe_transform, given_landmarks
 from arcgym.anatomy.importing.segment_borders import find_segment_ends
@@ -28,6 +27,7 @@ from arcgym.anatomy.meshing.quantize import quantize, quantize_contact
 from arcgym.anatomy.meshing.voxel_surface import voxel_surface
 from arcgym.anatomy.mucosa.texture import write_textures
 from arcgym.anatomy.stage.types import ColonStage, TissueMaterial
+from arcgym.anatomy.voxel_grid import Grid
 
 _CECUM = (0.03, 0.12)
 """Least and largest length of the caecum, from the valve's upper edge to the pole [m], at which a valve is believed."""

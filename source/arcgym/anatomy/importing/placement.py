@@ -11,9 +11,9 @@ import numpy as np
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.formats import FRAMES
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.orientation import Orientation
 from arcgym.anatomy.importing.settings import ImportSettings
+from arcgym.anatomy.voxel_grid import Grid
 
 _FARTHEST_LANDMARK = 0.06
 """Largest distance of a given landmark from the centerline [m]."""

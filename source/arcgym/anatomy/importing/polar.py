@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from arcgym.anatomy.curve import Curve
-from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.voxel_grid import Grid
 
 REACH = 0.060
 """Length of the rays [m]."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.polyline import resample
+from arcgym.anatomy.voxel_grid import Grid
 
 _BACK = 1.1
 """Distance from the ball's center at which the path is left for it, over the ball's radius."""

@@ -13,9 +13,9 @@ from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.attached_lumen import AttachedLumen
 from arcgym.anatomy.importing.colon_path import ColonPath
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.tree import LumenTree, caliber
 from arcgym.anatomy.polyline import arc_lengths
+from arcgym.anatomy.voxel_grid import Grid
 
 
 @dataclass(frozen=True)

@@ -14,11 +14,11 @@ from scipy.ndimage import gaussian_filter1d
 
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.importing.cecum_fit import lead_to_fitted_pole
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.openings import Opening, lead_to_opening
 from arcgym.anatomy.importing.polar import cast_rings
 from arcgym.anatomy.polyline import resample, smooth
 from arcgym.anatomy.segments import SEGMENTS
+from arcgym.anatomy.voxel_grid import Grid
 
 SPACING = 0.003
 """Distance of the points that are smoothed and moved [m]."""

@@ -11,8 +11,8 @@ import numpy as np
 
 from arcgym.anatomy.importing.errors import ColonImportError
 from arcgym.anatomy.importing.formats import UNITS
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.size_limits import check_voxels
+from arcgym.anatomy.voxel_grid import Grid
 
 _COLON_EXTENT = (0.20, 0.70)
 """Least and largest extent of a colon [m], by which the unit is chosen."""

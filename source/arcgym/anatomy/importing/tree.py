@@ -14,7 +14,7 @@ from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.importing.clearance import passing_cost, widest_near
-from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.voxel_grid import Grid
 
 _RIDGE = 0.45
 """Least clearance of a branch's tip as a share of the largest nearby: tips lie in the middle of the lumen."""

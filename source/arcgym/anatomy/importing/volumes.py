@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.importing.errors import ColonImportError
-from arcgym.anatomy.importing.grid import Grid
 from arcgym.anatomy.importing.headers import check_header
 from arcgym.anatomy.importing.size_limits import check_file_voxels, check_filling, check_voxels
+from arcgym.anatomy.voxel_grid import Grid
 
 _PLAUSIBLE_SPACING = (0.2, 6.0)
 """Least and largest voxel spacing of a CT [mm]."""

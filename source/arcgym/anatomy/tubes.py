@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from arcgym.anatomy.importing.grid import Grid
+from arcgym.anatomy.voxel_grid import Grid
 
 _MARGIN = 0.006
 """Room that is left round the lumen [m]."""
@@ -33,7 +33,12 @@ def box_near(grid: Grid, points: np.ndarray, reach: float) -> tuple[slice, ...]:
 
 
 def draw_tube(
-    grid: Grid, line: np.ndarray, radius: np.ndarray, keep_off: np.ndarray | None = None, flat_start: bool = False
+    grid: Grid,
+    line: np.ndarray,
+    radius: np.ndarray,
+    keep_off: np.ndarray | None = None,
+    flat_start: bool = False,
+    wall: float = WALL,
 ) -> None:
     """Add a tube to a lumen, in place; its surface lies between voxels.
 
@@ -43,6 +48,7 @@ def draw_tube(
         radius: Its radius there [m], shape (n,).
         keep_off: Lumen of other loops that a wall is left to [m], shape (m, 3).
         flat_start: Whether it ends square at its first point, not in a ball.
+        wall: What is left between it and them [m].
     """
     reach = float(radius.max()) + 2 * grid.spacing
     box = box_near(grid, line, reach)
@@ -57,5 +63,5 @@ def draw_tube(
     value = np.clip(0.5 + depth / grid.spacing, 0.0, 1.0)
     if keep_off is not None and len(keep_off):
         drawn = np.flatnonzero(value > 0.0)
-        value[drawn[cKDTree(keep_off).query(points[drawn])[0] < WALL]] = 0.0
+        value[drawn[cKDTree(keep_off).query(points[drawn])[0] < wall]] = 0.0
     grid.values[box] = np.maximum(grid.values[box], value.reshape(shape))
