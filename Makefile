@@ -28,7 +28,7 @@ demo: setup
 	@$(RUN) scripts/demo.py
 
 test: lint
-	$(RUN) -m pytest -q -m "not slow"
+	$(RUN) -m pytest -q -n 2 --dist loadfile -m "not slow"
 
 test-all: lint
 	$(RUN) -m pytest -q
