@@ -57,8 +57,13 @@ def test_broken_stage(tmp_path: Path, change: Callable[[Usd.Stage], None], messa
 
 
 def test_missing_file_lists_existing_stages(tiny_colon_path: Path) -> None:
-    with pytest.raises(StageError, match=f"no such file. Existing stages: .*{tiny_colon_path.name}"):
+    with pytest.raises(StageError, match=f"no such file. Existing stages in .*: .*{tiny_colon_path.name}"):
         read_colon(tiny_colon_path.parent / "colon_9" / "colon.usda")
+
+
+def test_missing_file_far_from_any_stage_lists_those_that_ship(tmp_path: Path) -> None:
+    with pytest.raises(StageError, match="no such file. Stages that come with ARCGym: colon_1, .*, ct_2"):
+        read_colon(tmp_path / "a" / "b" / "colon.usda")
 
 
 def test_not_a_usd_file(tmp_path: Path) -> None:

@@ -75,6 +75,11 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*TRAIN, "--distributed"], "--distributed needs torchrun"),
         ([*TRAIN, "--resume", "--load_run", "["], "load_run '[' is no regular expression"),
         ([*PLAY, "--checkpoint", "model_7.pt"], "No checkpoint 'model_7.pt'"),
+        (
+            [*TRAIN, "--agent", "pppo"],
+            "'pppo', which ARC-Splenic-Proximal does not have. Did you mean 'ppo'",
+        ),
+        ([*PLAY, "--checkpoint", "runs/model_7.pt"], "--checkpoint is 'runs/model_7.pt': there is no such file."),
         ([*PLAY, "--policy", "rando"], "invalid choice: 'rando'"),
         (["snapshots", *TASK, "--device", "tpu"], "--device is 'tpu', expected cpu, cuda or cuda:<n>"),
         ([*ZERO, "--steps", "0"], "--steps: 0 is too small, expected 1 or more"),

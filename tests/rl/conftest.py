@@ -26,7 +26,8 @@ class CountingEnv(gym.Env):
 
     def __init__(self, num_envs: int = 2, episode_length: int = 4, is_finite_horizon: bool = False):
         self.num_envs, self.device, self.max_episode_length = num_envs, "cpu", episode_length
-        self.cfg = SimpleNamespace(is_finite_horizon=is_finite_horizon)
+        viewer = SimpleNamespace(env_id=0)
+        self.cfg = SimpleNamespace(is_finite_horizon=is_finite_horizon, autoreset=True, viewer=viewer)
         self.action_manager = SimpleNamespace(total_action_dim=2)
         self.episode_length_buf = torch.zeros(num_envs, dtype=torch.long)
         self.common_step_counter = 0

@@ -7,6 +7,7 @@ import errno
 import os
 
 import numpy as np
+import pytest
 import torch
 
 from arcgym.rl import PeriodicVideo
@@ -50,3 +51,22 @@ def test_clips_start_at_the_interval(counting_env, tmp_path):
         "rl-video-step-5.mp4": [6, 7],
     }
     assert all(video.closed for video in videos.values())
+
+
+@pytest.mark.parametrize(
+    ("episode", "length", "frames"),
+    [
+        (3, 5, [1, 2, 3, 4, 5]),  # step 3 shows the next episode's start, and that episode goes on
+        (3, 3, [1, 2]),  # here it would be the clip's last frame
+        (1, 3, [1]),  # every frame is a start: the first stays
+    ],
+)
+def test_no_clip_ends_with_the_start_of_the_next_episode(counting_env, tmp_path, episode, length, frames):
+    video = FrameList()
+    counting_env.max_episode_length = episode
+    counting_env.render = lambda: np.full((2, 2, 3), counting_env.common_step_counter, dtype=np.uint8)
+    env = PeriodicVideo(counting_env, tmp_path, lambda path: video, length=length, interval=10)
+    for _ in range(length):
+        env.step(torch.zeros(2, 2))
+    assert video.frames == frames
+    assert video.closed

@@ -42,6 +42,26 @@ def test_missing_checkpoint_lists_what_is_there(runs):
         find_checkpoint("splenic", checkpoint="best", root=runs)
 
 
+def test_missing_best_says_when_there_is_one(runs):
+    with pytest.raises(UsageError, match="A run has a best one once an episode has ended in it"):
+        find_checkpoint("splenic", checkpoint="best", root=runs)
+
+
+def test_names_as_the_message_lists_them_are_taken(runs):
+    found = find_checkpoint("splenic", checkpoint="2026-01-02_00-00-00_b/model_2.pt", root=runs)
+    assert found == runs / "splenic" / "2026-01-02_00-00-00_b" / "model_2.pt"
+
+
+def test_path_that_is_no_file_says_what_its_folder_has(runs):
+    run = runs / "splenic" / "2026-01-01_00-00-00"
+    with pytest.raises(UsageError, match=r"model_6.pt': there is no such file; .*00-00-00 has model_5.pt\."):
+        find_checkpoint("splenic", checkpoint=str(run / "model_6.pt"), root=runs)
+    with pytest.raises(UsageError, match=r"that is a folder, expected a file; .* has model_5.pt\."):
+        find_checkpoint("splenic", checkpoint=str(run), root=runs)
+    with pytest.raises(UsageError, match=r"nowhere/model_6.pt': there is no such file\."):
+        find_checkpoint("splenic", checkpoint="nowhere/model_6.pt", root=runs)
+
+
 def test_unknown_experiment_lists_the_known(runs):
     with pytest.raises(UsageError, match="splenc.*Available: none.*splenic"):
         find_checkpoint("splenc", root=runs)

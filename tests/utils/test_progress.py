@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from arcgym.utils import progress
 from arcgym.utils.progress import counted, report, shown
 
 
@@ -23,3 +24,13 @@ def test_every_tenth_is_a_line(capsys):
             show(done)
     lines = capsys.readouterr().out.splitlines()
     assert lines == [f"playing: {done} of 40" for done in range(4, 41, 4)]
+
+
+def test_ten_seconds_without_a_tenth_are_a_line(capsys, monkeypatch):
+    now = [0.0]
+    monkeypatch.setattr(progress.time, "perf_counter", lambda: now[0])
+    with counted("playing", 1000) as show:
+        for done in range(1, 8):  # 4 s a step: the lines come after 12 and 24 s
+            now[0] = 4.0 * done
+            show(done)
+    assert capsys.readouterr().out.splitlines() == ["playing: 3 of 1000", "playing: 6 of 1000"]

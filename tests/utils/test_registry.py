@@ -39,7 +39,9 @@ def test_duplicate_name_raises(demo: str) -> None:
 
 
 def test_unknown_task_and_key_say_what_there_is(demo: str) -> None:
-    with pytest.raises(ValueError, match="Unknown task 'Demo-Tusk'. Did you mean 'Demo-Task'"):
+    known = len(registry.list_tasks(prefix=""))
+    message = rf"Unknown task 'Demo-Tusk'. Did you mean 'Demo-Task'.*\? 'arcgym list' shows all {known}\."
+    with pytest.raises(ValueError, match=message):
         registry.load_cfg_from_registry("Demo-Tusk", "env_cfg_entry_point")
     with pytest.raises(ValueError, match="has no 'rsl_cfg'.*Available: env_cfg_entry_point"):
         registry.load_cfg_from_registry(demo, "rsl_cfg")

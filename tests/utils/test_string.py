@@ -7,7 +7,7 @@ import math
 
 import pytest
 
-from arcgym.utils.string import callable_name, did_you_mean, resolve_callable, resolve_matching_names
+from arcgym.utils.string import callable_name, did_you_mean, nearest, resolve_callable, resolve_matching_names
 
 
 def test_names_come_in_their_own_order_unless_asked() -> None:
@@ -43,3 +43,5 @@ def test_wrong_text_is_explained(text: str, message: str) -> None:
 def test_hint_names_the_closest_first() -> None:
     assert did_you_mean("wieght", ["weight", "params"]) == "Did you mean 'weight'? Available: params, weight."
     assert did_you_mean("x", []) == "Nothing is available here."
+    assert nearest("wieght", ["weight", "params"]) == "Did you mean 'weight'? "
+    assert nearest("x", ["weight", "params"]) == ""

@@ -5,12 +5,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from arcgym.cli.arguments import DEFAULT_AGENT, RunArguments, TaskArguments
 from arcgym.utils.errors import UsageError
+from arcgym.utils.string import did_you_mean
 
 AGENT_FIELDS = (
     "seed",
@@ -44,6 +46,15 @@ def agent_key(name: str) -> str:
     if name.endswith("cfg_entry_point"):
         return name
     return DEFAULT_AGENT if name == "ppo" else f"rsl_rl_{name}_cfg_entry_point"
+
+
+def agent_names(task: str) -> list[str]:
+    """Return the agents of a task as ``--agent`` takes them: ``sac`` for ``rsl_rl_sac_cfg_entry_point``."""
+    from arcgym.utils.registry import cfg_keys
+
+    keys = [key for key in cfg_keys(task) if key not in (DEFAULT_AGENT, "env_cfg_entry_point")]
+    names = [re.sub(r"^rsl_rl_(.+)_cfg_entry_point$", r"\1", key) for key in keys]
+    return sorted([*names, "ppo"] if DEFAULT_AGENT in cfg_keys(task) else names)
 
 
 def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
@@ -107,8 +118,11 @@ def _with_trained_agent(args: RunArguments) -> RunArguments:
 
 def _registered(task: str, agent: str) -> tuple[Any, Any]:
     """Return the environment's and the agent's configuration as they are registered."""
-    from arcgym.utils.registry import load_cfg_from_registry
+    from arcgym.utils.registry import cfg_keys, load_cfg_from_registry
 
+    known = cfg_keys(task)
+    if known and agent_key(agent) not in known:
+        raise UsageError(f"--agent is '{agent}', which {task} does not have. {did_you_mean(agent, agent_names(task))}")
     try:
         env_cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
         return env_cfg, load_cfg_from_registry(task, agent_key(agent))

@@ -94,7 +94,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.metadata = {**type(self).metadata, "render_fps": round(1.0 / self.step_dt)}
         self.random = WorldRandom(self.num_envs, self.device, torch.initial_seed() if cfg.seed is None else cfg.seed)
         """Random numbers of events, noise and delays: a stream for every world."""
-        report("compiling kernels (first run only)")
+        report("loading kernels (new ones are compiled first)")
         self._refresh_all()
         self._init_buffers()
         report("starting managers")

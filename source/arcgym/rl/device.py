@@ -30,8 +30,8 @@ def choose_device(device: str | None) -> str:
         return device
     number = int(match[1] or 0)
     if number >= count:
-        found = ", ".join(["cpu", *(f"cuda:{index}" for index in range(count))])
-        raise UsageError(f"--device is '{device}', which torch does not find on this machine; expected one of {found}.")
+        found = " or ".join(["cpu", *(f"cuda:{index}" for index in range(count))])
+        raise UsageError(f"--device is '{device}', which torch does not find on this machine; expected {found}.")
     return f"cuda:{number}"
 
 

@@ -39,7 +39,8 @@ def make_env(task: str, env_cfg: Any, agent_cfg: Any, video: VideoOptions | None
         agent_cfg: Configuration of the agent, for its bound on actions.
         video: Videos to record, or None.
     """
-    with shown(f"{env_cfg.scene.num_envs} worlds on {env_cfg.sim.device}"):
+    count = env_cfg.scene.num_envs
+    with shown(f"{count} world{'s' * (count != 1)} on {env_cfg.sim.device}"):
         env: gym.Env = gym.make(task, cfg=env_cfg, render_mode="rgb_array" if video else None)
         if video:
             env = _recorded(env, video)

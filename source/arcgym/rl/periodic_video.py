@@ -55,14 +55,20 @@ class PeriodicVideo(gym.Wrapper):
         self._video: FrameSink | None = None
         self._step = 0
         self._end = 0
+        self._held: list[np.ndarray] = []
 
     def step(self, action: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
-        """Step the environment and record the frame after it."""
+        """Step the environment and record the frame after it.
+
+        The first frame of a new episode is recorded with the next one: no clip ends with a jump back to the start.
+        """
         result = self.env.step(action)
         if self._video is None and self._step % self.interval == 0:
             self._start()
         if self._video is not None:
-            self._record(np.asarray(self.env.render()))
+            self._held.append(np.asarray(self.env.render()))
+            if self._step == self._end - self.length or not self._begins_anew(result):
+                self._record()
         self._step += 1
         if self._step >= self._end:
             self._finish()
@@ -73,10 +79,16 @@ class PeriodicVideo(gym.Wrapper):
         self._finish()
         super().close()
 
-    def _record(self, frame: np.ndarray) -> None:
-        """Append a frame; after an error of the disk the clip ends, and the run goes on."""
+    def _begins_anew(self, result: tuple[Any, ...]) -> bool:
+        """Return whether the world that is filmed ended its episode in this step, and was reset."""
+        cfg = self.env.unwrapped.cfg  # type: ignore[attr-defined]
+        return bool(cfg.autoreset and (result[2][cfg.viewer.env_id] or result[3][cfg.viewer.env_id]))
+
+    def _record(self) -> None:
+        """Append the frames that wait; after an error of the disk the clip ends, and the run goes on."""
         try:
-            self._video.write(frame)  # type: ignore[union-attr]
+            while self._held:
+                self._video.write(self._held.pop(0))  # type: ignore[union-attr]
         except OSError as error:
             print(f"video {self.paths[-1]} ends at step {self._step}: {error.strerror or error}", flush=True)
             with contextlib.suppress(OSError):
@@ -90,6 +102,7 @@ class PeriodicVideo(gym.Wrapper):
         self.paths.append(path)
 
     def _finish(self) -> None:
+        self._held.clear()
         if self._video is not None:
             self._video.close()
             self._video = None

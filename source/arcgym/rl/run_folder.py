@@ -98,7 +98,8 @@ def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "la
     Args:
         experiment: Experiment whose runs are searched.
         load_run: Name of a run or a regular expression; among matches the newest run that has the checkpoint wins.
-        checkpoint: ``latest``, ``best``, a file name such as ``model_100.pt``, or a path to a file.
+        checkpoint: ``latest``, ``best``, a file name such as ``model_100.pt``, or the path of a file, from here or from
+            the folder of the experiment.
         root: Folder of all experiments.
 
     Raises:
@@ -106,6 +107,10 @@ def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "la
     """
     if Path(checkpoint).is_file():
         return Path(checkpoint).resolve()
+    if (root / experiment / checkpoint).is_file():
+        return (root / experiment / checkpoint).resolve()
+    if Path(checkpoint).name != checkpoint:
+        raise UsageError(f"--checkpoint is '{checkpoint}': {_missing(Path(checkpoint))}.")
     try:
         pattern = re.compile(load_run)
     except re.error as error:
@@ -119,9 +124,10 @@ def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "la
     available = [str(path.relative_to(root / experiment)) for run in runs for path in _checkpoints(run)]
     experiments = sorted(path.name for path in root.glob("*") if path.is_dir())
     elsewhere = "" if runs else f" Experiments in {root.resolve()}: {', '.join(experiments) or 'none'}."
+    best = " A run has a best one once an episode has ended in it." if checkpoint == "best" and runs else ""
     raise UsageError(
         f"No checkpoint '{checkpoint}' of a run matching '{load_run}' in {(root / experiment).resolve()}. "
-        f"Available: {', '.join(available) or 'none'}.{elsewhere}"
+        f"Available: {', '.join(available) or 'none'}.{elsewhere}{best}"
     )
 
 
@@ -146,6 +152,16 @@ def newest_checkpoint(run: Path) -> Path:
     if not found:
         raise UsageError(f"{run} has no checkpoint model_<number>.pt.")
     return found[-1]
+
+
+def _missing(path: Path) -> str:
+    """Return why a path is no file, and what its folder has instead."""
+    if path.is_dir():
+        folder, why = path, "that is a folder, expected a file"
+    else:
+        folder, why = path.parent, "there is no such file"
+    found = sorted(each.name for each in folder.glob("*.pt"))
+    return f"{why}; {folder} has {', '.join(found)}" if found else why
 
 
 def _select(run: Path, checkpoint: str) -> Path | None:

@@ -42,7 +42,7 @@ class InteractiveScene:
         self.colon: Colon = construct(cfg.colon)
         self.endoscope: Endoscope = construct(cfg.endoscope)
         self.sensors: dict[str, SensorBase] = _build_sensors(cfg)
-        report(f"building {cfg.num_envs} worlds")
+        report(f"building {cfg.num_envs} world{'s' * (cfg.num_envs != 1)}")
         self.sim = Simulation(sim_cfg, self.colon, self.endoscope, cfg.num_envs)
         self.env_origins = torch.zeros(cfg.num_envs, 3, device=self.device)
         for sensor in self.sensors.values():

@@ -15,6 +15,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+LINE_PERIOD_S = 10.0
+"""Longest time between two lines of counted steps where there is no terminal, but for a step that takes longer [s]."""
+
 _listeners: list[Callable[[str], None]] = []
 _moving_lines: list[Any] = []
 
@@ -73,7 +76,7 @@ def paused() -> Iterator[None]:
 
 @contextmanager
 def counted(title: str, total: int) -> Iterator[Callable[[int], None]]:
-    """Show how many of ``total`` steps are done: a bar on a terminal, elsewhere a line every tenth.
+    """Show how many of ``total`` steps are done: a bar on a terminal, elsewhere a line every tenth or ten seconds.
 
     Yields:
         Function to call with the number of steps done.
@@ -89,13 +92,13 @@ def counted(title: str, total: int) -> Iterator[Callable[[int], None]]:
 
 
 def _printer(title: str, total: int) -> Callable[[int], None]:
-    """Return a function that prints a line whenever another tenth of the steps is done."""
-    tenths = 0
+    """Return a function that prints a line when another tenth of the steps is done, or the last line is old."""
+    tenths, printed = 0, time.perf_counter()
 
     def show(done: int) -> None:
-        nonlocal tenths
-        if 10 * done // total > tenths:
-            tenths = 10 * done // total
+        nonlocal tenths, printed
+        if 10 * done // total > tenths or time.perf_counter() - printed > LINE_PERIOD_S:
+            tenths, printed = 10 * done // total, time.perf_counter()
             print(f"{title}: {done} of {total}", flush=True)
 
     return show

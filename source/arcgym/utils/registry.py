@@ -19,7 +19,7 @@ from typing import Any
 
 import gymnasium
 
-from arcgym.utils.string import did_you_mean, resolve_callable
+from arcgym.utils.string import did_you_mean, nearest, resolve_callable
 
 ENTRY_POINT_GROUP = "arcgym.tasks"
 """Entry-point group that is searched for task packages."""
@@ -105,11 +105,19 @@ def load_cfg_from_registry(task: str, key: str) -> Any:
     """
     load_task_packages()
     if task not in gymnasium.registry:
-        raise ValueError(f"Unknown task '{task}'. {did_you_mean(task, list_tasks(prefix=''))}")
+        known = list_tasks(prefix="")
+        raise ValueError(f"Unknown task '{task}'. {nearest(task, known)}'arcgym list' shows all {len(known)}.")
     kwargs = gymnasium.registry[task].kwargs
     if key not in kwargs:
         raise ValueError(f"Task '{task}' has no '{key}'. {did_you_mean(key, kwargs)}")
     return load_cfg(kwargs[key])
+
+
+def cfg_keys(task: str) -> list[str]:
+    """Return the keys of a task's configurations, sorted; none where the task is unknown."""
+    load_task_packages()
+    spec = gymnasium.registry.get(task)
+    return sorted(key for key in spec.kwargs if key.endswith(CFG_SUFFIX)) if spec else []
 
 
 def load_cfg(entry_point: Any) -> Any:

@@ -16,9 +16,13 @@ def did_you_mean(name: str, choices: Iterable[str]) -> str:
     choices = sorted(choices)
     if not choices:
         return "Nothing is available here."
-    close = difflib.get_close_matches(name, choices, n=3, cutoff=0.6)
-    hint = f"Did you mean {' or '.join(repr(match) for match in close)}? " if close else ""
-    return f"{hint}Available: {', '.join(choices)}."
+    return f"{nearest(name, choices)}Available: {', '.join(choices)}."
+
+
+def nearest(name: str, choices: Iterable[str]) -> str:
+    """Return ``Did you mean 'this' or 'that'? `` with the closest of ``choices``, or nothing where none is close."""
+    close = difflib.get_close_matches(name, sorted(choices), n=3, cutoff=0.6)
+    return f"Did you mean {' or '.join(repr(match) for match in close)}? " if close else ""
 
 
 def callable_name(value: Any) -> str:

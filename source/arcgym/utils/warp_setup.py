@@ -13,10 +13,14 @@ Kernels on the CPU may fuse products with sums, as they do on the GPU: physics i
 
 import warp as wp
 
+from arcgym.utils.missing_driver import WARNING, driver_is_missing, without_line
+
 wp.config.enable_backward = False
 wp.config.default_grid_stride = False
 wp.config.cpu_compiler_flags = f"{wp.config.cpu_compiler_flags or '-march=native'} -ffp-contract=fast"
 wp.config.log_level = wp.LOG_WARNING
+if driver_is_missing():
+    without_line(WARNING, wp.init)
 
 GPU_BLOCK = 128
 """Threads of a block of the kernels of wall and contact on a GPU. They need so many registers that fewer threads of

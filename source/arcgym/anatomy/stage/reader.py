@@ -21,6 +21,7 @@ from arcgym.anatomy.stage.types import (
     VisualMesh,
     WallMesh,
 )
+from arcgym.utils.paths import assets_dir
 
 _REMAKE = "Remake the stage with scripts/tools/author_assets.py or write it with arcgym.anatomy.write_colon"
 """Advice where a stage is broken."""
@@ -125,12 +126,13 @@ class _Reader:
 
 
 def _list_stages(path: Path) -> str:
-    """List the stages closest above the missing file."""
-    for folder in list(path.parents)[:4]:
-        stages = sorted(folder.glob("**/colon.usda"))[:10] if folder.is_dir() and folder.parent != folder else []
+    """List the stages closest above the missing file, else those that come with ARCGym."""
+    for folder in list(path.parents)[:2]:
+        stages = sorted([*folder.glob("colon.usda"), *folder.glob("*/colon.usda")])[:10]
         if stages:
-            return "Existing stages: " + ", ".join(str(stage) for stage in stages)
-    return "Make the stages with scripts/tools/author_assets.py"
+            return f"Existing stages in {folder}: {', '.join(str(stage.relative_to(folder)) for stage in stages)}"
+    shipped = sorted(stage.parent.name for stage in assets_dir().glob("*/colon.usda"))
+    return f"Stages that come with ARCGym: {', '.join(shipped)}"
 
 
 def _read_wall(reader: _Reader) -> WallMesh:
