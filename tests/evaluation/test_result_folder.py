@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.sharing import gather
 from arcgym.evaluation.summary import summarize, to_markdown
 from arcgym.utils.errors import UsageError
 
@@ -43,6 +44,27 @@ def test_other_code_does_not_go_on(tmp_path: Path) -> None:
     ResultFolder(tmp_path, {**RUN, "versions": {**versions, "python": "3.12"}})
     with pytest.raises(UsageError, match="was begun with arcgym commit abc, and now it is def"):
         ResultFolder(tmp_path, {**RUN, "versions": {**versions, "arcgym commit": "def"}})
+
+
+def test_another_device_does_not_go_on(tmp_path: Path) -> None:
+    ResultFolder(tmp_path, {**RUN, "machine": "x86_64, NVIDIA H200"})
+    ResultFolder(tmp_path, {**RUN, "machine": "x86_64, NVIDIA H200"})
+    with pytest.raises(UsageError, match="was begun on x86_64, NVIDIA H200, and now it is x86_64, no GPU"):
+        ResultFolder(tmp_path, {**RUN, "machine": "x86_64, no GPU"})
+
+
+def test_rows_of_processes_that_were_cut_off_are_gathered(tmp_path: Path) -> None:
+    """Two of three shares had begun, one of them after an earlier call that had shared by two."""
+    gather(tmp_path)
+    assert not (tmp_path / "run.json").exists()
+    for name, trial in (("1_of_2", 0), ("1_of_3", 0), ("2_of_3", 1)):
+        ResultFolder(tmp_path / "parts" / name, RUN).add(row(trial, 1))
+    (tmp_path / "parts" / "3_of_3").mkdir()
+    gather(tmp_path)
+    assert read_trial_rows(tmp_path) == [row(0, 1), row(1, 1)]
+    ResultFolder(tmp_path / "parts" / "3_of_3", {**RUN, "suite": "cecum"})
+    with pytest.raises(UsageError, match="suite is 'paper' there and 'cecum' now"):
+        gather(tmp_path)
 
 
 def test_rows_with_other_columns_are_refused(tmp_path: Path) -> None:

@@ -65,6 +65,8 @@ def test_parts_of_two_machines_make_a_whole(tmp_path: Path) -> None:
     parts = [result(tmp_path / "a", trials=slice(0, 16)), result(tmp_path / "b", trials=slice(15, 30))]
     assert main(["results", "merge", str(tmp_path / "all"), *map(str, parts)]) == 0
     assert main(["results", "check", str(tmp_path / "all")]) == 0
+    parquet = pytest.importorskip("pyarrow.parquet").read_table(tmp_path / "all" / "trials.parquet")
+    assert sorted(set(parquet["trial"].to_pylist())) == list(range(30))
 
 
 def test_two_results_of_one_trial_are_refused(tmp_path: Path) -> None:

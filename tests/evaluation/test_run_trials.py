@@ -112,6 +112,35 @@ def test_an_evaluation_that_was_cut_off_goes_on(tmp_path: Path, conditions: Path
     assert evaluate(tmp_path / "run", conditions) == whole
 
 
+def test_what_processes_had_run_is_not_run_again(tmp_path: Path, conditions: Path, capsys) -> None:
+    """The first of two processes had ended two trials of its three when both were stopped; one process goes on."""
+    whole = evaluate(tmp_path / "run", conditions)
+    part = tmp_path / "cut" / "parts" / "1_of_2"
+    evaluate(part, conditions, "--share", "1/2")
+    file = part / "trials.csv"
+    file.write_bytes(b"".join(file.read_bytes().splitlines(keepends=True)[:3]))
+    capsys.readouterr()
+    assert evaluate(tmp_path / "cut", conditions) == whole
+    assert "ARC-Rectum-Capsule: 3 of 5 trials to run" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("device", "name"), [("cpu", "no GPU"), ("cuda:1", "GPU cuda:1"), (None, "GPU cuda:0")])
+def test_the_machine_is_that_which_ran_the_trials(monkeypatch, device: str | None, name: str) -> None:
+    """On a machine with two GPUs."""
+    import torch
+
+    from arcgym.evaluation.evaluate import EvaluationOptions, run_record
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: True)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
+    monkeypatch.setattr(torch.cuda, "get_device_name", lambda device=None: f"GPU {device}")
+    conditions = read_conditions(read_suites()["paper"].conditions_path)
+    run = run_record(["ARC-Rectum-Magnetic"], conditions, EvaluationOptions(("zero",), "paper", device=device))
+    assert run["machine"].endswith(f", {name}")
+
+
 def test_the_shipped_conditions_are_whole() -> None:
     from arcgym.evaluation.suites import read_suites
     from arcgym.evaluation.trials import read_conditions

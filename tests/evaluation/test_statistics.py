@@ -43,6 +43,15 @@ def test_bootstrap_interval_of_a_mean_is_that_of_theory() -> None:
     assert (interval.value, interval.low, interval.high) == pytest.approx((0.0, -0.098, 0.098), abs=0.008)
 
 
+def test_the_order_of_the_trials_does_not_matter() -> None:
+    """They stand in the order in which they ended, which the number of worlds decides."""
+    rng = np.random.default_rng(2)
+    values, runs = rng.normal(size=30), np.repeat([0, 1, 2], 10)
+    order = rng.permutation(30)
+    assert bootstrap(values[order], runs[order]) == bootstrap(values, runs)
+    assert paired_difference(values[order], -values[order], runs[order]) == paired_difference(values, -values, runs)
+
+
 def test_training_runs_are_drawn_anew() -> None:
     """Two runs, one always 0 and one always 1: of four draws one has the first twice, one the second twice."""
     values = np.repeat([0.0, 1.0], 10)

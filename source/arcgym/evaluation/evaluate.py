@@ -142,7 +142,7 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
         "conditions_sha256": conditions.sha256,
         "overrides": list(options.overrides),
         "versions": versions(),
-        "machine": f"{platform.processor() or platform.machine()}, {_accelerator()}",
+        "machine": f"{platform.processor() or platform.machine()}, {_accelerator(options.device)}",
     }
 
 
@@ -289,5 +289,7 @@ def _hold_patients(env_cfg: Any, patients: list[str]) -> None:
         env_cfg.events.patient = EventTermCfg(func=give_patient_of_trial, mode="reset")
 
 
-def _accelerator() -> str:
-    return torch.cuda.get_device_name() if torch.cuda.is_available() else "no GPU"
+def _accelerator(device: str | None) -> str:
+    """Return the GPU that runs the trials: none where they run on the CPU of a machine that has one."""
+    chosen = choose_device(device)
+    return torch.cuda.get_device_name(chosen) if chosen.startswith("cuda") else "no GPU"

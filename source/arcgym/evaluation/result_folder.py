@@ -40,10 +40,10 @@ class ResultFolder:
 
         Args:
             path: The folder.
-            run: What is run; the entries in :data:`IDENTITY` and the versions must be those of the folder.
+            run: What is run; the entries in :data:`IDENTITY`, the versions and the machine must be those of the folder.
 
         Raises:
-            UsageError: The folder holds another evaluation, or one by other code.
+            UsageError: The folder holds another evaluation, or one by other code or on another kind of device.
         """
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
@@ -146,6 +146,12 @@ def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
                 f"{file} was begun with {name} {before}, and now it is {now}: rows of other code do not belong "
                 "together. Go back to it, or give another --out."
             )
+    machines = [run.get("machine") for run in (old, new)]
+    if all(machines) and machines[0] != machines[1]:
+        raise UsageError(
+            f"{file} was begun on {machines[0]}, and now it is {machines[1]}: rows of different devices differ in the "
+            "last digits and do not belong together. Go on there, or give another --out."
+        )
 
 
 def _cut_torn_line(file: Path) -> None:

@@ -20,6 +20,9 @@ from arcgym.evaluation.trials import Trial
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
 
+PARTS = "parts"
+"""Folder of the shares, in that of all rows."""
+
 LOOK_EVERY = 0.5
 """Time between two looks at how many trials have ended [s]."""
 
@@ -51,13 +54,24 @@ def share(text: str) -> Share:
     return Share(int(match[1]), int(match[2]))
 
 
+def gather(out: Path) -> None:
+    """Put the rows of shares that were cut off, if there are any, into the folder of all rows.
+
+    Raises:
+        UsageError: They are of another evaluation.
+    """
+    parts = sorted(file.parent for file in out.glob(f"{PARTS}/*/{RUN_FILE}"))
+    if parts:
+        merge(parts, out)
+
+
 def run_shares(
     words: Sequence[str], processes: int, trials: Sequence[Trial], num_tasks: int, out: Path
 ) -> ResultFolder:
     """Run an evaluation in several processes, each with its share of the trials, and return the folder of all rows.
 
-    Each share has a folder and a log below ``parts``. The same call goes on where one was cut off, also with another
-    number of processes.
+    Each share has a folder and a log below :data:`PARTS`. After :func:`gather` the same call goes on where one was cut
+    off, also with another number of processes.
 
     Args:
         words: Arguments of ``arcgym evaluate`` but ``--out`` and ``--share``.
@@ -70,8 +84,8 @@ def run_shares(
         UsageError: A process failed; with the last line of its log.
     """
     shares = [Share(number, processes) for number in range(1, processes + 1)]
-    folders = [out / "parts" / f"{part.number}_of_{part.of}" for part in shares]
-    (out / "parts").mkdir(parents=True, exist_ok=True)
+    folders = [out / PARTS / f"{part.number}_of_{part.of}" for part in shares]
+    (out / PARTS).mkdir(parents=True, exist_ok=True)
     for part, folder in zip(shares, folders, strict=True):
         _hand_down(out, folder, {trial.trial for trial in part.trials(trials)})
     running = [_start([*words, "--share", str(part)], of) for part, of in zip(shares, folders, strict=True)]

@@ -87,7 +87,8 @@ def bootstrap(
 
     Training runs are drawn anew, as Agarwal et al. do (Deep RL at the edge of the statistical precipice, NeurIPS 2021),
     and trials within each run that was drawn: the interval is that of the method, not of the runs at hand. Of one run
-    only trials can be drawn, and the interval is that of this run.
+    only trials can be drawn, and the interval is that of this run. It does not depend on the order of the trials, which
+    is that in which they ended.
 
     Args:
         values: One value a trial, shape (n,).
@@ -96,6 +97,8 @@ def bootstrap(
         seed: Seed of the draws.
     """
     rng = np.random.default_rng(seed)
+    order = np.lexsort((values, runs))
+    values, runs = values[order], runs[order]
     members = [np.flatnonzero(runs == run) for run in np.unique(runs)]
     count = max(round(len(values) / len(members)), 1)
     drawn = rng.integers(len(members), size=(RESAMPLES, len(members)))
