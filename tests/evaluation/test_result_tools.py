@@ -10,9 +10,9 @@ import pytest
 
 from arcgym.cli.main import main
 from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
-from arcgym.evaluation.compare import compare
+from arcgym.evaluation.compare import compare, notes
 from arcgym.evaluation.leaderboard import submissions
-from arcgym.evaluation.result_folder import ResultFolder
+from arcgym.evaluation.result_folder import ResultFolder, result_folders
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.trials import read_conditions
 from arcgym.utils.errors import UsageError
@@ -26,6 +26,13 @@ RUN = {
     "overrides": [],
 }
 TASKS = read_suites()["paper"].tasks("Magnetic")
+RUN |= {"changes": {task: {} for task in TASKS}}
+RUN |= {"inputs": {task: {"sees": ["policy"], "simulator_depth": False} for task in TASKS}}
+
+
+def changed(task: str, **fields) -> dict:
+    """A run with other settings in a task."""
+    return {**RUN, "changes": RUN["changes"] | {task: {name.replace("__", "."): pair for name, pair in fields.items()}}}
 
 
 def result(path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = slice(None), **changes) -> Path:
@@ -55,6 +62,19 @@ def test_other_versions_are_told(tmp_path: Path, capsys) -> None:
     assert f"note: arcgym commit is abc in {words[0]} and def in {words[1]}" in out and "newton" not in out
 
 
+def test_all_that_may_make_a_difference_beside_the_agents_is_told(tmp_path: Path) -> None:
+    """A reward is the agent's own, a start is not."""
+    first = result(tmp_path / "a", run=changed(TASKS[0], reward=["shaped", "paper"]) | {"machine": "a"})
+    easier = changed(TASKS[0], start=["segment", "rest"]) | {"machine": "b"}
+    second = result(tmp_path / "b", run=easier, trials=slice(0, 3))
+    assert notes(first, second) == [
+        f"note: machine is a in {first} and b in {second}",
+        f"note: {TASKS[0]} start is None in {first} and rest in {second}",
+        f"note: 12 trials are of both, of 120 in {first} and 12 in {second}",
+    ]
+    assert notes(first, first) == []
+
+
 def test_other_trials_cannot_be_compared(tmp_path: Path) -> None:
     other = result(tmp_path / "b", run={**RUN, "conditions_sha256": "other"})
     with pytest.raises(UsageError, match="conditions_sha256"):
@@ -77,8 +97,9 @@ def test_two_results_of_one_trial_are_refused(tmp_path: Path) -> None:
 
 def test_what_the_parts_changed_is_known_of_the_whole(tmp_path: Path, capsys) -> None:
     """The second machine ran a task of its own more easily; a third ran the same task as it is."""
-    changes = {TASKS[1]: {"start": ["segment", "rest"]}}
-    parts = [result(tmp_path / "a"), result(tmp_path / "b", run={**RUN, "changes": changes})]
+    first = {**RUN, "changes": {task: {} for task in TASKS if task != TASKS[1]}}
+    easier = {**RUN, "changes": {TASKS[1]: {"start": ["segment", "rest"]}}}
+    parts = [result(tmp_path / "a", run=first), result(tmp_path / "b", run=easier)]
     assert main(["results", "merge", str(tmp_path / "all"), *map(str, parts)]) == 0
     assert main(["results", "check", str(tmp_path / "all")]) == 1
     assert f"{TASKS[1]} was run with start = rest" in capsys.readouterr().out
@@ -145,6 +166,8 @@ def test_the_cecum_is_reached_before_the_way_ends(tmp_path: Path, progress: floa
         ({**RUN, "inputs": {"ARC-Rectum-Magnetic": {"sees": [], "simulator_depth": True}}}, "simulator's depth"),
         ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"start": ["segment", "rest"]}}}, "run with start = rest"),
         ({**RUN, "suite": "mine"}, "expected one of paper"),
+        ({**RUN, "changes": {}}, "ARC-Rectum-Magnetic: run.json does not say with what settings it was run"),
+        ({**RUN, "inputs": {}}, "ARC-Rectum-Magnetic: run.json does not say what its policy sees"),
         ({**RUN, "conditions_sha256": "x"}, "hash of the condition file differs"),
     ],
 )
@@ -161,7 +184,11 @@ def test_what_is_the_agents_own_is_no_reason_to_refuse(tmp_path: Path) -> None:
         "actions.tip.forward_velocity": [None, 0.04],
         "observations.policy.image.params.size": [84, 64],
     }
-    run = {**RUN, "changes": {TASKS[0]: own}, "overrides": ["agent.action_constraint.in_evaluation=false"]}
+    run = {
+        **RUN,
+        "changes": RUN["changes"] | {TASKS[0]: own},
+        "overrides": ["agent.action_constraint.in_evaluation=false"],
+    }
     assert problems(result(tmp_path / "mine", run=run)) == []
 
 
@@ -253,12 +280,28 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
 
 
 def test_an_entry_that_saw_more_than_it_says_is_refused(tmp_path: Path) -> None:
-    inputs = {TASKS[0]: {"sees": ["policy", "force"], "simulator_depth": False}}
+    inputs = RUN["inputs"] | {TASKS[0]: {"sees": ["policy", "force"], "simulator_depth": False}}
     path = result(tmp_path / "all" / "mine", run={**RUN, "inputs": inputs})
     (path / "entry.yaml").write_text(ENTRY)
     assert submissions(tmp_path / "all") == ([], {path: ["says that it sees policy, and saw force, policy"]})
     (path / "entry.yaml").write_text(ENTRY.replace("sees: policy", "sees: policy, force"))
     assert submissions(tmp_path / "all") == ([path], {})
+
+
+def test_the_floor_is_no_entry(tmp_path: Path) -> None:
+    """The expert sees the centreline, whatever the entry says."""
+    path = result(tmp_path / "all" / "mine", run={**RUN, "agent": "expert", "checkpoint_sha256": []})
+    (path / "entry.yaml").write_text(ENTRY)
+    reason = "is of the agent 'expert', which is the floor: an entry has checkpoints"
+    assert submissions(tmp_path / "all") == ([], {path: [reason]})
+
+
+def test_shares_of_processes_are_no_results_of_their_own(tmp_path: Path) -> None:
+    path = result(tmp_path / "all" / "mine")
+    (path / "entry.yaml").write_text(ENTRY)
+    result(path / "parts" / "1_of_2", trials=slice(0, None, 2))
+    assert submissions(tmp_path / "all") == ([path], {})
+    assert result_folders(tmp_path) == [path] and result_folders(path) == [path]
 
 
 @pytest.mark.parametrize(

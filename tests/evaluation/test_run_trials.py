@@ -124,6 +124,13 @@ def test_what_processes_had_run_is_not_run_again(tmp_path: Path, conditions: Pat
     assert "ARC-Rectum-Capsule: 3 of 5 trials to run" in capsys.readouterr().out
 
 
+def test_agents_of_two_kinds_are_no_evaluation(tmp_path: Path, conditions: Path, capsys) -> None:
+    """Its rows would name a checkpoint that nothing identifies."""
+    with pytest.raises(SystemExit):
+        evaluate(tmp_path / "run", conditions, "--agent", "zero,model.pt")
+    assert "--agent is zero,model.pt; expected checkpoints" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(("device", "name"), [("cpu", "no GPU"), ("cuda:1", "GPU cuda:1"), (None, "GPU cuda:0")])
 def test_the_machine_is_that_which_ran_the_trials(monkeypatch, device: str | None, name: str) -> None:
     """On a machine with two GPUs."""
@@ -217,6 +224,13 @@ def test_variants_are_tasks_of_their_own(tmp_path: Path, conditions: Path) -> No
     assert read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule:sticky_3"]["robustness"] == ["none", "sticky_3"]
 
 
+def test_an_unknown_variant_is_refused_in_one_line(tmp_path: Path, conditions: Path, capsys) -> None:
+    with pytest.raises(SystemExit):
+        evaluate(tmp_path / "run", conditions, "--tasks", "ARC-Rectum-Capsule:blur_7")
+    error = capsys.readouterr().err.strip()
+    assert "No variant 'blur_7'. Did you mean 'blur_3' or 'blur_2' or 'blur_1'?" in error and "\n" not in error
+
+
 def test_the_best_and_the_worst_trial_are_filmed_and_shown(tmp_path: Path, conditions: Path, capsys) -> None:
     """Five trials end by time: the best came farthest. Filmed in one world they come out as in five."""
     import pyarrow.parquet
@@ -229,7 +243,7 @@ def test_the_best_and_the_worst_trial_are_filmed_and_shown(tmp_path: Path, condi
     films = {path.name for path in (tmp_path / "run" / "videos").iterdir()}
     names = {"worst": ordered[0], "median": ordered[2], "best": ordered[-1]}
     assert films == {f"ARC-Rectum-Capsule_{name}_trial_{row['trial']}.mp4" for name, row in names.items()}
-    assert write_page(tmp_path / "run").read_text().count("<video controls src=data:video/mp4;base64,") == 3
+    assert write_page(tmp_path / "run").read_text().count("<video controls src='data:video/mp4;base64,") == 3
     table = pyarrow.parquet.read_table(tmp_path / "run" / "trials.parquet")
     assert sorted(table["reward"].to_pylist()) == sorted(row["reward"] for row in rows)
 

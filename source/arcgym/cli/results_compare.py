@@ -18,10 +18,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(namespace: argparse.Namespace) -> None:
-    """Print the table, and in which versions the runs differ."""
-    from arcgym.evaluation.compare import compare, to_markdown, version_notes
+    """Print the table, and in what the runs differ beside their agents."""
+    from arcgym.evaluation.compare import compare, notes, to_markdown
 
     first, second = Path(namespace.first), Path(namespace.second)
     print(to_markdown(compare(first, second)))
-    for line in version_notes(first, second):
+    for line in notes(first, second):
         print(line)

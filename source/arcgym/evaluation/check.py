@@ -63,7 +63,10 @@ def problems(path: Path, whole: bool = True) -> list[str]:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
     conditions = read_conditions(suite.conditions_path)
     found = [*_run_problems(run, conditions, suite), *_row_problems(rows, conditions), *_other_tasks(rows, suite)]
-    return found + [*_unfit_to_compete(run, conditions), *_missing_trials(rows, conditions, suite)] * whole
+    return (
+        found
+        + [*_unfit_to_compete(run, conditions), *_silent(run, rows), *_missing_trials(rows, conditions, suite)] * whole
+    )
 
 
 def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> list[str]:
@@ -80,7 +83,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
         asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
         allowed = {path: value for path, _, value in asked}
         for path, (registered, used) in changes.items():
-            own = _is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed})
+            own = is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed})
             if not own and str(used).lower() != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
     return found
@@ -114,7 +117,19 @@ def _unfit_to_compete(run: dict[str, Any], conditions: Conditions) -> list[str]:
     return found
 
 
-def _is_agents(path: str, used: Any) -> bool:
+def _silent(run: dict[str, Any], rows: list[Row]) -> list[str]:
+    """Return a problem for each task of which a checkpoint's run does not say how it was run and what was seen."""
+    asked = {"changes": "with what settings it was run", "inputs": "what its policy sees"}
+    tasks = sorted({row["task"] for row in rows if "task" in row}) if run.get("agent") == "checkpoint" else []
+    return [
+        f"{task}: run.json does not say {what}, '{name}' is missing"
+        for name, what in asked.items()
+        for task in tasks
+        if task not in run.get(name, {})
+    ]
+
+
+def is_agents(path: str, used: Any) -> bool:
     """Return whether a field of the environment, by its path, is the agent's to choose, with the value used."""
     if path == FORWARD_VELOCITY and used is not None:
         return abs(float(used)) <= FASTEST

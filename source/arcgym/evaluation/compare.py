@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from arcgym.evaluation.check import is_agents
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
 from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS
@@ -42,13 +43,34 @@ def compare(first: Path, second: Path) -> dict[str, dict[str, Interval]]:
     return {task: _differences(*([of[key] for key in keys] for of in rows)) for task, keys in by_task.items()}
 
 
-def version_notes(first: Path, second: Path) -> list[str]:
-    """Return a line for each version in which two folders differ: other code may draw and move otherwise."""
-    versions = [read_run(path).get("versions", {}) for path in (first, second)]
-    names = [name for name in {**versions[0], **versions[1]} if versions[0].get(name) != versions[1].get(name)]
-    return [
-        f"note: {name} is {versions[0].get(name)} in {first} and {versions[1].get(name)} in {second}" for name in names
+def notes(first: Path, second: Path) -> list[str]:
+    """Return a line for all in which two folders differ beside their agents: differences may be of that, too.
+
+    These are versions (other code may draw and move otherwise), the machine, overrides, settings of a task, and the
+    trials that only one of them has.
+    """
+    runs = [read_run(path) for path in (first, second)]
+    of = [
+        {**run.get("versions", {}), "machine": run.get("machine"), "overrides": run.get("overrides"), **_settings(run)}
+        for run in runs
     ]
+    names = [name for name in {**of[0], **of[1]} if of[0].get(name) != of[1].get(name)]
+    lines = [f"note: {name} is {of[0].get(name)} in {first} and {of[1].get(name)} in {second}" for name in names]
+    keys = [{(row["task"], row["trial"]) for row in read_trial_rows(path)} for path in (first, second)]
+    if keys[0] != keys[1]:
+        common = len(keys[0] & keys[1])
+        lines.append(f"note: {common} trials are of both, of {len(keys[0])} in {first} and {len(keys[1])} in {second}")
+    return lines
+
+
+def _settings(run: dict[str, Any]) -> dict[str, Any]:
+    """Return the settings of each task that are not as registered and not the agent's own, by task and path."""
+    return {
+        f"{task} {path}": used
+        for task, changes in run.get("changes", {}).items()
+        for path, (_, used) in changes.items()
+        if not is_agents(path, used)
+    }
 
 
 def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:

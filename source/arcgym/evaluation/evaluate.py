@@ -124,8 +124,14 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
     Checkpoints are listed in the order of the tasks that have some of their own, then of the groups.
 
     Raises:
-        UsageError: A checkpoint is missing.
+        UsageError: A checkpoint is missing, or there are several agents and one of them is none.
     """
+    untrained = [agent for agent in options.agents if agent in UNTRAINED]
+    if untrained and len(options.agents) > 1:
+        raise UsageError(
+            f"--agent is {','.join(options.agents)}; expected checkpoints, which are training seeds, or {untrained[0]} "
+            "alone: other agents are evaluations of their own."
+        )
     agents = dict.fromkeys(agent for task in tasks for agent in options.agents_for(task))
     checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in agents]
     missing = [str(path) for path in checkpoints if not path.is_file()]

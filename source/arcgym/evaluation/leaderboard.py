@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.check import problems
-from arcgym.evaluation.result_folder import RUN_FILE, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import read_run, read_trial_rows, result_folders
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
@@ -81,7 +81,7 @@ def read_entry(folder: Path) -> Entry:
 def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:
     """Return the submissions in a folder that can be shown, and what is wrong with the others, a line each."""
     good, refused = [], {}
-    for path in sorted(file.parent for file in folder.rglob(RUN_FILE)):
+    for path in result_folders(folder):
         try:
             found = problems(path)
         except UsageError as error:
@@ -96,6 +96,9 @@ def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:
 
 def _entry_problems(folder: Path) -> list[str]:
     """Return what is wrong with what a submission says of itself, none or one line."""
+    agent = read_run(folder).get("agent")
+    if agent != "checkpoint":
+        return [f"is of the agent '{agent}', which is the floor: an entry has checkpoints"]
     try:
         entry = read_entry(folder)
     except UsageError as error:

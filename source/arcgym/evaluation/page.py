@@ -97,7 +97,7 @@ def _films(folder: Path, rows: Sequence[Row]) -> str:
                 if path.stat().st_size <= EMBEDDED:
                     source = f"data:video/mp4;base64,{base64.b64encode(path.read_bytes()).decode()}"
                 parts.append(
-                    f"<figure><video controls src={source}></video><figcaption>{caption}</figcaption></figure>"
+                    f"<figure><video controls src='{source}'></video><figcaption>{caption}</figcaption></figure>"
                 )
     return f"<h2>Best, median, worst</h2><div class=films>{''.join(parts)}</div>" if parts else ""
 

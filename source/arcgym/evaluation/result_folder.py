@@ -22,6 +22,8 @@ PACKED_FILE = f"{TRIALS_FILE}.gz"
 """The same rows, packed, in small copies of result folders."""
 RUN_FILE = "run.json"
 """Agent, checkpoint, suite, conditions, versions."""
+PARTS = "parts"
+"""Folder of the shares of several processes, in that of all rows."""
 IDENTITY = ("agent", "checkpoint_sha256", "suite", "conditions_sha256", "overrides")
 """Entries of the run that must agree for rows to belong together."""
 
@@ -90,6 +92,11 @@ class ResultFolder:
             out.flush()
             os.fsync(out.fileno())
         self.rows.append(row)
+
+
+def result_folders(folder: Path) -> list[Path]:
+    """Return the result folders in a folder, itself included, in order; those of processes are parts of theirs."""
+    return sorted(file.parent for file in folder.rglob(RUN_FILE) if file.parent.parent.name != PARTS)
 
 
 def read_trial_rows(path: Path) -> list[Row]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.check import problems
-from arcgym.evaluation.result_folder import RUN_FILE, Row, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.evaluation.trials import read_conditions
 
@@ -110,7 +110,7 @@ def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list
     """
     found: list[Result] = []
     left_out: dict[Path, list[str]] = {}
-    for path in sorted(dict.fromkeys(file.parent for folder in folders for file in folder.rglob(RUN_FILE))):
+    for path in sorted(dict.fromkeys(path for folder in folders for path in result_folders(folder))):
         run, rows = read_run(path), read_trial_rows(path)
         wrong = [*_unknown(run), *problems(path, whole=False)]
         for task in [] if wrong else sorted({row["task"] for row in rows}):

@@ -15,13 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arcgym.evaluation.merge import merge
-from arcgym.evaluation.result_folder import RUN_FILE, TRIALS_FILE, ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import PARTS, RUN_FILE, TRIALS_FILE, ResultFolder, read_run, read_trial_rows
 from arcgym.evaluation.trials import Trial
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
-
-PARTS = "parts"
-"""Folder of the shares, in that of all rows."""
 
 LOOK_EVERY = 0.5
 """Time between two looks at how many trials have ended [s]."""
