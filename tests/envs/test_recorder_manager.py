@@ -8,6 +8,8 @@ import json
 import signal
 import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +33,7 @@ from arcgym.managers import (
     load_episodes,
     save_episode,
 )
-from arcgym.managers.recorder_files import next_path
+from arcgym.managers.recorder_files import claim_path, next_path
 from arcgym.utils import configclass
 
 
@@ -307,3 +309,31 @@ def test_files_that_are_no_recordings_are_named(tmp_path) -> None:
     save_episode(Episode({"actions": np.zeros((2, 1))}, {"length": 2}), tmp_path / "one.hdf5")
     with pytest.raises(RecordingError, match="no 'data/demo_3'; it holds 1 episodes"):
         Episode.load(tmp_path / "one.hdf5", 3)
+
+
+def test_processes_that_record_to_one_folder_take_names_of_their_own(tmp_path) -> None:
+    """Two processes look for the next name before either of them has written anything."""
+    found = threading.Barrier(2)
+
+    def claim() -> Path:
+        found.wait()
+        return claim_path(tmp_path, "dataset")
+
+    with ThreadPoolExecutor(2) as pool:
+        for first in range(0, 40, 2):
+            names = sorted(future.result().name for future in [pool.submit(claim) for _ in range(2)])
+            assert names == [f"dataset_{first:06d}.hdf5", f"dataset_{first + 1:06d}.hdf5"]
+
+
+def test_a_world_that_is_named_twice_is_recorded_once(recording, tmp_path) -> None:
+    env = recording(env_ids=[1, 1])
+    run(env, 3)
+    assert [episode.info["env_id"] for episode in load_episodes(tmp_path)] == [1]
+    assert env.recorder_manager.length(1) == 0
+
+
+def test_a_world_that_breaks_at_its_goal_has_not_succeeded(recording, tmp_path) -> None:
+    """The position is infinite: above 5, and no state of a world."""
+    run(recording(), 1, actions=(0.5, float("inf")))
+    (info,) = (episode.info for episode in load_episodes(tmp_path))
+    assert info["terminated"] and not info["success"]

@@ -90,3 +90,19 @@ def test_summary_counts_each_task() -> None:
     assert summaries["ARC-A"]["success"].value == pytest.approx(2 / 3)
     assert (summaries["ARC-B"]["trials"], summaries["ARC-B"]["progress"].value) == (1, 0.25)
     assert "| `ARC-A` | 3 | 67 (21–94) | 0.50 (0.50–0.50) |" in to_markdown(summaries)
+
+
+def test_a_run_goes_on_after_a_first_row_that_was_torn(tmp_path: Path) -> None:
+    """The disk is full while head and first row are written: only the head is whole."""
+    ResultFolder(tmp_path, RUN)
+    (tmp_path / "trials.csv").write_text(",".join(row(0, 1)) + "\nARC-A,0,")
+    ResultFolder(tmp_path, RUN).add(row(0, 1))
+    assert read_trial_rows(tmp_path) == [row(0, 1)]
+
+
+def test_an_agent_whose_hash_looks_like_a_number_keeps_its_name(tmp_path: Path) -> None:
+    """12345e678901 is a number to Python, and infinite."""
+    for agent in ("12345e678901", "123456789012"):
+        folder = ResultFolder(tmp_path / agent, RUN)
+        folder.add({**row(0, 1), "agent": agent})
+        assert read_trial_rows(tmp_path / agent)[0]["agent"] == agent

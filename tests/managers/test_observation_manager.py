@@ -16,6 +16,7 @@ from arcgym.managers import (
     ObservationTermCfg,
     UniformNoiseCfg,
 )
+from arcgym.managers.buffers import DelayBuffer
 from arcgym.utils import configclass
 
 
@@ -172,3 +173,19 @@ def test_policies_for_values_that_are_not_finite(env, caplog) -> None:
 def test_empty_group_is_refused(env) -> None:
     with pytest.raises(ValueError, match="'policy' has no terms"):
         manager_of(env)
+
+
+def test_worlds_that_share_a_lag_share_it_after_one_of_them_is_reset(env) -> None:
+    """Lags are drawn anew every third step; world 1 begins an episode in between."""
+    delay = DelayBuffer((0, 50), 2, "cpu", env.random, per_env=False, update_period=3)
+    drawn = set()
+    for step in range(12):
+        env.random.advance()
+        if step in (1, 5):
+            delay.reset(torch.tensor([1]))
+            delay.append(torch.zeros(2, 1), store=torch.tensor([1]))
+        delay.append(torch.zeros(2, 1))
+        lag = delay._lag.tolist()
+        assert lag[0] == lag[1]
+        drawn.add(lag[0])
+    assert len(drawn) > 2

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 import torch
@@ -130,7 +128,7 @@ class Shown(SteerToDot):
     def __init__(self, num_envs: int):
         super().__init__(num_envs)
         self.carried_out: list[torch.Tensor] = []
-        self.termination_manager = SimpleNamespace(success=torch.arange(num_envs) % 2 == 0)
+        self.succeeded = torch.arange(num_envs) % 2 == 0
 
     def reset(self):
         self.episode_length_buf.zero_()
@@ -162,7 +160,7 @@ def test_noise_is_carried_out_and_not_kept():
 
 def test_an_expert_that_never_succeeds_is_named():
     env = Shown(2)
-    env.termination_manager.success[:] = False
+    env.succeeded[:] = False
     with pytest.raises(UsageError, match="none succeeded"):
         ask_expert(env, ["policy"], "cpu", 8, expert=lambda obs: torch.zeros(2, 2))
 

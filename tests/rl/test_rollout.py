@@ -15,11 +15,11 @@ from arcgym.rl.rollout import run_policy, zero_policy
 def wrap(env, success: list[bool] | None = None) -> RslRlVecEnvWrapper:
     succeeds = torch.tensor(success or [False, False])
     env.termination_manager = SimpleNamespace(
-        success=succeeds,
         active_terms=["arrived"],
         get_term=lambda name: succeeds,
         get_term_cfg=lambda name: SimpleNamespace(success=True, time_out=False),
     )
+    env.succeeded, env.failed = succeeds, torch.zeros(2, dtype=torch.bool)
     env.step_dt = 0.5
     env.metrics_manager = SimpleNamespace(active_terms=["progress"], finished={"progress": torch.tensor([0.25, 0.75])})
     return RslRlVecEnvWrapper(env)
@@ -62,6 +62,15 @@ def test_only_the_first_episode_of_a_world_counts(counting_env):
         {"world": 0, "success": 1, "end": "arrived", "reward": 2.0, "seconds": 1.0, "progress": 0.25},
         {"world": 1, "success": 0, "end": "non_finite", "reward": 15.0, "seconds": 2.5, "progress": 0.75},
     ]
+
+
+def test_a_world_that_breaks_ends_by_that_whatever_else_it_did(counting_env):
+    """Both worlds arrive after 2 steps, and world 1 breaks: what a term says of a broken state is not believed."""
+    end_at(counting_env, (2, 0), (2, 1))
+    env = wrap(counting_env, success=[True, True])
+    counting_env.succeeded, counting_env.failed = torch.tensor([True, False]), torch.tensor([False, True])
+    rows = run_policy(env, zero_policy(env)).first_episodes
+    assert [(row["success"], row["end"]) for row in rows] == [(1, "arrived"), (0, "non_finite")]
 
 
 def test_worlds_that_have_not_ended_are_named(counting_env):

@@ -56,6 +56,16 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         """How often a world was reset because its state was not finite. Reading it waits for the device."""
         return int(self._world_failures)
 
+    @property
+    def failed(self) -> torch.Tensor:
+        """Worlds whose state was not finite in the last step, bool, shape (N,)."""
+        return self._failed
+
+    @property
+    def succeeded(self) -> torch.Tensor:
+        """Worlds whose episode the last step ended as a success, bool, shape (N,); none of those that failed."""
+        return self.termination_manager.success & ~self._failed
+
     def load_managers(self) -> None:
         """Build the managers; terms may look at the managers built before them."""
         super().load_managers()
@@ -143,7 +153,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         ``episode_length`` [control steps] and ``metrics``, each term's value of the episode; all shape (N,).
         """
         info = {
-            "success": self.termination_manager.success & ~self._failed,
+            "success": self.succeeded,
             "episode_length": self.episode_length_buf.clone(),
             "metrics": {name: self.metrics_manager.get_value(name) for name in self.metrics_manager.active_terms},
         }

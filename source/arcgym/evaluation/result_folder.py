@@ -30,6 +30,9 @@ IDENTITY = ("agent", "checkpoint_sha256", "suite", "conditions_sha256", "overrid
 ANY_VERSION = ("python",)
 """Versions that may differ between rows that belong together; all others must agree."""
 
+TEXTS = ("task", "agent", "patient", "end")
+"""Columns that are texts, whatever they look like: a hash may be made of digits."""
+
 Row = dict[str, Any]
 """One trial's results by column."""
 
@@ -57,6 +60,8 @@ class ResultFolder:
         _cut_torn_line(path / TRIALS_FILE)
         self.rows = read_trial_rows(path)
         """Rows so far."""
+        if not self.rows:  # a head alone: the first row brings its own
+            (path / TRIALS_FILE).unlink(missing_ok=True)
 
     def done(self, task: str) -> set[int]:
         """Return the numbers of the trials of a task that have a row."""
@@ -125,6 +130,8 @@ def read_run(path: Path) -> dict[str, Any]:
 def _value(name: str, cell: str) -> Any:
     if name in ("trial", "seed", "group", "success"):
         return int(cell)
+    if name in TEXTS:
+        return cell
     try:
         return float(cell)
     except ValueError:
@@ -164,6 +171,5 @@ def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
 def _cut_torn_line(file: Path) -> None:
     """Remove a last line that was not written whole."""
     if file.is_file():
-        content = file.read_bytes()
-        if content and not content.endswith(b"\n"):
-            file.write_bytes(content[: content.rfind(b"\n") + 1])
+        with file.open("r+b") as rows:
+            rows.truncate(rows.read().rfind(b"\n") + 1)

@@ -119,16 +119,18 @@ class DelayBuffer:
         Returns:
             Observation from ``lag`` steps ago, shape (N, ...).
         """
-        if store is not False:
-            self._age_lags(self._worlds if store is True else store)
+        if store is True:
+            self._age_lags(self._worlds)
+        elif isinstance(store, torch.Tensor) and self._per_env:
+            self._age_lags(store)
         frames = self._frames.append(value, store)
         return frames[self._worlds, self._lag_range[1] - self._lag]
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
-        """Forget the past of some worlds; those with lags of their own draw new ones."""
+        """Forget the past of some worlds; those with lags of their own draw new ones, a shared one goes on."""
         self._frames.reset(env_ids)
-        fill_worlds(self._age, env_ids, 0)
         if self._per_env:
+            fill_worlds(self._age, env_ids, 0)
             self._lag[env_ids] = self._draw()[env_ids]
 
     def _age_lags(self, worlds: torch.Tensor) -> None:

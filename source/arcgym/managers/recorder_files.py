@@ -111,6 +111,23 @@ def next_path(folder: str | Path, name: str) -> Path:
     return Path(folder) / f"{name}_{max(taken, default=-1) + 1:06d}{SUFFIX}"
 
 
+def claim_path(folder: str | Path, name: str) -> Path:
+    """Return :func:`next_path` once the empty beginning of its episode is there: no other process gets the same."""
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    while True:
+        path = next_path(folder, name)
+        try:
+            partial_path(path).touch(exist_ok=False)
+        except FileExistsError:
+            continue
+        return path
+
+
+def partial_path(path: Path) -> Path:
+    """Return the name that an episode's file has until it is finished."""
+    return path.with_name(path.name.removesuffix(SUFFIX) + PARTIAL)
+
+
 def _read(file: h5py.File, group: h5py.Group) -> Episode:
     arrays: dict[str, h5py.Dataset] = {}
     group.visititems(lambda name, item: arrays.update({name: item}) if isinstance(item, h5py.Dataset) else None)

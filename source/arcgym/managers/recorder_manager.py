@@ -17,7 +17,7 @@ from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.recorder_buffer import EpisodeBuffer, Values
 from arcgym.managers.recorder_cfg import RecorderManagerBaseCfg, RecorderTermCfg
 from arcgym.managers.recorder_chunks import pack_together
-from arcgym.managers.recorder_files import next_path
+from arcgym.managers.recorder_files import claim_path
 from arcgym.managers.recorder_term import RecorderTerm
 from arcgym.managers.recorder_writer import EpisodeWriter, allow_files
 from arcgym.managers.term_resolver import collect_terms
@@ -50,7 +50,8 @@ class RecorderManager(ManagerBase):
             raise TypeError(f"recorders is of type {type(cfg).__name__}, expected a RecorderManagerBaseCfg or None.")
         super().__init__(cfg, env)
         self._settings = cfg or RecorderManagerBaseCfg(dataset_export_mode="none")
-        self._worlds = list(range(env.num_envs)) if self._settings.env_ids is None else list(self._settings.env_ids)
+        chosen = self._settings.env_ids
+        self._worlds = list(range(env.num_envs) if chosen is None else dict.fromkeys(chosen))
         if any(not 0 <= world < env.num_envs for world in self._worlds):
             raise IndexError(f"Recorder env_ids are {self._worlds}; worlds go from 0 to {env.num_envs - 1}.")
         self._place = {world: place for place, world in enumerate(self._worlds)}
@@ -191,7 +192,7 @@ class RecorderManager(ManagerBase):
         """Return the writer of a world's episode; its file appears with the first steps."""
         if world not in self._writers:
             facts, settings = self._env.provenance(world)
-            path = next_path(self._settings.dataset_export_dir_path, self._settings.dataset_filename)
+            path = claim_path(self._settings.dataset_export_dir_path, self._settings.dataset_filename)
             self._writers[world] = EpisodeWriter(path, facts | {"env_id": world}, settings, self._chunk)
         return self._writers[world]
 
@@ -213,14 +214,15 @@ class RecorderManager(ManagerBase):
 
     def _info(self, world: int) -> dict[str, Any]:
         """How the episode of a world stands, from the environment's other managers."""
-        judge, metrics = getattr(self._env, "termination_manager", None), getattr(self._env, "metrics_manager", None)
+        env: Any = self._env
+        judge, metrics = getattr(env, "termination_manager", None), getattr(env, "metrics_manager", None)
         ended_by = [name for name in judge.active_terms if bool(judge.get_term(name)[world])] if judge else []
         flags = {"terminated": "reset_terminated", "time_out": "reset_time_outs"}
         done = {name: bool(getattr(self._env, flag)[world]) for name, flag in flags.items()} if judge else {}
         figures = {name: float(metrics.get_value(name)[world]) for name in metrics.active_terms} if metrics else {}
         return {
             "complete": any(done.values()),
-            "success": bool(judge.success[world]) if judge else False,
+            "success": bool(env.succeeded[world]) if judge else False,
             **done,
             "ended_by": ended_by,
             "metrics": figures,

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 from arcgym.managers.recorder_chunks import LEVEL, write_chunk
-from arcgym.managers.recorder_files import FORMAT, PARTIAL, SUFFIX, Episode
+from arcgym.managers.recorder_files import FORMAT, Episode, partial_path
 
 
 class EpisodeWriter:
@@ -35,7 +35,7 @@ class EpisodeWriter:
             rows: Steps of a chunk, which are compressed together; append as many at a time.
         """
         self.path, self.length = path, 0
-        self._partial = path.with_name(path.name.removesuffix(SUFFIX) + PARTIAL)
+        self._partial = partial_path(path)
         self._provenance, self._settings, self._rows = provenance, settings, rows
         self._file: h5py.File | None = None
 

@@ -182,7 +182,7 @@ class ObservationTermCfg(ManagerTermBaseCfg):
     """Largest age of the observation [control steps]. Zero for none; set it to the latency of the real device."""
 
     delay_per_env: bool = True
-    """Whether each world draws its own lag."""
+    """Whether each world draws its own lag. Otherwise all have the same, which resets do not change."""
 
     delay_hold_prob: float = 0.0
     """Probability of keeping the lag when a new one is due, for latencies that vary slowly."""

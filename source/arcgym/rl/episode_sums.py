@@ -43,7 +43,7 @@ class EpisodeSums:
             return []
         env = self._env
         ends = {name: env.termination_manager.get_term(name)[worlds].tolist() for name in _by_importance(env)}
-        success = env.termination_manager.success[worlds].int().tolist()
+        success, failed = env.succeeded[worlds].int().tolist(), env.failed[worlds].tolist()
         columns = {name: value[worlds].tolist() for name, value in self._sums.items()}
         metrics = {name: value[worlds].tolist() for name, value in env.metrics_manager.finished.items()}
         for value in self._sums.values():
@@ -51,7 +51,7 @@ class EpisodeSums:
         return [
             {
                 "success": success[k],
-                "end": next((name for name in ends if ends[name][k]), NON_FINITE),
+                "end": NON_FINITE if failed[k] else next((name for name in ends if ends[name][k]), NON_FINITE),
                 **{name: value[k] for name, value in columns.items()},
                 **{name: value[k] for name, value in metrics.items() if name != "success"},
             }

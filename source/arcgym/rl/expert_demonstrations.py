@@ -78,7 +78,7 @@ def _round(
         obs, _, dones, _ = env.step(actions + noise * torch.randn_like(actions))
         forget(dones)
         ends = running & (dones > 0)
-        good |= ends & env.unwrapped.termination_manager.success if successful_only else ends  # type: ignore
+        good |= ends & env.unwrapped.succeeded if successful_only else ends  # type: ignore
         running = running & ~ends
     pairs = [(seen[good[worlds]].to(device), actions[good[worlds]].to(device)) for worlds, seen, actions in steps]
     return [pair for pair in pairs if len(pair[1])], int(good.sum())

@@ -236,7 +236,7 @@ class Session:
         judge = self.env.termination_manager
         by = [name for name in judge.active_terms if bool(judge.get_term(name)[0])]
         self._paused = self._has_ended = True
-        what = "reached the goal" if bool(judge.success[0]) else f"ended by {', '.join(by) or 'a broken state'}"
+        what = "reached the goal" if bool(self.env.succeeded[0]) else f"ended by {', '.join(by) or 'a broken state'}"
         self._say(f"{what}: save, undo, start anew, or go on", state="ended")
 
     def _look(self) -> None:
