@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.arguments import RunArguments
+from arcgym.cli.main import main
 from arcgym.cli.task import load_run_cfgs
 from arcgym.envs.mdp import rgb
 from arcgym.managers import ObservationTermCfg
@@ -41,3 +42,17 @@ def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -
     other, _, _ = load_run_cfgs(RunArguments(task="ARC-Sigmoid-Capsule", checkpoint=str(tmp_path / "model_0.pt")))
     assert other.observations.policy.terms["rgb_20"].delay_min_lag == 20
     assert other.observations.policy.rgb.history_length == 5
+
+
+def test_a_run_that_goes_on_from_a_checkpoint_says_which_agent_it_has(tmp_path: Path, monkeypatch) -> None:
+    """Or the run that goes on could not be played: its parameters would be read as those of PPO."""
+    key = "rsl_rl_sac_cfg_entry_point"
+    agent_cfg = load_cfg_from_registry(TASK, key)
+    env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
+    write_params(tmp_path, run={"task": TASK, "agent": key}, env=env_cfg, agent=agent_cfg)
+    (tmp_path / "model_0.pt").write_bytes(b"")
+    seen = []
+    monkeypatch.setattr("arcgym.rl.training.train", lambda _task, _env, *rest: seen.append(rest) or 0)
+    assert main(["train", "--task", TASK, "--resume", "--checkpoint", str(tmp_path / "model_0.pt")]) == 0
+    ((found, options),) = seen
+    assert type(found) is type(agent_cfg) and options.agent == key

@@ -11,8 +11,9 @@ import pytest
 import torch
 
 import arcgym_tasks  # noqa: F401
+from arcgym.envs import mdp
 from arcgym.envs.memory import EnvMemory
-from arcgym.managers import GaussianNoiseCfg, ManagerTermBase, RewardTermCfg
+from arcgym.managers import GaussianNoiseCfg, ManagerTermBase, MetricsTermCfg, RewardTermCfg
 from arcgym.utils.registry import load_cfg_from_registry
 
 
@@ -38,6 +39,7 @@ def env(request, tiny_colon_path) -> Any:
     cfg.scene.num_envs, cfg.scene.colon.usd_path, cfg.start, cfg.seed = 2, str(tiny_colon_path), "rest", 1
     cfg.scene.camera.width = cfg.scene.camera.height = 36
     cfg.sim.device = "cpu"
+    cfg.metrics.seen = MetricsTermCfg(func=mdp.coverage, reduce="last")
     cfg.rewards.way = RewardTermCfg(func=way_made, weight=1.0)
     cfg.observations.critic.velocity.noise = GaussianNoiseCfg(std=0.1)
     env = gym.make(f"ARC-Splenic-{request.param}", cfg=cfg).unwrapped

@@ -111,6 +111,11 @@ def test_preparation_is_scored_as_often_as_published(many) -> None:
     assert float((total == 8).float().mean()) == pytest.approx(0.7 / 3, abs=0.03)
 
 
+def test_shares_of_preparations_sum_up_to_one(env) -> None:
+    with pytest.raises(ValueError, match=r"shares are \(0.1, 0.2, 0.6\), expected three that sum up to 1"):
+        mdp.randomize_preparation(env, torch.arange(2), shares=(0.1, 0.2, 0.6))
+
+
 @pytest.mark.parametrize(
     ("name", "entity", "command", "bounds"),
     [

@@ -89,3 +89,11 @@ def test_a_mesentery_is_stretched_by_what_goes_beyond_its_slack(env) -> None:
     colon.data.centerline_pos_w = torch.stack([moved, torch.tensor([[0.0, 0.0, z] for z in (0.0, 0.1, 0.2)])])
     term = mdp.mesentery_stretch(MetricsTermCfg(func=mdp.mesentery_stretch), env)
     torch.testing.assert_close(term(env), torch.tensor([0.02, 0.0]), atol=1e-6, rtol=0.0)
+
+
+def test_loops_are_looked_for_again_where_worlds_were_put_elsewhere(env) -> None:
+    """A reset or an undo moves the shaft within one control step."""
+    assert kinds(env, up_and_round(0.06), up_and_round(0.06)) == ["alpha", "alpha"]
+    env.scope.body_pos_w = torch.stack([up_and_round(-0.06), up_and_round(0.06)])
+    env.sim.written_states += 1
+    assert [mdp.LOOPS[code] for code in mdp.loop_type(env).tolist()] == ["reverse_alpha", "alpha"]

@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 import torch
 from tiny import write_tiny_colon
@@ -18,6 +19,7 @@ from arcgym.experts import ExpertBase, PullExpert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
+from arcgym.sim.snapshot import Snapshot, SnapshotSet
 from arcgym.start_states import StartStateError, find, store
 from arcgym.start_states.ahead import make_ahead
 from arcgym.start_states.key import settings_of
@@ -155,6 +157,20 @@ def test_a_file_that_cannot_be_read_is_made_anew(tiny: TinySim, cache: Path, mon
     path.parent.mkdir(parents=True)
     path.write_bytes(b"half a file")
     assert start_states.ensure(scene, "sigmoid").names == ("rectum", "sigmoid") and made == ["sigmoid"]
+
+
+def test_a_file_that_is_damaged_is_made_anew(tmp_path: Path) -> None:
+    """One byte after the other is another: whatever the archive, LZMA or the arrays say of it, there are no states."""
+    states = SnapshotSet(("rectum",), (Snapshot({"joint_q": np.arange(40.0)}),), "here")
+    states.save(tmp_path / "states.npz")
+    content = (tmp_path / "states.npz").read_bytes()
+    found = []
+    for place in range(0, len(content), 7):
+        damaged = bytearray(content)
+        damaged[place] ^= 0xFF
+        (tmp_path / "damaged.npz").write_bytes(damaged)
+        found.append(store.load(tmp_path / "damaged.npz"))
+    assert store.load(tmp_path / "states.npz") is not None and found.count(None) > len(found) // 2
 
 
 def test_a_cache_that_cannot_be_written_does_not_stop_the_run(tiny: TinySim, tmp_path, monkeypatch, capsys) -> None:

@@ -235,6 +235,13 @@ def test_every_variant_changes_the_task() -> None:
     assert len(seen) == 40 and seen[-1]["scene"]["colon"]["usd_path"][1] == "population:20001*0.7"
 
 
+def test_less_gas_is_given_to_every_patient_that_a_text_names() -> None:
+    cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+    cfg.scene.colon.usd_path, cfg.robustness = "population:20000,20001*0.9", "collapsed_2"
+    cfg.resolve()
+    assert cfg.scene.colon.usd_path == "population:20000*0.8,20001*0.8"
+
+
 def test_a_variant_that_does_not_exist_or_fit_is_refused() -> None:
     cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
     cfg.robustness = "blur_4"

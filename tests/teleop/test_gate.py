@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import http.client
+import socket
 import threading
 from collections.abc import Callable, Iterator
 from http.server import BaseHTTPRequestHandler, HTTPServer
@@ -70,9 +71,9 @@ def test_loopback_needs_no_token_but_the_right_name(make_gate) -> None:
     assert get(gate, "/x?y=1")[:2] == (200, b"backend /x?y=1")
     assert get(gate, "/", Host="evil.example")[0] == 403
     assert get(gate, "/", Origin="http://evil.example")[0] == 403
-    with connect(f"ws://localhost:{gate.port}/hand") as socket:
-        socket.send("hello")
-        assert socket.recv() == "heard hello"
+    with connect(f"ws://localhost:{gate.port}/hand") as hand:
+        hand.send("hello")
+        assert hand.recv() == "heard hello"
     with pytest.raises(InvalidStatus):
         connect(f"ws://localhost:{gate.port}/hand", origin="http://evil.example")
 
@@ -89,9 +90,9 @@ def test_the_token_is_asked_for_everywhere(make_gate) -> None:
     assert (status, headers["Location"]) == (303, "/") and "SameSite=Strict" in headers["Set-Cookie"]
     cookie = headers["Set-Cookie"].partition(";")[0]
     assert get(gate, "/", Cookie=cookie)[:2] == (200, b"the page")
-    with connect(f"ws://localhost:{gate.port}/hand", additional_headers={"Cookie": cookie}) as socket:
-        socket.send("hello")
-        assert socket.recv() == "heard hello"
+    with connect(f"ws://localhost:{gate.port}/hand", additional_headers={"Cookie": cookie}) as hand:
+        hand.send("hello")
+        assert hand.recv() == "heard hello"
 
 
 def test_each_plain_request_has_a_connection_of_its_own(make_gate) -> None:
@@ -101,3 +102,11 @@ def test_each_plain_request_has_a_connection_of_its_own(make_gate) -> None:
 def test_addresses_that_others_reach_need_a_token(ports) -> None:
     with pytest.raises(ValueError, match="A page at 0.0.0.0 needs a token"):
         Gate("0.0.0.0", 0, None, {}, ports)
+
+
+@pytest.mark.parametrize("line", [b"GET //[ HTTP/1.1", b"GET / HTTP/1.1\r\nHost: [", b"GET /"])
+def test_a_request_that_makes_no_sense_is_answered_and_let_go(make_gate, line: bytes) -> None:
+    with socket.create_connection(("127.0.0.1", make_gate(None).port), timeout=5.0) as connection:
+        connection.sendall(line + b"\r\n\r\n")
+        said = connection.makefile("rb").read()
+    assert said.startswith((b"HTTP/1.1 400", b"HTTP/1.1 403"))

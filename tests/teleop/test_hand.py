@@ -73,3 +73,10 @@ def test_dead_man(clock) -> None:
     assert not hand.is_alive and not hand.value().any()
     hand.touch()
     assert not hand.value().any()
+
+
+def test_a_gamepad_that_says_no_number_commands_nothing() -> None:
+    """A command that is no number would break the world."""
+    hand = Hand(PUSHED)
+    hand.command("pad", np.array([np.nan, 0.5, np.inf, 0.0]))
+    assert hand.value().tolist() == [0.0, 0.5, 1.0, 0.0]

@@ -8,11 +8,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from arcgym.cli.arguments import DEFAULT_AGENT, RunArguments, TaskArguments
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
+
+A = TypeVar("A", bound=RunArguments)
 
 AGENT_FIELDS = (
     "seed",
@@ -70,7 +72,7 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     from arcgym.rl.run_folder import find_checkpoint
     from arcgym.utils.coerce import to_plain
 
-    args = _with_trained_agent(args)
+    args = with_trained_agent(args)
     _, asked = load_cfgs(args)
     checkpoint = find_checkpoint(asked.experiment_name, asked.load_run, asked.load_checkpoint)
     env_cfg, agent_cfg = _registered(args.task, args.agent)
@@ -105,7 +107,7 @@ def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:
     return {"observations": {group: {"terms": added} for group, added in terms.items() if added}}
 
 
-def _with_trained_agent(args: RunArguments) -> RunArguments:
+def with_trained_agent(args: A) -> A:
     """Return the arguments with the agent of the run that a checkpoint's path names, where none was asked for."""
     from arcgym.rl.params import read_params
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.stopping import stopped_cleanly
-from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs
+from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs, with_trained_agent
 
 TAKES_OVERRIDES = True
 
@@ -49,6 +49,7 @@ def run(namespace: argparse.Namespace) -> int:
     checkpoint = None
     env_cfg, agent_cfg = load_cfgs(args)
     if agent_cfg.resume:
+        args = with_trained_agent(args)
         env_cfg, agent_cfg, checkpoint = load_run_cfgs(args)
 
     from arcgym.rl.training import TrainOptions, train

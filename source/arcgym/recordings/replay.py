@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -149,6 +150,7 @@ class _Comparison:
         if now.shape == recorded.shape and now.tobytes() == recorded.tobytes():
             return
         same_shape = now.shape == recorded.shape
-        by = float(np.abs(now.astype(float) - recorded).max()) if same_shape and now.size else float("inf")
+        by = float(np.abs(now.astype(float) - recorded).max()) if same_shape and now.size else math.inf
+        by = math.inf if math.isnan(by) else by
         self._first.setdefault(name, step)
         self._largest[name] = max(self._largest.get(name, 0.0), by)

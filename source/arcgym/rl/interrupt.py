@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+import torch
+
 
 class TrainingInterrupted(KeyboardInterrupt):
     """Training was asked to stop; the runner has saved a checkpoint by the time a script sees this."""
@@ -26,12 +28,21 @@ class InterruptGuard:
     """Turns SIGINT and SIGTERM into :class:`TrainingInterrupted`, held back inside :meth:`hold`.
 
     A second signal is not held back, so that a stuck process can still be stopped.
+
+    Processes that learn together stop together, after the update before which any of them had a signal: one that left
+    at once would leave the others waiting for its gradients, without a checkpoint. All their signals are held back;
+    ``torchrun`` kills what does not end within 30 s.
     """
 
     SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
-    def __init__(self) -> None:
-        """Create the guard; it acts inside its ``with`` block, and only in the main thread."""
+    def __init__(self, together: bool = False) -> None:
+        """Create the guard; it acts inside its ``with`` block, and only in the main thread.
+
+        Args:
+            together: Whether other processes of ``torchrun`` learn along.
+        """
+        self._together = together
         self._held = False
         self._pending: int | None = None
         self._previous: dict[int, Any] = {}
@@ -55,10 +66,21 @@ class InterruptGuard:
             yield
         finally:
             self._held = False
-        if self._pending is not None:
-            raise TrainingInterrupted(self._pending)
+        number = self._agreed()
+        if number is not None:
+            raise TrainingInterrupted(number)
 
     def _handle(self, number: int, _frame: FrameType | None) -> None:
-        if not self._held or self._pending is not None:
+        if not self._together and (not self._held or self._pending is not None):
             raise TrainingInterrupted(number)
         self._pending = number
+
+    def _agreed(self) -> int | None:
+        """Return the signal that this process, or one that learns along, was sent; None if there was none."""
+        if not self._together:
+            return self._pending
+        number = torch.tensor(self._pending or 0)
+        if torch.distributed.get_backend() == "nccl":
+            number = number.cuda()
+        torch.distributed.all_reduce(number, op=torch.distributed.ReduceOp.MAX)
+        return int(number) or None

@@ -84,7 +84,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         update, log, init_writer = self.alg.update, self.logger.log, self.logger.init_logging_writer
         self.logger.init_logging_writer = lambda: self._init_writer(init_writer)  # type: ignore[method-assign]
         self.logger.log = lambda **values: self._log(log, **values)  # type: ignore[method-assign]
-        with InterruptGuard() as guard:
+        with InterruptGuard(together=self.is_distributed) as guard:
             self.alg.update = lambda: self._update(update, guard)  # type: ignore[method-assign]
             self.clock.start()
             try:

@@ -70,6 +70,11 @@ class SeenSurface:
         """Pixels of the last picture that show each polyp, shape (N, K), int32."""
         return wp.to_torch(self._pixels)
 
+    @property
+    def memory(self) -> list[wp.array]:
+        """What it remembers of every world, N entries each."""
+        return [self._seen, self._seen_area, self._pixels]
+
     def look(self) -> None:
         """Mark what the camera's last pictures show."""
         renderer = self._renderer
@@ -92,7 +97,7 @@ class SeenSurface:
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Forget what was seen in the given worlds, int64, shape (n,); None for all."""
-        for marks in (self._seen, self._seen_area, self._pixels):
+        for marks in self.memory:
             fill_worlds(wp.to_torch(marks), env_ids, 0)
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -65,7 +64,7 @@ def load(path: Path) -> SnapshotSet | None:
     """Return the states in a file, None if it is missing or cannot be read."""
     try:
         return SnapshotSet.load(path) if path.is_file() else None
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+    except Exception:  # archive, LZMA, JSON and arrays each have errors of their own for damaged bytes
         return None
 
 

@@ -22,6 +22,7 @@ HEAD_LIMIT = 65536
 """Largest head of a request [bytes]."""
 HEAD_TIME = 10.0
 """Longest time that a head may take [s]."""
+NONSENSE = b"No request."
 NEEDED = b"This page needs the address that 'arcgym teleop' printed, with its token."
 
 
@@ -86,11 +87,17 @@ class Gate:
         await asyncio.gather(*others, return_exceptions=True)
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        with contextlib.suppress(OSError, asyncio.IncompleteReadError, asyncio.LimitOverrunError, asyncio.TimeoutError):
+        try:
             head = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), HEAD_TIME)
             await self._answer(head, reader, writer)
-        with contextlib.suppress(OSError):
-            writer.close()
+        except (TimeoutError, OSError, asyncio.IncompleteReadError, asyncio.LimitOverrunError):
+            pass  # who asked is gone, or does not say what
+        except ValueError:  # an address or a host that is none
+            with contextlib.suppress(OSError):
+                await _reply(writer, HTTPStatus.BAD_REQUEST, NONSENSE)
+        finally:
+            with contextlib.suppress(OSError):
+                writer.close()
 
     async def _answer(self, head: bytes, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         lines = head.decode("latin-1").split("\r\n")
@@ -99,7 +106,7 @@ class Gate:
             name.strip().lower(): value.strip() for name, _, value in (line.partition(":") for line in lines[1:])
         }
         if len(parts) != 3:
-            return await _reply(writer, HTTPStatus.BAD_REQUEST, b"No request.")
+            return await _reply(writer, HTTPStatus.BAD_REQUEST, NONSENSE)
         address = urlsplit(parts[1])
         if not self._is_own(headers):
             return await _reply(writer, HTTPStatus.FORBIDDEN, b"This page is not open to other sites.")

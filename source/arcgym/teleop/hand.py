@@ -70,8 +70,8 @@ class Hand:
         return self._clock() - self._alive <= TIMEOUT
 
     def command(self, source: str, values: np.ndarray, lasts: float = float("inf")) -> None:
-        """Set what a source commands, shape (A,), for ``lasts`` seconds."""
-        now, values = self._clock(), np.clip(values, -1.0, 1.0).astype(np.float32)
+        """Set what a source commands, shape (A,), for ``lasts`` seconds; what is no number counts as zero."""
+        now, values = self._clock(), np.clip(np.nan_to_num(values), -1.0, 1.0).astype(np.float32)
         with self._lock:
             moved = now
             if source in self._commands and np.array_equal(self._commands[source][0], values):

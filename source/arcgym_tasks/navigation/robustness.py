@@ -94,6 +94,11 @@ def _multiply(cfg: Any, name: str, func: Any, param: str, factor: float, neutral
     event.params = {**event.params, "factor": factor}
 
 
+def _with_gas(patient: str, factor: float) -> str:
+    """Return the name of a patient, ``20000`` or ``20000*0.9``, with another factor on its width."""
+    return f"{patient.partition('*')[0]}*{factor:g}"
+
+
 def _narrower(usd_path: str | list[str], factor: float) -> str | list[str]:
     """Return the names of the same patients of the population with less gas.
 
@@ -107,5 +112,6 @@ def _narrower(usd_path: str | list[str], factor: float) -> str | list[str]:
                 f"env.robustness=collapsed_... makes patients of the population anew with less gas; {name} is a stage. "
                 "Choose env.scene.colon.usd_path=population:20000, or leave the variant out."
             )
-    changed = [f"{name.partition('*')[0]}*{factor:g}" for name in names]
+    patients = [name.removeprefix("population:").split(",") for name in names]
+    changed = ["population:" + ",".join(_with_gas(patient, factor) for patient in own) for own in patients]
     return changed[0] if isinstance(usd_path, str) else changed

@@ -83,7 +83,7 @@ def breakage_caught(env: Any) -> list[str]:
     problems = []
     if env.world_failures != failures + 1:
         problems.append(f"{env.world_failures - failures} worlds counted as recovered, expected 1")
-    recovered = (terminated & ~env.termination_manager.terminated).nonzero().flatten().tolist()
+    recovered = (terminated & env.failed).nonzero().flatten().tolist()
     if recovered != [0]:
         problems.append(f"worlds {recovered} terminated for it, expected [0]")
     found = {**leaves("obs", obs), "reward": reward, **env.sim.world_arrays()}

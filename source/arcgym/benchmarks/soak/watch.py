@@ -60,7 +60,7 @@ class Watch:
     def look(self, obs: Any, reward: torch.Tensor, terminated: torch.Tensor, extras: dict[str, Any]) -> None:
         """Take in what ``env.step`` returned, and the state that it left."""
         self._step += 1
-        self._last["recovered"][terminated & ~self._env.termination_manager.terminated] = self._step
+        self._last["recovered"][self._env.failed] = self._step
         if "wall_penetrated" in self._env.termination_manager.active_terms:
             self._pierced += self._env.termination_manager.get_term("wall_penetrated").sum()
         self._count_not_finite(obs, reward, extras)

@@ -34,6 +34,11 @@ REACH = 0.05
 class _SeenTerm(ManagerTermBase):
     """A term whose memory is the marks of the environment."""
 
+    def __init__(self, cfg: ManagerTermBaseCfg, env: ManagerBasedRLEnv) -> None:
+        """Make the marks, unless another term has; they are an attribute so that an undo finds them."""
+        super().__init__(cfg, env)
+        self._marks = _seen(env, cfg.params.get("reach", REACH)).memory
+
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Forget what was seen in the given worlds."""
         if self._env in _MARKS:

@@ -147,6 +147,7 @@ def randomize_texture(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
     env.scene["camera"].write_texture_offset(env.random.uniform("texture", 2, env_ids=env_ids), env_ids)
 
 
+@expects(shares=FRACTION)
 def randomize_preparation(
     env: ManagerBasedEnv, env_ids: torch.Tensor, shares: tuple[float, float, float] = (0.1, 0.2, 0.7)
 ) -> None:
@@ -158,8 +159,13 @@ def randomize_preparation(
 
     Args:
         shares: Share of worlds with a sum of 5, of 6 and of 7 to 9; they sum up to one.
+
+    Raises:
+        ValueError: If they do not.
     """
     low, middle, high = shares
+    if not math.isclose(low + middle + high, 1.0, abs_tol=1.0e-6):
+        raise ValueError(f"randomize_preparation: shares are {tuple(shares)}, expected three that sum up to 1.")
     draw = env.random.uniform("preparation", 5, env_ids=env_ids)
     above = (draw[:, 0] - low - middle).clamp(min=0.0) / max(high, 1.0e-9)
     good = 7 + (3.0 * above).long().clamp(max=2)

@@ -53,10 +53,11 @@ def loop_type(env: ManagerBasedRLEnv) -> torch.Tensor:
 
     A free capsule has none.
     """
-    step, kinds = _CACHE.get(env, (-1, None))
-    if kinds is None or step != env.common_step_counter:
+    now = (env.common_step_counter, env.sim.written_states)  # resets and undos write states
+    found, kinds = _CACHE.get(env, (None, None))
+    if kinds is None or found != now:
         kinds = find_loops(env.scene)
-        _CACHE[env] = (env.common_step_counter, kinds)
+        _CACHE[env] = (now, kinds)
     return kinds
 
 
@@ -207,4 +208,4 @@ def find_loops(scene: InteractiveScene) -> torch.Tensor:
     return kinds
 
 
-_CACHE: WeakKeyDictionary[ManagerBasedRLEnv, tuple[int, torch.Tensor | None]] = WeakKeyDictionary()
+_CACHE: WeakKeyDictionary[ManagerBasedRLEnv, tuple[tuple[int, int], torch.Tensor]] = WeakKeyDictionary()
