@@ -52,6 +52,12 @@ def test_what_has_no_table_or_no_trial_is_refused() -> None:
         paper_table([], "material")
 
 
+def test_trials_without_a_column_of_the_table_are_refused() -> None:
+    """Small copies of result folders have not all columns."""
+    with pytest.raises(UsageError, match="trials of ARC-Rectum-Magnetic have no max_tip_force"):
+        paper_table([trial("ARC-Rectum-Magnetic")], "forces")
+
+
 def test_every_table_fits_its_suite() -> None:
     """As many figures as columns, and only variants, segments and patients that the suite has."""
     suites = read_suites()

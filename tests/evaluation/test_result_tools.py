@@ -166,6 +166,7 @@ def test_the_cecum_is_reached_before_the_way_ends(tmp_path: Path, progress: floa
         ({**RUN, "inputs": {"ARC-Rectum-Magnetic": {"sees": [], "simulator_depth": True}}}, "simulator's depth"),
         ({**RUN, "changes": {"ARC-Rectum-Magnetic": {"start": ["segment", "rest"]}}}, "run with start = rest"),
         ({**RUN, "suite": "mine"}, "expected one of paper"),
+        ({**RUN, "versions": {"arcgym commit": "abc with changes"}}, "code that is not that of its commit: abc with"),
         ({**RUN, "changes": {}}, "ARC-Rectum-Magnetic: run.json does not say with what settings it was run"),
         ({**RUN, "inputs": {}}, "ARC-Rectum-Magnetic: run.json does not say what its policy sees"),
         ({**RUN, "conditions_sha256": "x"}, "hash of the condition file differs"),

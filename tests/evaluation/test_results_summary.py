@@ -107,6 +107,7 @@ def test_rules_on_actions_are_marked(tmp_path: Path) -> None:
     ("run", "every", "reason"),
     [
         ({"versions": {"newton": "1.8.0"}}, 1, "the commit is not known"),
+        ({"versions": {"arcgym commit": "abc with changes"}}, 1, "its code has changes that the commit has not"),
         ({"training": []}, 1, "trained with is not known"),
         ({"conditions_sha256": "other"}, 1, "the hash of the condition file differs"),
         ({"changes": {TASK: {"episode_length_s": [30.0, 60.0]}}}, 1, "episode_length_s = 60.0, which changes the task"),

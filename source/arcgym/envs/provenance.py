@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 PACKAGES = ("newton", "warp-lang", "torch", "numpy", "mujoco-warp")
 """Packages whose versions a result may depend on."""
+COMMIT, CHANGED = "arcgym commit", " with changes"
+"""Name of ARCGym's commit among the versions, and its ending where the code is not that of the commit."""
 NOT_PHYSICS = ("recorders", "viewer", "log_dir")
 """Fields of a configuration that change nothing that happens."""
 
@@ -106,7 +108,7 @@ def _commit() -> dict[str, str]:
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         said = os.environ.get("ARCGYM_COMMIT", "")
-        return {"arcgym commit": said} if said else {}
+        return {COMMIT: said} if said else {}
     try:
         commit, changed = (
             subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10).stdout.strip()
@@ -114,7 +116,7 @@ def _commit() -> dict[str, str]:
         )
     except (OSError, subprocess.SubprocessError):
         return {}
-    return {"arcgym commit": commit + (" with changes" if changed else "")} if commit else {}
+    return {COMMIT: commit + (CHANGED if changed else "")} if commit else {}
 
 
 def stage_hash(path: str | Path) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import CHANGED, COMMIT, Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
@@ -106,8 +106,9 @@ def _is_of_nothing(task: str, path: str, changed: set[str]) -> bool:
 
 
 def _unfit_to_compete(run: dict[str, Any], conditions: Conditions) -> list[str]:
-    """Return a problem for too few training seeds, and for rules on actions that know more than the policy."""
-    found = []
+    """Return a problem for too few training seeds, rules that know more than the policy, and code that nobody has."""
+    commit = str(run.get("versions", {}).get(COMMIT, ""))
+    found = [f"was run by code that is not that of its commit: {commit}"] if commit.endswith(CHANGED) else []
     checkpoints, wanted = len(set(run.get("checkpoint_sha256", []))), min(conditions.groups, SEEDS)
     if run.get("agent") == "checkpoint" and 0 < checkpoints < wanted:
         found.append(f"has {checkpoints} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups")

@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.check import problems
-from arcgym.evaluation.result_folder import read_run, read_trial_rows, result_folders
+from arcgym.evaluation.result_folder import COMMIT, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
@@ -154,7 +154,7 @@ def _lines(folder: Path) -> list[tuple[str, float, str]]:
 def _version(run: dict[str, Any]) -> str:
     """Return which ARCGym was run: the commit where it is known, else the release."""
     versions = run.get("versions", {})
-    return str(versions.get("arcgym commit") or versions.get("arcgym", "?"))[:7]
+    return str(versions.get(COMMIT) or versions.get("arcgym", "?"))[:7]
 
 
 def _text(interval: Interval, digits: int, factor: float = 1.0) -> str:

@@ -36,7 +36,7 @@ def paper_table(rows: Sequence[Row], name: str) -> str:
         name: Name of the table, which is that of its suite or study; ``forces`` takes the trials of any suite.
 
     Raises:
-        UsageError: There is no such table, or no trial.
+        UsageError: There is no such table, no trial, or trials lack a column.
     """
     tables = yaml.safe_load(TABLES_FILE.read_text())
     if name not in tables:
@@ -80,6 +80,11 @@ def _cell(rows: Sequence[Row], metric: str) -> str:
     if metric in RATES:
         count = sum(row["end"] == metric for row in rows)
         return _text(wilson(count, len(rows)), 100.0, 0)
+    if metric != "step_reward" and metric not in rows[0]:
+        raise UsageError(
+            f"The trials of {rows[0]['task']} have no {metric}, which the table needs: it is made of the folders of an "
+            "evaluation, not of the small copies that results summary --keep writes."
+        )
     values = np.array([row["reward"] / row["seconds"] if metric == "step_reward" else row[metric] for row in rows])
     return _text(bootstrap(values.astype(float), training_runs(rows), mean), 1.0, 3)
 

@@ -33,6 +33,9 @@ ANY_VERSION = ("python",)
 TEXTS = ("task", "agent", "patient", "end")
 """Columns that are texts, whatever they look like: a hash may be made of digits."""
 
+COMMIT, CHANGED = "arcgym commit", " with changes"
+"""Name of ARCGym's commit among the versions, and its ending where the code was not that of the commit."""
+
 Row = dict[str, Any]
 """One trial's results by column."""
 

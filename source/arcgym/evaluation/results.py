@@ -10,15 +10,12 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.check import problems
-from arcgym.evaluation.result_folder import Row, read_run, read_trial_rows, result_folders
+from arcgym.evaluation.result_folder import CHANGED, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.evaluation.trials import read_conditions
 
 LARGEST_SHARE = 10
 """Shares of a suite's trials that are shown: all of them to each tenth one."""
-
-COMMIT = "arcgym commit"
-"""Entry of a run's versions."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +132,9 @@ def best(results: Sequence[Result]) -> Result | None:
 
 def _unknown(run: dict[str, Any]) -> list[str]:
     """Return what a run does not say of itself."""
-    found = [] if run.get("versions", {}).get(COMMIT) else ["the commit is not known"]
+    commit = run.get("versions", {}).get(COMMIT)
+    found = [] if commit else ["the commit is not known"]
+    found += ["its code has changes that the commit has not"] if commit and commit.endswith(CHANGED) else []
     if run.get("agent") == "checkpoint" and not run.get("training"):
         found.append("what its checkpoint was trained with is not known")
     return found
