@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 import torch
 import torch.multiprocessing
@@ -12,8 +14,9 @@ from small_agents import runner_cfg
 from test_sac import SteerToDot
 from test_sac import make_runner as make_sac_runner
 
-from arcgym.rl import OnPolicyRunner
+from arcgym.rl import OnPolicyRunner, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
 from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
+from arcgym.rl.agent_cfgs.ppo_predicting import RslRlPpoPredictingAlgorithmCfg
 from arcgym.rl.episode_costs import EpisodeCosts
 from arcgym.rl.replay import ReplayBatch
 
@@ -21,12 +24,28 @@ NUM_ENVS, STEPS = 8, 8
 
 
 def a2c_step(worlds: slice, processes: int) -> list[torch.Tensor]:
-    """Weights after a step on some worlds of a rollout."""
-    torch.manual_seed(0)
-    env = SteerToDot(worlds.stop - worlds.start)
+    """Weights after a step of A2C on some worlds of a rollout."""
     algorithm = RslRlA2cAlgorithmCfg(optimizer="sgd", learning_rate=0.1)
-    alg = OnPolicyRunner(env, runner_cfg(algorithm=algorithm).to_dict(), device="cpu").alg
+    alg = on_policy_step(runner_cfg(algorithm=algorithm), worlds, processes)
+    return [p.detach() for model in (alg.actor, alg.critic) for p in model.parameters()]
+
+
+def predicting_step(worlds: slice, processes: int) -> list[torch.Tensor]:
+    """Weights after a step of PPO with its predicting head."""
+    steps = {"schedule": "fixed", "num_learning_epochs": 1, "num_mini_batches": 1, "max_grad_norm": 1.0e9}
+    algorithm = RslRlPpoPredictingAlgorithmCfg(optimizer="sgd", learning_rate=0.1, **steps)
+    cfg = runner_cfg(algorithm=algorithm, critic=RslRlMlpModelCfg(hidden_dims=[32], obs_normalization=True))
+    alg = on_policy_step(cfg, worlds, processes)
+    return [p.detach() for model in (alg.actor, alg.critic, alg.head) for p in model.parameters()]
+
+
+def on_policy_step(cfg: RslRlOnPolicyRunnerCfg, worlds: slice, processes: int) -> Any:
+    """Return the algorithm after a step on some worlds of a rollout; processes draw first weights of their own."""
+    torch.manual_seed(worlds.start)
+    alg: Any = OnPolicyRunner(SteerToDot(worlds.stop - worlds.start), cfg.to_dict(), device="cpu").alg
     alg.is_multi_gpu, alg.gpu_world_size = processes > 1, processes
+    if processes > 1:
+        alg.broadcast_parameters()
     torch.manual_seed(1)
     st = alg.storage
     images = torch.randint(0, 256, (STEPS, NUM_ENVS, 1, 16, 16), dtype=torch.uint8)
@@ -41,7 +60,7 @@ def a2c_step(worlds: slice, processes: int) -> list[torch.Tensor]:
     st.actions_log_prob[:] = log_prob.view(STEPS, -1, 1)
     st.advantages[:] = st.returns - st.values
     alg.update()
-    return [p.detach() for model in (alg.actor, alg.critic) for p in model.parameters()]
+    return alg
 
 
 def sac_step(worlds: slice, processes: int) -> list[torch.Tensor]:
@@ -66,7 +85,7 @@ def episode_costs(worlds: slice, processes: int) -> list[torch.Tensor]:
     return [torch.tensor(tracker.take_means())]
 
 
-STEP = {"a2c": a2c_step, "sac": sac_step, "episode costs": episode_costs}
+STEP = {"a2c": a2c_step, "ppo predicting": predicting_step, "sac": sac_step, "episode costs": episode_costs}
 
 
 def work(rank: int, name: str, folder: str) -> None:

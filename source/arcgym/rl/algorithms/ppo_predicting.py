@@ -11,6 +11,7 @@ import torch
 from rsl_rl.algorithms import PPO
 from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
+from rsl_rl.utils import reduce_gradients_in_buckets
 from torch import nn
 
 from arcgym.rl.networks.feature_reader import FeatureReader
@@ -69,6 +70,17 @@ class PPOPredicting(PPO):
         if load_cfg is None or load_cfg.get("optimizer"):
             self.head.load_state_dict(loaded_dict["head_state_dict"])
         return super().load(loaded_dict, load_cfg, strict)
+
+    def broadcast_parameters(self) -> None:
+        """Send the models of the first process to all."""
+        super().broadcast_parameters()
+        for tensor in self.head.state_dict().values():
+            torch.distributed.broadcast(tensor, src=0)
+
+    def reduce_parameters(self) -> None:
+        """Average the gradients over all processes."""
+        super().reduce_parameters()
+        reduce_gradients_in_buckets(self.head.parameters(), self.gpu_world_size, self.grad_reduce_bucket_mb)
 
 
 class _Prediction:
