@@ -224,11 +224,23 @@ def test_variants_are_tasks_of_their_own(tmp_path: Path, conditions: Path) -> No
     assert read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule:sticky_3"]["robustness"] == ["none", "sticky_3"]
 
 
-def test_an_unknown_variant_is_refused_in_one_line(tmp_path: Path, conditions: Path, capsys) -> None:
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (
+            ["--tasks", "ARC-Rectum-Capsule,ARC-Rectum-Capsule:blur_7"],
+            "env.robustness is 'blur_7'. Did you mean 'blur_3'",
+        ),
+        (["env.scene.colon.material=in_stu"], "env.scene.colon.material is 'in_stu'. Did you mean 'in_situ'"),
+    ],
+)
+def test_a_wrong_setting_is_refused_in_one_line_before_anything_runs(
+    tmp_path: Path, conditions: Path, capsys, words: list[str], message: str
+) -> None:
     with pytest.raises(SystemExit):
-        evaluate(tmp_path / "run", conditions, "--tasks", "ARC-Rectum-Capsule:blur_7")
+        evaluate(tmp_path / "run", conditions, *words)
     error = capsys.readouterr().err.strip()
-    assert "No variant 'blur_7'. Did you mean 'blur_3' or 'blur_2' or 'blur_1'?" in error and "\n" not in error
+    assert message in error and "\n" not in error and not (tmp_path / "run").exists()
 
 
 def test_the_best_and_the_worst_trial_are_filmed_and_shown(tmp_path: Path, conditions: Path, capsys) -> None:

@@ -67,7 +67,7 @@ def run(namespace: argparse.Namespace) -> None:
     suite = _choose(args.suite, read_suites(), "suite")
     agents = tuple(args.agent.split(","))
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
-    _check_tasks(tasks, suite.variants)
+    _check_tasks(tasks)
     conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
 
     from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
@@ -156,18 +156,14 @@ def _checkpoint(agent: str) -> Path:
     return path
 
 
-def _check_tasks(tasks: list[str], variants: dict[str, Any]) -> None:
-    """Raise if a task is not registered, or its variant is neither one of the suite's nor of robustness."""
+def _check_tasks(tasks: list[str]) -> None:
+    """Raise if a task is not registered."""
     from arcgym.evaluation.suites import split_task
     from arcgym.utils.registry import list_tasks
-    from arcgym_tasks.navigation.robustness import NONE, VARIANTS
 
     known = {name: None for name in list_tasks(prefix="")}
     for task in tasks:
-        name, variant = split_task(task)
-        _choose(name, known, "task")
-        if variant is not None:
-            _choose(variant, {**variants, **dict.fromkeys((NONE, *VARIANTS))}, "variant")
+        _choose(split_task(task)[0], known, "task")
 
 
 def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:

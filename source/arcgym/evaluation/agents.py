@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.batched_policy import BatchedPolicy
+from arcgym.managers import ObservationGroupCfg, ObservationTermCfg
 from arcgym.rl.constrained_runner import ConstrainedPolicy
 from arcgym.rl.rollout import Policy
 from arcgym.rl.trained_policy import trained_policy
@@ -22,12 +24,29 @@ def trained_agent(env: RslRlVecEnvWrapper, agent_cfg: Any, checkpoint: Path) -> 
     return BatchedPolicy(policy, env.num_envs)
 
 
-def inputs_of(agent_cfg: Any) -> dict[str, Any]:
-    """Return the observation groups that a trained agent acts by, and whether rules on its actions read true depth."""
+def inputs_of(env_cfg: Any, agent_cfg: Any) -> dict[str, Any]:
+    """Return what a trained agent acts by, and whether rules on its actions read true depth.
+
+    It acts by observation groups, and by what was added to them: a group with further images is what it was, one with
+    the centreline in it is named with that term's function, ``policy`` and ``centerline_ahead``.
+    """
     groups = getattr(agent_cfg, "obs_groups", None) or {}
     rules = getattr(agent_cfg, "action_constraint", None)
     simulated = rules is not None and rules.in_evaluation and _reads_truth(rules.depth)
-    return {"sees": list(groups.get("actor", groups.get("student", ()))), "simulator_depth": simulated}
+    names = list(groups.get("actor", groups.get("student", ())))
+    added = {function for name in names for function in _added(getattr(env_cfg.observations, name, None))}
+    return {"sees": [*names, *sorted(added)], "simulator_depth": simulated}
+
+
+def _added(group: Any) -> set[str]:
+    """Return the names of the functions of a group's terms that its class does not have itself."""
+    return _functions(group) - _functions(type(group)()) if isinstance(group, ObservationGroupCfg) else set()
+
+
+def _functions(group: ObservationGroupCfg) -> set[str]:
+    terms = [*vars(group).values(), *group.terms.values()]
+    functions = [term.func for term in terms if isinstance(term, ObservationTermCfg)]
+    return {re.split(r"[:.]", of)[-1] if isinstance(of, str) else of.__name__ for of in functions}
 
 
 def _reads_truth(depth: Any) -> bool:

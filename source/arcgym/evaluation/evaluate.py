@@ -4,10 +4,11 @@
 
 from __future__ import annotations
 
+import io
 import json
 import platform
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.device import choose_device, place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.params import differences, read_params
+from arcgym.rl.preflight import check_values
 from arcgym.rl.pretrained import ABOUT
 from arcgym.rl.rollout import UNTRAINED, Policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
@@ -105,9 +107,11 @@ def evaluate(
         out: Folder of the results.
 
     Raises:
-        UsageError: The folder holds another evaluation.
+        UsageError: The folder holds another evaluation, or a setting of a task is wrong.
     """
-    folder = ResultFolder(out, run_record(tasks, conditions, options))
+    run = run_record(tasks, conditions, options)
+    _check_all(tasks, load_cfgs, options)
+    folder = ResultFolder(out, run)
     for task in tasks:
         done = folder.done(task)
         trials = options.share.trials(conditions.trials)
@@ -116,6 +120,15 @@ def evaluate(
         for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
             _run_batch(task, agent, batch, load_cfgs, options, folder)
     return folder
+
+
+def _check_all(tasks: Sequence[str], load_cfgs: LoadCfgs, options: EvaluationOptions) -> None:
+    """Check the settings of all tasks, of which the last may begin hours after the first."""
+    for task in tasks:
+        for agent in options.agents_for(task):
+            with redirect_stdout(io.StringIO()):  # what is said of them is said when they run
+                cfgs = load_cfgs(task, checkpoint_of(agent))
+            check_values(*cfgs)
 
 
 def run_record(tasks: Sequence[str], conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
@@ -226,7 +239,7 @@ def _run_batch(
     cfgs = load_cfgs(task, checkpoint_of(agent))
     folder.note_changes(task, changes_of(task, cfgs[0]))
     if agent not in UNTRAINED:
-        folder.note_inputs(task, inputs_of(cfgs[1]))
+        folder.note_inputs(task, inputs_of(*cfgs))
     with opened(task, agent, trials, cfgs, options) as (env, make_policy):
         with counted(task if len(patients) > 1 else f"{task}, {patients[0]}", len(trials)) as show:
             started = len(folder.rows)

@@ -53,6 +53,16 @@ def check_run(
     check_agent(env_cfg, agent_cfg, trains)
 
 
+def check_values(env_cfg: Any, agent_cfg: Any) -> None:
+    """Check the values of both configurations, without reading a stage.
+
+    Raises:
+        UsageError: The first thing that is wrong, in one line.
+    """
+    _in_one_line(validate, env_cfg, "env")
+    _in_one_line(validate, agent_cfg, "agent")
+
+
 def check_writable(path: Path) -> None:
     """Raise unless a file or folder can be made at ``path``, or written where it exists."""
     place = path.resolve()
