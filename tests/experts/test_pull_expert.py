@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -11,16 +12,20 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.experts import PullExpert
+from arcgym.experts import PullExpert, make_expert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
 
 
-def test_a_tip_rolls_to_and_fro_where_it_is_told_to(tmp_path: Path) -> None:
+@pytest.fixture
+def scene(tmp_path: Path) -> InteractiveScene:
     tube = TinySim(tmp_path)
     cfg = InteractiveSceneCfg(num_envs=2, colon=tube.colon_cfg(rigid=True), endoscope=tube.scope_cfg("capsule"))
-    scene = InteractiveScene(cfg, SimulationCfg())
+    return InteractiveScene(cfg, SimulationCfg())
+
+
+def test_a_tip_rolls_to_and_fro_where_it_is_told_to(scene: InteractiveScene) -> None:
     expert = PullExpert(scene, roll=torch.tensor([0.0, 6.0]))
     rolls = []
     for _ in range(15):
@@ -29,3 +34,28 @@ def test_a_tip_rolls_to_and_fro_where_it_is_told_to(tmp_path: Path) -> None:
     still, rolled = zip(*rolls, strict=True)
     assert still == (0.0,) * 15
     assert (rolled[4], rolled[9], rolled[14]) == pytest.approx((6.0, 0.0, -6.0), abs=1.0e-5)  # a period of 20 steps
+
+
+def test_a_view_circles_around_the_way_while_the_tip_is_pulled_back(scene: InteractiveScene) -> None:
+    """Sweep 0.5 rad, turn gain 4, rate 2 rad/s; the way ahead at 0.5 rad from the view, at 0.75 rad, and right ahead.
+
+    At 0.5 rad the view goes around with 2 sin 0.5; at 0.75 rad it also comes nearer by 4 * 0.25 rad/s, about the axis
+    from the view to the way; right ahead it leaves by 4 * 0.5 rad/s.
+    """
+    expert = PullExpert(scene, speed=-0.01, sweep=0.5)
+    for angle, expected in ((0.5, (2.0 * math.sin(0.5), 0.0)), (0.75, (2.0 * math.sin(0.75), 1.0)), (0.0, (0.0, -2.0))):
+        gaze = torch.tensor([[math.sin(angle), 0.0, math.cos(angle)]] * 2)
+        turn = expert._circle(gaze)
+        assert turn.tolist() == [pytest.approx((*expected, 0.0), abs=1.0e-6)] * 2
+
+
+def test_only_a_tip_that_is_pulled_back_looks_around(scene: InteractiveScene) -> None:
+    expert = PullExpert(scene, speed=torch.tensor([0.04, -0.01]), sweep=0.5)
+    expert.act()
+    onward, back = wp.to_torch(scene["endoscope"].actuators["tip"].angular).norm(dim=1).tolist()
+    assert onward < 0.2 < back
+
+
+def test_a_setting_that_an_expert_does_not_have_is_named(scene: InteractiveScene) -> None:
+    with pytest.raises(ValueError, match="PullExpert has no setting 'swep'. Did you mean 'sweep'"):
+        make_expert(scene, swep=0.5)

@@ -143,17 +143,15 @@ class Shown(SteerToDot):
 def test_the_expert_is_asked_until_there_are_enough_steps():
     """Episodes of 8 steps in 4 worlds, of which 2 succeed: 16 steps a round, and two rounds for 20."""
     env = Shown(4)
-    shown = ask_expert(env, ["policy"], "cpu", 20, expert=lambda obs: torch.full((4, 2), 0.5))
+    shown = ask_expert(env, lambda obs: torch.full((4, 2), 0.5), ["policy"], "cpu", 20)
     assert (len(shown), shown.num_episodes) == (32, 4)
-    assert (
-        len(ask_expert(env, ["policy"], "cpu", 20, successful_only=False, expert=lambda obs: torch.zeros(4, 2))) == 32
-    )
+    assert len(ask_expert(env, lambda obs: torch.zeros(4, 2), ["policy"], "cpu", 20, successful_only=False)) == 32
     assert shown.observations["policy"].dtype == torch.uint8
 
 
 def test_noise_is_carried_out_and_not_kept():
     env = Shown(2)
-    shown = ask_expert(env, ["policy"], "cpu", 8, noise=0.3, expert=lambda obs: torch.full((2, 2), 0.5))
+    shown = ask_expert(env, lambda obs: torch.full((2, 2), 0.5), ["policy"], "cpu", 8, noise=0.3)
     assert torch.all(shown.actions == 0.5)
     assert 0.1 < (torch.cat(env.carried_out) - 0.5).std() < 0.5
 
@@ -162,7 +160,7 @@ def test_an_expert_that_never_succeeds_is_named():
     env = Shown(2)
     env.succeeded[:] = False
     with pytest.raises(UsageError, match="none succeeded"):
-        ask_expert(env, ["policy"], "cpu", 8, expert=lambda obs: torch.zeros(2, 2))
+        ask_expert(env, lambda obs: torch.zeros(2, 2), ["policy"], "cpu", 8)
 
 
 def asked_runner(monkeypatch, **settings) -> BehaviorCloningRunner:
@@ -171,9 +169,21 @@ def asked_runner(monkeypatch, **settings) -> BehaviorCloningRunner:
     algorithm = RslRlBehaviorCloningAlgorithmCfg(demonstrations="expert", expert_steps=8, steps_per_update=1)
     cfg = RslRlBehaviorCloningRunnerCfg(actor=actor_cfg(), algorithm=algorithm, **settings)
     monkeypatch.setattr(
-        "arcgym.rl.expert_demonstrations.ExpertPolicy", lambda env: lambda obs: (-4.0 * env.offset).clamp(-1.0, 1.0)
+        "arcgym.rl.behavior_cloning_runner.ExpertPolicy", lambda env: lambda obs: (-4.0 * env.offset).clamp(-1.0, 1.0)
     )
     return BehaviorCloningRunner(Shown(4), cfg.to_dict(), log_dir=None, device="cpu")
+
+
+def test_the_expert_gets_its_settings(monkeypatch):
+    runner = asked_runner(monkeypatch)
+    runner.alg.expert_settings = {"speed": -0.005}
+    given = {}
+    monkeypatch.setattr(
+        "arcgym.rl.behavior_cloning_runner.ExpertPolicy",
+        lambda env, **settings: given.update(settings) or (lambda obs: torch.zeros(4, 2)),
+    )
+    runner.learn(1)
+    assert given == {"speed": -0.005}
 
 
 def test_asking_counts_among_the_transitions(monkeypatch):

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+import inspect
 from abc import ABC, abstractmethod
 from typing import Any, ClassVar
 
 import torch
 
 from arcgym.scene.interactive_scene import InteractiveScene
-from arcgym.utils.string import resolve_callable
+from arcgym.utils.string import did_you_mean, resolve_callable
 from arcgym.utils.world_random import WorldRandom
 
 
@@ -112,7 +113,7 @@ def make_expert(scene: InteractiveScene, **settings: Any) -> ExpertBase:
         settings: Arguments of the expert, such as ``speed`` [m/s].
 
     Raises:
-        ValueError: If the configuration names none.
+        ValueError: If the configuration names none, or it has no such setting.
     """
     expert = scene["endoscope"].cfg.expert
     if expert is None:
@@ -120,4 +121,9 @@ def make_expert(scene: InteractiveScene, **settings: Any) -> ExpertBase:
             f"The robot {scene['endoscope'].path.name} has no scripted expert: set EndoscopeCfg.expert to one, such as "
             "'arcgym.experts.pull_expert:PullExpert', or start from rest with env.start=rest."
         )
-    return (resolve_callable(expert) if isinstance(expert, str) else expert)(scene, **settings)
+    made: Any = resolve_callable(expert) if isinstance(expert, str) else expert
+    known = list(inspect.signature(made).parameters)[1:]
+    for name in settings:
+        if name not in known:
+            raise ValueError(f"{made.__name__} has no setting '{name}'. {did_you_mean(name, known)}")
+    return made(scene, **settings)

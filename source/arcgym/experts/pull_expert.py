@@ -17,6 +17,9 @@ from arcgym.utils.math import norm, normalize, quat_apply_inverse, row_sum
 
 ROLL_PERIOD = 20
 """Control steps of one roll of the tip to and fro."""
+SWEEP_RATE = 2.0
+"""Rate at which a view circles around the way back [rad/s]: at a sweep of 0.8 rad it turns by 1.4 rad/s, of 1.5 that
+actions allow."""
 
 
 class PullExpert(ExpertBase):
@@ -45,6 +48,7 @@ class PullExpert(ExpertBase):
         slide: float = 1.0,
         back: float = 0.5,
         roll: float = 0.0,
+        sweep: float = 0.0,
     ):
         """Keep the settings; each may be one number or one a world.
 
@@ -59,11 +63,13 @@ class PullExpert(ExpertBase):
             slide: How much of the pull into what the tip touches is turned along it.
             back: How much the tip moves back along its axis while its front stands against a wall.
             roll: Amplitude of rolling the tip to and fro [rad/s]: a tether that rolls has less friction along its way.
+            sweep: Angle between the view and the way ahead while the tip is pulled back [rad]: it circles around the
+                way, and sees what lies behind folds. 0 looks straight along the way.
         """
         super().__init__(scene, speed)
         self.look, self.gaze, self.turn_gain = self.each(look), self.each(gaze), self.each(turn_gain)
         self.axis, self.slide, self.back = self.each(axis), self.each(slide), self.each(back)
-        self.roll = self.each(roll)
+        self.roll, self.sweep = self.each(roll), self.each(sweep)
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=20, first=6, longest=40)
         self._side = torch.zeros(scene.num_envs, 3, device=scene.device)
@@ -88,6 +94,7 @@ class PullExpert(ExpertBase):
         turn = torch.linalg.cross(self._forward, gaze)
         turn = torch.where(gaze[:, 2:] < 0.0, normalize(turn), turn)
         turn = self.turn_gain[:, None] * turn
+        turn = torch.where((withdraws & (self.sweep > 0.0))[:, None], self._circle(gaze), turn)
         self._steps += 1.0
         turn[:, 2] += self.roll * (2.0 * math.pi / ROLL_PERIOD * self._steps).sin()
         self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
@@ -105,6 +112,20 @@ class PullExpert(ExpertBase):
         """Return the unit vector from the tip to a point of the way, in the tip's frame, shape (N, 3)."""
         data = self.scene["endoscope"].data
         return normalize(quat_apply_inverse(data.tip_quat_w, along(way, length) - data.tip_pos_w))
+
+    def _circle(self, gaze: torch.Tensor) -> torch.Tensor:
+        """Return the angular velocity that leads the view around ``gaze`` at the angle of the sweep, shape (N, 3).
+
+        A view at the angle ``a`` from ``gaze`` goes around it at ``rate * sin(a)``, without roll; the rest brings ``a``
+        to that of the sweep. Both depend on where ``gaze`` is in the picture alone.
+        """
+        across = norm(gaze[:, :2])[:, None]
+        angle = torch.atan2(across[:, 0], gaze[:, 2])
+        beside = torch.where(
+            across > 1.0e-6, gaze[:, :2] / across.clamp(min=1.0e-6), self._forward.new_tensor([1.0, 0.0])
+        )
+        towards = (self.turn_gain * (angle - self.sweep))[:, None] * torch.stack([-beside[:, 1], beside[:, 0]], dim=1)
+        return torch.nn.functional.pad(SWEEP_RATE * gaze[:, :2] + towards, (0, 1))
 
     def _direction(self, aim: torch.Tensor, gaze: torch.Tensor) -> torch.Tensor:
         """Return the direction of the pull in the tip's frame: to the aim, along the axis, not into what it touches."""

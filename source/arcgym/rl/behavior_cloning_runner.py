@@ -10,6 +10,7 @@ import time
 from rsl_rl.env import VecEnv
 
 from arcgym.rl.expert_demonstrations import ask_expert
+from arcgym.rl.expert_policy import ExpertPolicy
 from arcgym.rl.runner import OnPolicyRunner
 from arcgym.utils.errors import UsageError
 
@@ -51,6 +52,7 @@ class BehaviorCloningRunner(OnPolicyRunner):
         alg.take(  # type: ignore[attr-defined]
             ask_expert(
                 self.env,
+                ExpertPolicy(self.env, **alg.expert_settings),  # type: ignore[attr-defined]
                 alg.groups,  # type: ignore[attr-defined]
                 self.device,
                 alg.expert_steps,  # type: ignore[attr-defined]

@@ -12,7 +12,6 @@ from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 
 from arcgym.rl.demonstrations import Demonstrations
-from arcgym.rl.expert_policy import ExpertPolicy
 from arcgym.rl.rollout import Policy
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
@@ -20,12 +19,12 @@ from arcgym.utils.progress import counted
 
 def ask_expert(
     env: VecEnv,
+    expert: Policy,
     groups: list[str],
     device: str,
     num_steps: int,
     noise: float = 0.0,
     successful_only: bool = True,
-    expert: Policy | None = None,
 ) -> Demonstrations:
     """Let the expert act until there are enough steps of it, and return them.
 
@@ -34,17 +33,16 @@ def ask_expert(
 
     Args:
         env: Environment of rsl_rl.
+        expert: Policy to ask, such as :class:`arcgym.rl.expert_policy.ExpertPolicy`.
         groups: Observation groups to keep.
         device: Where the steps are kept.
         num_steps: Steps to keep, at least. Rounds of whole episodes are made until there are as many.
         noise: Standard deviation of the noise, in raw actions.
         successful_only: Whether episodes that the task's success did not end are left out.
-        expert: Policy to ask; None takes the robot's :class:`arcgym.rl.expert_policy.ExpertPolicy`.
 
     Raises:
         UsageError: A round of episodes in all worlds held nothing to keep.
     """
-    expert = expert or ExpertPolicy(env)
     kept: list[tuple[TensorDict, torch.Tensor]] = []
     episodes = count = 0
     with counted("asking the expert", num_steps) as show, torch.inference_mode():

@@ -34,6 +34,10 @@ class RslRlBehaviorCloningAlgorithmCfg:
     """Standard deviation of the noise on the expert's actions as they are carried out, in raw actions, so that it shows
     how to get back from mistakes (DART, arXiv:1703.09327). Zero shows its own way alone."""
 
+    expert_settings: dict[str, float] = {}
+    """Settings of the scripted expert, by the names of its arguments; others keep their defaults. Set
+    ``{speed: -0.005, sweep: 0.8}`` for a capsule that looks around on its way back."""
+
     learning_rate: float = 3.0e-4
     """Learning rate."""
 

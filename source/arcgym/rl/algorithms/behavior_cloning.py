@@ -36,6 +36,7 @@ class BehaviorCloning:
         successful_only: bool = True,
         expert_steps: int = 20_000,
         expert_noise: float = 0.2,
+        expert_settings: dict[str, float] | None = None,
         learning_rate: float = 3.0e-4,
         batch_size: int = 256,
         steps_per_update: int = 100,
@@ -54,6 +55,7 @@ class BehaviorCloning:
             successful_only: Whether episodes that did not succeed are left out.
             expert_steps: Steps that the expert is asked for.
             expert_noise: Noise on its actions as they are carried out, in raw actions.
+            expert_settings: Its settings, by name; None for its defaults.
             learning_rate: Learning rate.
             batch_size: Recorded steps of one gradient step.
             steps_per_update: Gradient steps of one iteration.
@@ -69,7 +71,7 @@ class BehaviorCloning:
             raise UsageError("Cloning draws single steps, expected a policy without memory, such as ByteCnnModel.")
         self.device, self.learning_rate = device, learning_rate
         self.groups, self.folder, self.successful_only = groups, demonstrations, successful_only
-        self.expert_steps, self.expert_noise = expert_steps, expert_noise
+        self.expert_steps, self.expert_noise, self.expert_settings = expert_steps, expert_noise, expert_settings or {}
         self._demonstrations: Demonstrations | None = None
         self.batch_size, self.steps_per_update, self.max_grad_norm = batch_size, steps_per_update, max_grad_norm
         self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
