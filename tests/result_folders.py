@@ -16,10 +16,17 @@ PPO = "rsl_rl_cfg_entry_point"
 
 
 def write_result_folder(
-    path: Path, successes: int, task: str = TASK, suite: str = "paper", every: int = 1, **run: Any
+    path: Path,
+    successes: int,
+    task: str = TASK,
+    suite: str = "paper",
+    every: int = 1,
+    conditions_name: str | None = None,
+    **run: Any,
 ) -> Path:
-    """Write a result folder whose first trials succeed."""
-    conditions = read_conditions(read_suites()[suite].conditions_path)
+    """Write a result folder whose first trials succeed, those of the suite's condition file or of an earlier one."""
+    file = read_suites()[suite].conditions_path
+    conditions = read_conditions(file.with_stem(conditions_name or file.stem))
     about = {
         "agent": "checkpoint",
         "checkpoint": ["/far/away/cell/run_1/model_3.pt"],

@@ -76,10 +76,11 @@ def _cell(of: Interval, name: str) -> str:
 
 
 def _origin(floors: Sequence[Floor]) -> str:
-    """Return commit and machine of the rows, with their names where there are several."""
+    """Return commit, machine and trials of the rows, with their names where there are several."""
     groups: dict[tuple[str, str], list[Floor]] = {}
     for one in floors:
-        groups.setdefault((one.commit, one.machine), []).append(one)
+        earlier = "" if one.is_current else f"; trials of {one.conditions}, an earlier version"
+        groups.setdefault((one.commit, one.machine + earlier), []).append(one)
     if len(groups) == 1:
         return "Commit {}; {}.\n".format(*next(iter(groups)))
     several = len({one.task for one in floors}) > 1

@@ -18,6 +18,13 @@ from arcgym.evaluation.trials import Trial, write_conditions
 GROUPS = 5
 """Training seeds that the trials on many patients are shared by."""
 
+SEEDS_OF = {
+    "population_v3": "population_v2",
+    "robustness_v3": "robustness_v2",
+    "withdrawal_population_v2": "withdrawal_population_v1",
+}
+"""Earlier file whose seeds a file has: trials on patients that stayed as they were are the same trials."""
+
 
 def seed_of(name: str, trial: int) -> int:
     """Return the seed of a trial: the first 31 bits of a hash of its name."""
@@ -34,31 +41,32 @@ def main() -> None:
     """Write the files."""
     splits = read_splits()
     unseen = [f"population:{seed}" for seed in splits.seeds["test"]]
+    version = f"(splits {splits.version}, generator {splits.generator})"
     files = {
-        "population_v2": (
-            unseen,
-            1,
-            f"A trial on each of the 200 patients of the test split (splits {splits.version}, "
-            f"generator {splits.generator}).",
-        ),
+        "population_v3": (unseen, 1, f"A trial on each of the 200 patients of the test split {version}."),
         "ct_v1": ([f"ct_{number}/colon.usda" for number in (1, 2)], 10, "Ten trials on each of the two CT patients."),
         "cross_colon_v1": (
             [f"colon_{number}/colon.usda" for number in (3, 4, 5)],
             10,
             "Ten trials on each of the colons 3, 4 and 5, for policies that were trained on 1 and 2.",
         ),
-        "robustness_v2": (
+        "robustness_v3": (
             unseen[:10],
             2,
-            f"Two trials on each of ten patients of the test split (splits {splits.version}, "
-            f"generator {splits.generator}), for each variant.",
+            f"Two trials on each of ten patients of the test split {version}, for each variant.",
+        ),
+        "withdrawal_population_v2": (
+            unseen[:20],
+            1,
+            f"A trial on each of the first 20 patients of the test split {version}: from the cecum back.",
         ),
     }
     for name, (patients, each, comment) in files.items():
         path: Path = FOLDER / "conditions" / f"{name}.csv"
         if not path.exists():
-            seeds = f"Seeds: the first 31 bits of SHA-256 of '{name}/<trial>'."
-            write_conditions(path, trials_of(name, patients, each), f"{comment}\n{seeds}")
+            base = SEEDS_OF.get(name, name)
+            seeds = f"Seeds: the first 31 bits of SHA-256 of '{base}/<trial>'."
+            write_conditions(path, trials_of(base, patients, each), f"{comment}\n{seeds}")
             print(path)
 
 

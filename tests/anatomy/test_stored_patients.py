@@ -29,7 +29,7 @@ while record := os.read(0, 32):
 
 
 def test_a_folder_is_of_one_version_and_one_grid() -> None:
-    assert store_folder().name == "generator_2_160x14"
+    assert store_folder().name == "generator_3_160x14"
 
 
 @pytest.fixture
@@ -87,6 +87,14 @@ def test_the_program_makes_what_is_missing(tmp_path: Path, monkeypatch: pytest.M
     stage_of(tmp_path, 7).write_text("")
     stored_patients.main(str(tmp_path), "7", "8")
     assert made == [(8, stage_of(tmp_path, 8).parent)]
+
+
+def test_patients_with_less_gas_are_not_widened_for_a_head(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are what a scope has to push apart, and the same as before there was such a check."""
+    made = []
+    monkeypatch.setattr("arcgym.anatomy.generator.output.make_to_folder", lambda spec, out: made.append(spec))
+    stored_patients.main(str(tmp_path), "8", "8*0.7")
+    assert [(spec.inflation, spec.head_room) for spec in made] == [(1.0, True), (0.7, False)]
 
 
 def test_single_patients_are_named_by_their_seed(folder: Path) -> None:

@@ -65,6 +65,17 @@ def test_a_row_gives_way_to_as_many_trials_and_to_no_fewer(tmp_path: Path) -> No
     assert updated(known, floors(folder(tmp_path / "b", "expert", 0, every=2)))[0].figures["success"].value == 0.0
 
 
+def test_a_row_of_earlier_trials_gives_way_to_fewer_present_ones(tmp_path: Path) -> None:
+    of = {"task": "ARC-LeftColon-Magnetic", "suite": "population"}
+    old = floors(folder(tmp_path / "old", "expert", **of, conditions_name="population_v2"))
+    new = floors(folder(tmp_path / "new", "expert", every=10, **of))
+    assert [one.conditions for one in (*old, *new)] == ["population_v2", "population_v3"]
+    assert updated(old, new) == new == updated(new, old)
+    write_floors(tmp_path / "floors.csv", old)
+    last = tables("--floors", str(tmp_path / "floors.csv"))[-1]
+    assert last == "Commit abc1234; a machine; trials of population_v2, an earlier version."
+
+
 def test_a_row_gives_way_to_none_without_its_figures(tmp_path: Path) -> None:
     (known,) = floors(folder(tmp_path / "a", "expert", 30))
     (new,) = floors(folder(tmp_path / "b", "expert", 0))

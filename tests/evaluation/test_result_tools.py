@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+from result_folders import write_result_folder
 
 from arcgym.cli.main import main
 from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
@@ -252,6 +254,17 @@ def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) ->
     changes[task]["robustness"][1] = "none"
     other = ResultFolder(tmp_path / "b", {**run, "changes": changes})
     assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]
+
+
+def test_trials_of_an_earlier_version_cannot_be_handed_in(tmp_path: Path) -> None:
+    of: dict[str, Any] = {"task": "ARC-LeftColon-Magnetic", "suite": "population"}
+    of |= {"checkpoint_sha256": ["a", "b", "c"], "changes": {of["task"]: {}}}
+    of |= {"inputs": {of["task"]: {"sees": ["policy"], "simulator_depth": False}}}
+    old = write_result_folder(tmp_path / "old", 3, **of, conditions_name="population_v2")
+    message = "trials are of population_v2, an earlier version of population_v3: evaluate again"
+    assert problems(old) == [message] and problems(old, whole=False) == []
+    new = write_result_folder(tmp_path / "new", 3, **of)
+    assert problems(new) == []
 
 
 ENTRY = "name: Mine\nby: A. Author\nsees: policy\ntrained_on: colon 1\ntransitions: 2.0e+6\ngpu_hours: 1.5\n"

@@ -36,9 +36,8 @@ def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_
     assert f"| Magnetic | {label} | 90 (74–97) [20] | – [0] | – [40] | – [0] |" in text
     assert "arcgym study paper_table seed=1 algorithm=ppo_paper robot=Magnetic task=sigmoid,descending,splenic" in text
     assert "arcgym study paper_table seed=1 algorithm=ppo robot=Magnetic task=rectum,sigmoid,descending,splenic" in text
-    assert (
-        "| paper | `ARC-Rectum-Magnetic` | ppo_paper | 30 | 6 144 | abcdef012345 | abc1234 | a machine | ours |" in text
-    )
+    last = "| ppo_paper | 30 | 6 144 | abcdef012345 | abc1234 | a machine | ours |"
+    assert f"| paper | paper_v1 | `ARC-Rectum-Magnetic` {last}" in text
 
 
 def test_the_committed_page_is_made_of_the_committed_folders(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -84,6 +83,21 @@ def test_a_small_copy_makes_the_same_page(tmp_path: Path) -> None:
     assert (keep / "left" / "trials.csv.gz").is_file() and not (keep / "left" / "trials.csv").exists()
     assert "away/cell" not in (keep / "rectum" / "run.json").read_text()
     assert "| `ARC-LeftColon-Magnetic` | ppo_lagrangian `abcdef01` | 50 | 14 (7–26) |" in text
+
+
+def test_trials_of_an_earlier_version_say_so_and_give_way_to_the_present_ones(tmp_path: Path) -> None:
+    run: dict[str, Any] = {"agent": "expert", "checkpoint_sha256": []}
+    run |= {"task": "ARC-LeftColon-Magnetic", "suite": "population"}
+    old = write_result_folder(tmp_path / "old", 100, **run, conditions_name="population_v2")
+    text = page([old], tmp_path)
+    assert "| `ARC-LeftColon-Magnetic` | expert, population_v2 | 200 | 50 (43–57) |" in text
+    assert "Trials of `population_v2` are of an earlier version of the population" in text
+    assert "--suite population --robot Magnetic --agent expert --out" in text
+    assert "| population | population_v2 | `ARC-LeftColon-Magnetic` | expert | 200 |" in text
+    new = write_result_folder(tmp_path / "new", 20, **run)
+    text = page([old, new], tmp_path)
+    assert "| expert | 200 | 10 (7–15) |" in text and "population_v2" not in text
+    assert "--suite population --robot Magnetic --agent expert --out" not in text
 
 
 def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:

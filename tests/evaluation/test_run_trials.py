@@ -175,6 +175,20 @@ def test_the_conditions_are_of_the_present_population() -> None:
     ]
 
 
+def test_trials_of_an_earlier_version_are_the_same_but_for_the_patients() -> None:
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    renewed = {suite.conditions: suite for suite in read_suites().values() if suite.earlier}
+    assert sorted(renewed) == ["population_v3", "robustness_v3", "withdrawal_population_v2"]
+    for suite in renewed.values():
+        (name,) = suite.earlier
+        before = read_conditions(suite.conditions_path.with_stem(name))
+        assert before.trials == read_conditions(suite.conditions_path).trials and before.sha256
+        assert suite.conditions_of(before.sha256).name == name
+        assert suite.conditions_of("unknown").name == suite.conditions
+
+
 def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) -> None:
     evaluate(tmp_path / "run", conditions)
     changes = read_run(tmp_path / "run")["changes"]["ARC-Rectum-Capsule"]

@@ -34,8 +34,11 @@ SHIPPED = {
     "five_colons_v1": "2958c330008314b4",
     "paper_v1": "9daf4c1f73ff953c",
     "population_v2": "f9905f1ea7b45e90",
+    "population_v3": "16b2cfef73a358ce",
     "robustness_v2": "5c7867ef5b36f05c",
+    "robustness_v3": "9429e1232e5e1d14",
     "withdrawal_population_v1": "1720de6d55c0da78",
+    "withdrawal_population_v2": "7a919689f268b7a7",
 }
 """Begins of the hashes of the shipped files: a changed one gets another name, and a line here."""
 

@@ -61,12 +61,10 @@ def problems(path: Path, whole: bool = True) -> list[str]:
     suite = suites.get(str(run.get("suite")))
     if suite is None:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
-    conditions = read_conditions(suite.conditions_path)
+    conditions = suite.conditions_of(run.get("conditions_sha256"))
     found = [*_run_problems(run, conditions, suite), *_row_problems(rows, conditions), *_other_tasks(rows, suite)]
-    return (
-        found
-        + [*_unfit_to_compete(run, conditions), *_silent(run, rows), *_missing_trials(rows, conditions, suite)] * whole
-    )
+    unfit = [*_outdated(conditions, suite), *_unfit_to_compete(run, conditions), *_silent(run, rows)]
+    return found + [*unfit, *_missing_trials(rows, conditions, suite)] * whole
 
 
 def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> list[str]:
@@ -87,6 +85,13 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
             if not own and str(used).lower() != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
     return found
+
+
+def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
+    """Return a problem for trials of an earlier condition file, some of whose patients are others now."""
+    if conditions.name == suite.conditions:
+        return []
+    return [f"trials are of {conditions.name}, an earlier version of {suite.conditions}: evaluate again"]
 
 
 def _is_of_nothing(task: str, path: str, changed: set[str]) -> bool:

@@ -38,7 +38,7 @@ FIGURES = {
 BOUNDS = ("", "_low", "_high")
 """Ends of the columns of an estimate and of its bounds."""
 
-ABOUT = ("suite", "task", "agent", "trials", "commit", "machine")
+ABOUT = ("suite", "conditions", "task", "agent", "trials", "commit", "machine")
 """Columns before those of the figures."""
 
 DIGITS = 4
@@ -51,6 +51,8 @@ class Floor:
 
     suite: str
     """Name of the suite."""
+    conditions: str
+    """Its condition file, or an earlier one of other patients in part."""
     task: str
     """Registered name, with ``:variant`` behind it or without."""
     agent: str
@@ -69,6 +71,11 @@ class Floor:
         """Suite, task and agent: there is one row of each."""
         return self.suite, self.task, self.agent
 
+    @property
+    def is_current(self) -> bool:
+        """Whether the trials are those that the suite has now."""
+        return self.conditions == read_suites()[self.suite].conditions
+
 
 def floors_of(results: Iterable[Result]) -> list[Floor]:
     """Return the floors in results, of each suite, task and agent the one with the most trials."""
@@ -83,15 +90,22 @@ def updated(known: Sequence[Floor], new: Sequence[Floor]) -> list[Floor]:
     """Return the known rows with new ones in their places, in the order of suites, tasks and agents.
 
     A new row takes a place if it has at least as many trials and every figure of the one before: fewer trials, or a
-    small copy of a folder without some columns, replace nothing.
+    small copy of a folder without some columns, replace nothing. Trials of the suite's present condition file take the
+    place of earlier ones, and earlier ones none of theirs.
     """
     rows = {one.key: one for one in known}
     for one in new:
         old = rows.get(one.key)
-        if old is None or (one.trials >= old.trials and set(old.figures) <= set(one.figures)):
+        if old is None or _is_better(one, old):
             rows[one.key] = one
     suites = list(read_suites())
     return sorted(rows.values(), key=lambda one: (suites.index(one.suite), one.task, AGENTS.index(one.agent)))
+
+
+def _is_better(new: Floor, old: Floor) -> bool:
+    if new.is_current != old.is_current:
+        return new.is_current
+    return new.trials >= old.trials and set(old.figures) <= set(new.figures)
 
 
 def read_floors(path: Path) -> list[Floor]:
@@ -123,7 +137,15 @@ def write_floors(path: Path, floors: Sequence[Floor]) -> None:
 def _floor(result: Result) -> Floor:
     (of,) = summarize(result.rows).values()
     figures = {name: of[name] for name in FIGURES if name in of}
-    about = (result.suite, result.task, result.method, of["trials"], result.commit, result.run["machine"])
+    about = (
+        result.suite,
+        result.conditions,
+        result.task,
+        result.method,
+        of["trials"],
+        result.commit,
+        result.run["machine"],
+    )
     return Floor(*about, figures)
 
 

@@ -12,7 +12,6 @@ from typing import Any
 from arcgym.evaluation.check import problems
 from arcgym.evaluation.result_folder import CHANGED, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
-from arcgym.evaluation.trials import read_conditions
 
 LARGEST_SHARE = 10
 """Shares of a suite's trials that are shown: all of them to each tenth one."""
@@ -64,6 +63,16 @@ class Result:
     def reads_depth(self) -> bool:
         """Whether rules on the actions read the simulator's depth, which the policy itself does not see."""
         return any(inputs["simulator_depth"] for inputs in self.run.get("inputs", {}).values())
+
+    @property
+    def conditions(self) -> str:
+        """Name of the condition file, such as ``population_v3``."""
+        return read_suites()[self.suite].conditions_of(self.run.get("conditions_sha256")).name
+
+    @property
+    def is_current(self) -> bool:
+        """Whether the trials are those that the suite has now, not those of an earlier version."""
+        return self.conditions == read_suites()[self.suite].conditions
 
     @property
     def checkpoints(self) -> list[str]:
@@ -122,10 +131,13 @@ def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list
 
 
 def best(results: Sequence[Result]) -> Result | None:
-    """Return the result of several of one cell that says most: training seeds count first, trials, then transitions."""
+    """Return the result of several of one cell that says most.
 
-    def weight(one: Result) -> tuple[int, int, float, str]:
-        return len(one.checkpoints), len(one.rows), one.transitions, one.folder.name
+    Those of the suite's present trials come first, then training seeds count, trials, and transitions.
+    """
+
+    def weight(one: Result) -> tuple[bool, int, int, float, str]:
+        return one.is_current, len(one.checkpoints), len(one.rows), one.transitions, one.folder.name
 
     return max(results, key=weight, default=None)
 
@@ -142,5 +154,6 @@ def _unknown(run: dict[str, Any]) -> list[str]:
 
 def _is_whole(result: Result) -> bool:
     """Return whether there are all trials of the suite, or each n-th of them from the first on."""
-    numbers = [trial.trial for trial in read_conditions(read_suites()[result.suite].conditions_path).trials]
+    conditions = read_suites()[result.suite].conditions_of(result.run.get("conditions_sha256"))
+    numbers = [trial.trial for trial in conditions.trials]
     return {row["trial"] for row in result.rows} in [set(numbers[::n]) for n in range(1, LARGEST_SHARE + 1)]

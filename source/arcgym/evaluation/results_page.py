@@ -48,6 +48,12 @@ NOTHING = "–"
 FIGURE = "Success in 30 trials of each task, with intervals, and the paper's own figures"
 """What the picture shows."""
 
+EARLIER = (
+    "Trials of {names} are of an earlier version of the population, in which some patients were others"
+    " ([which](patients.md#make-check-and-look-at-others))."
+)
+"""Stands above tables in which some trials are no longer the suite's."""
+
 INTRODUCTION = """# Results
 
 Made by `{command}`
@@ -82,10 +88,17 @@ def results_page(
         asked |= dict.fromkeys(missing)
         parts.append(f"## {section['title']}\n")
         parts += [f"{section['text']}\n"] if "text" in section else []
+        parts += [f"{note}\n" for note in _earlier(shown)]
         parts += [text] if text else []
         parts += [f"![{FIGURE}]({figure})\n"] if figure and section is sections[0] else []
         parts += [_commands(missing)] if missing else []
     return "\n".join([*parts, "## What was run\n", _provenance(list(used.values()))])
+
+
+def _earlier(results: Sequence[Result]) -> list[str]:
+    """Return a sentence that names the versions of trials that are no longer the suite's; none if all are."""
+    names = sorted({one.conditions for one in results if not one.is_current})
+    return [EARLIER.format(names=", ".join(f"`{name}`" for name in names))] if names else []
 
 
 def read_sections() -> list[dict[str, Any]]:
@@ -138,7 +151,7 @@ def _agents(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Re
     metrics = [name for name in section["metrics"] if any(name in row for one in own for row in one.rows[:1])]
     head = ["task", "agent", "trials", "success [%]", *(METRICS[name][0] for name in metrics)]
     lines = [_row(head), _rule(len(head)), *(_row(_agent_cells(one, metrics)) for one in own)]
-    there = {(one.robot, TRAINED if one.checkpoints else one.method) for one in own}
+    there = {(one.robot, TRAINED if one.checkpoints else one.method) for one in own if one.is_current}
     asked = [(robot, agent) for robot, agents in section["robots"].items() for agent in [*agents, TRAINED]]
     missing = [
         section["command"].format(suite=section["suite"], robot=robot, agent=agent)
@@ -152,6 +165,11 @@ def _same(first: Result, second: Result) -> bool:
     return (first.task, first.method) == (second.task, second.method)
 
 
+def _newest(results: Sequence[Result]) -> list[Result]:
+    """Return the results of the suite's present trials, or all where there are none."""
+    return [one for one in results if one.is_current] or list(results)
+
+
 def _place(result: Result) -> int:
     return REFERENCE_AGENTS.index(result.method) if result.method in REFERENCE_AGENTS else len(REFERENCE_AGENTS)
 
@@ -160,8 +178,9 @@ def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
     (of,) = summarize(result.rows).values()
     name = f"{result.method} `{result.checkpoints[0][:8]}`" if result.checkpoints else result.method
     figures = [_interval(of[name], METRICS[name][1]) if name in of else _mean(result.rows, name) for name in metrics]
-    limits = f", limit {result.limits}" if result.limits else ""
-    return [f"`{result.task}`", name + limits, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
+    name += f", limit {result.limits}" if result.limits else ""
+    name += "" if result.is_current else f", {result.conditions}"
+    return [f"`{result.task}`", name, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
 
 
 def _mean(rows: Sequence[Row], name: str) -> str:
@@ -171,9 +190,9 @@ def _mean(rows: Sequence[Row], name: str) -> str:
 
 def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of the robustness variants, a table an agent, and the command where there is none."""
-    tables = strengths_tables([row for one in results for row in one.rows])
-    text = "\n".join(table.to_markdown() for table in tables)
-    return list(results), text, [] if results else [section["command"]]
+    own = _newest(results)
+    text = "\n".join(table.to_markdown() for table in strengths_tables([row for one in own for row in one.rows]))
+    return own, text, [] if any(one.is_current for one in own) else [section["command"]]
 
 
 def _paper(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
@@ -203,14 +222,15 @@ def _cell(result: Result | None, metric: str) -> str:
 
 def _provenance(results: Sequence[Result]) -> str:
     """Return a table of the results that are shown, a line a folder and task."""
-    head = ["suite", "task", "method", "trials", "transitions", "checkpoint (SHA-256)", "commit", "machine", "folder"]
+    head = ["suite", "conditions", "task", "method", "trials", "transitions", "checkpoint (SHA-256)"]
+    head += ["commit", "machine", "folder"]
     lines = [_row(head), _rule(len(head))]
     for one in dict.fromkeys((one.folder, one.task.partition(":")[0]) for one in results):
         of = [result for result in results if (result.folder, result.task.partition(":")[0]) == one]
         hashes = ", ".join(digest[:12] for digest in of[0].checkpoints)
         transitions = f"{of[0].transitions:,.0f}".replace(",", " ") if of[0].transitions else ""
         about = [str(sum(len(result.rows) for result in of)), transitions, hashes, of[0].commit, of[0].run["machine"]]
-        lines.append(_row([of[0].suite, f"`{one[1]}`", of[0].method, *about, one[0].name]))
+        lines.append(_row([of[0].suite, of[0].conditions, f"`{one[1]}`", of[0].method, *about, one[0].name]))
     return "\n".join(lines) + "\n"
 
 

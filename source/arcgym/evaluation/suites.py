@@ -10,6 +10,8 @@ from typing import Any
 
 import yaml
 
+from arcgym.evaluation.trials import Conditions, read_conditions
+
 FOLDER = Path(__file__).parents[2] / "arcgym_tasks" / "benchmark"
 """Folder with ``suites.yaml`` and the condition files, which are never changed: another version gets another name."""
 
@@ -23,6 +25,9 @@ class Suite:
 
     conditions: str
     """Condition file of each of them, without its ending."""
+
+    earlier: tuple[str, ...] = ()
+    """Condition files that were the suite's before, newest first: results of their trials are shown as such."""
 
     overrides: tuple[str, ...] = ()
     """Overrides of the environment's configuration, as on the command line."""
@@ -48,6 +53,11 @@ class Suite:
         """Path of the condition file."""
         return FOLDER / "conditions" / f"{self.conditions}.csv"
 
+    def conditions_of(self, sha256: str | None) -> Conditions:
+        """Return the condition file with a hash, of the suite's and those before; the suite's if none has it."""
+        files = [read_conditions(self.conditions_path.with_stem(name)) for name in (self.conditions, *self.earlier)]
+        return next((file for file in files if file.sha256 == sha256), files[0])
+
 
 def split_task(task: str) -> tuple[str, str | None]:
     """Return registered name and variant of a task, such as ``ARC-Sigmoid-Magnetic:blur_2``; no variant is None."""
@@ -67,6 +77,7 @@ def _suite(values: dict[str, Any]) -> Suite:
     return Suite(
         segments=tuple(values["segments"]),
         conditions=values["conditions"],
+        earlier=tuple(values.get("earlier", ())),
         overrides=tuple(values.get("overrides", ())),
         variants={name: tuple(texts) for name, texts in variants.items()},
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from arcgym.anatomy.generator.lesion_shapes import distance_to, shape_lesion, wall_bulge
 from arcgym.anatomy.generator.lesions import Lesion
-from arcgym.anatomy.generator.lumen_field import LEAD, LumenField
+from arcgym.anatomy.generator.lumen_field import LEAD, FieldGrid, LumenField
 from arcgym.anatomy.generator.surface import Surface
 from arcgym.anatomy.meshing.colon_fitting import FitSettings, FittedColon, fit_colon
 from arcgym.anatomy.meshing.grid_surfaces import Detail
@@ -22,19 +22,19 @@ LEG_GAP = 0.0015
 """Least distance of the walls of two legs of a bend, or of two loops [m]."""
 
 
-def fit_surface(surface: Surface, lesions: Sequence[Lesion] = ()) -> FittedColon:
+def fit_surface(surface: Surface, lesions: Sequence[Lesion] = (), lumen: FieldGrid | None = None) -> FittedColon:
     """Fit a generated colon.
 
     Args:
         surface: The colon.
         lesions: Its lesions: all on the visual surfaces, wide diverticula also in the wall and where the scope touches.
+        lumen: Its lumen, which :mod:`arcgym.anatomy.generator.head_room` may have widened; else as the surface has it.
 
     Raises:
         ValueError: Loops are joined, or the wall folds over itself.
     """
-    spec = surface.spec
-    field = LumenField(surface, 2 * spec.wall_thickness + LEG_GAP)
-    grid = field.sample()
+    spec, field = surface.spec, lumen_field(surface)
+    grid = field.sample() if lumen is None else lumen
     settings = FitSettings(
         shape=spec.grid, thickness=spec.wall_thickness, least_radius=0.9 * spec.min_lumen_radius, lead=LEAD
     )
@@ -51,6 +51,11 @@ def fit_surface(surface: Surface, lesions: Sequence[Lesion] = ()) -> FittedColon
         visual=quantize(fitted.visual),
         visual_proxy=quantize(fitted.visual_proxy),
     )
+
+
+def lumen_field(surface: Surface) -> LumenField:
+    """Return the lumen of a colon as a field."""
+    return LumenField(surface, 2 * surface.spec.wall_thickness + LEG_GAP)
 
 
 def _detail(surface: Surface, lesions: Sequence[Lesion], field: LumenField) -> Detail:

@@ -5,14 +5,15 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from arcgym.anatomy.generator.acceptance import check_course, wall_bounds
 from arcgym.anatomy.generator.centerline import make_centerline
-from arcgym.anatomy.generator.fitting import fit_surface
+from arcgym.anatomy.generator.fitting import fit_surface, lumen_field
+from arcgym.anatomy.generator.head_room import fit_with_room
 from arcgym.anatomy.generator.lesions import Lesion, place_lesions
 from arcgym.anatomy.generator.posture import make_posed, repose
 from arcgym.anatomy.generator.spec import ColonSpec
@@ -25,8 +26,11 @@ from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.wall_checks import check_wall
 
 _LOGGER = logging.getLogger(__name__)
-GENERATOR_VERSION = 2
-"""Kept in every stage; the same spec and version give the same stage."""
+GENERATOR_VERSION = 3
+"""The same spec and version give the same stage. Version 3 widens lumens in which a stiff head has no room."""
+
+SAME_SINCE = 2
+"""Version since which colons that had room are the same to the bit: their stages name it, those of widened ones 3."""
 
 POSTURE_TOLERANCE = 0.03
 """Largest relative difference of arc lengths between postures."""
@@ -53,12 +57,12 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     rejected = []
     for attempt in range(spec.max_attempts):
         try:
-            surface, lesions, fitted = draw_colon(spec, attempt)
+            drawn = draw_colon(spec, attempt)
         except AnatomyError as error:
             rejected.append(f"attempt {attempt}: {error}")
             _LOGGER.info("Rejected %s", rejected[-1])
             continue
-        return _stage(spec, surface, lesions, fitted, attempt, folder)
+        return _stage(spec, drawn, attempt, folder)
     raise AnatomyError(
         f"ColonSpec '{spec.name}' gave no usable anatomy in {spec.max_attempts} attempts. Take another seed, or"
         " change acute_bends, min_bend_radius, the lengths of the segments that failed, or max_attempts:\n"
@@ -66,21 +70,40 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
     )
 
 
-def draw_colon(spec: ColonSpec, attempt: int) -> tuple[Surface, list[Lesion], FittedColon]:
+@dataclass(frozen=True)
+class DrawnColon:
+    """One draw of a colon, as its spec asks."""
+
+    surface: Surface
+    """Course, radius and folds."""
+    lesions: list[Lesion]
+    """Polyps, diverticula and openings."""
+    fitted: FittedColon
+    """Wall and surfaces."""
+    widened: float
+    """Volume that was added to the lumen so that a stiff head passes [m^3]."""
+
+
+def draw_colon(spec: ColonSpec, attempt: int) -> DrawnColon:
     """Draw and fit one anatomy.
 
     Raises:
-        AnatomyError: It is not as the spec asks; says in what.
+        AnatomyError: It is not as the spec asks, or has no room for a stiff head; says in what.
         ValueError: A segment has no room for its lesions.
     """
     surface, lesions = draw_surface(spec, attempt)
     _require([] if spec.posture != "supine" else failed(check_course(spec, surface)))
+    lumen = lumen_field(surface).sample()
     try:
-        fitted = fit_surface(surface, lesions)
+        fitted = fit_surface(surface, lesions, lumen)
+        _require(failed(check_wall(fitted.wall, wall_bounds(spec))))
+        fitted, added = fit_with_room(surface, lesions, lumen, fitted) if spec.head_room else (fitted, 0.0)
+    except AnatomyError:
+        raise
     except ValueError as error:
         raise AnatomyError(str(error)) from error
-    _require(failed(check_wall(fitted.wall, wall_bounds(spec))))
-    return surface, lesions, fitted
+    _require(failed(check_wall(fitted.wall, wall_bounds(spec))) if added else [])
+    return DrawnColon(surface, lesions, fitted, added)
 
 
 def draw_surface(spec: ColonSpec, attempt: int = 0) -> tuple[Surface, list[Lesion]]:
@@ -113,19 +136,18 @@ def _require(problems: list) -> None:
         raise AnatomyError("; ".join(str(check) for check in problems))
 
 
-def _stage(
-    spec: ColonSpec, surface: Surface, lesions: list[Lesion], fitted: FittedColon, attempt: int, folder: Path
-) -> ColonStage:
+def _stage(spec: ColonSpec, drawn: DrawnColon, attempt: int, folder: Path) -> ColonStage:
+    fitted = drawn.fitted
     folder.mkdir(parents=True, exist_ok=True)
     albedo, detail = write_textures(folder, spec.seed, spec.mucosa)
-    openings = {_OPENINGS[lesion.kind]: lesion.s for lesion in lesions if lesion.kind in _OPENINGS}
+    openings = {_OPENINGS[lesion.kind]: lesion.s for lesion in drawn.lesions if lesion.kind in _OPENINGS}
     return ColonStage(
         name=spec.name,
         wall=fitted.wall,
         visual=fitted.visual,
         visual_proxy=fitted.visual_proxy,
         centerline=fitted.centerline,
-        landmarks=find_landmarks(surface.curve, openings),
+        landmarks=find_landmarks(drawn.surface.curve, openings),
         material=spec.material,
         albedo_texture=albedo,
         detail_texture=detail,
@@ -135,7 +157,8 @@ def _stage(
             "licence": "BSD-3-Clause",
             "seed": spec.seed,
             "attempt": attempt,
-            "generator": GENERATOR_VERSION,
-        },
+            "generator": GENERATOR_VERSION if drawn.widened else SAME_SINCE,
+        }
+        | ({"widened_ml": round(1e6 * drawn.widened, 1)} if drawn.widened else {}),
         contact=fitted.contact,
     )

@@ -161,6 +161,9 @@ class ColonSpec:
     of different grids cannot be in one batch."""
     min_lumen_radius: float = 0.009
     """Least distance from the centreline to folds [m]; lets a 13 mm scope through everywhere."""
+    head_room: bool = True
+    """Whether a lumen is widened where a scope's stiff head has no room at rest. If not, the scope has to push the wall
+    apart, as in the patients of the robustness variants ``collapsed``."""
     material: TissueMaterial = TissueMaterial()
     """Tissue of the wall."""
     visual_refinements: int = 2

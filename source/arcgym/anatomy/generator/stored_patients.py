@@ -94,8 +94,10 @@ def main(folder: str, *patients: str) -> None:
             continue
         seed, _, gas = patient.partition("*")
         spec = draw_spec(int(seed))
+        if gas:
+            spec = replace(spec, inflation=round(spec.inflation * float(gas), 4), head_room=False)
         try:
-            make_to_folder(replace(spec, inflation=round(spec.inflation * float(gas or 1.0), 4)), stage.parent)
+            make_to_folder(spec, stage.parent)
         except (OSError, ValueError):
             if not stage.is_file():  # else another process, which makes the same one, was first
                 raise

@@ -125,7 +125,12 @@ def contact_passage(
 
 
 def wall_passage(
-    wall: WallMesh, points: np.ndarray, arc: np.ndarray, radius: float = HEAD_RADIUS, length: float = HEAD_LENGTH
+    wall: WallMesh,
+    points: np.ndarray,
+    arc: np.ndarray,
+    radius: float = HEAD_RADIUS,
+    length: float = HEAD_LENGTH,
+    until: float = np.inf,
 ) -> Passage:
     """Return the room for a stiff head inside of a wall at rest.
 
@@ -135,9 +140,10 @@ def wall_passage(
         arc: Its arc length [m], shape (n,).
         radius: Radius of the head [m].
         length: Its length with both round ends [m].
+        until: Room everywhere at which the search ends [m].
     """
     surface = _WallDistance(wall.points.astype(float), inner_faces(wall.tets, wall.layer))
-    return find_passage(surface.clearance, points, arc, radius, length, surface.touched)
+    return find_passage(surface.clearance, points, arc, radius, length, surface.touched, until)
 
 
 class _WallDistance:
