@@ -20,6 +20,7 @@ QUICK = [
     "weight_wall",
     "gas_pressure,gas_radius",
     "gas_collapse",
+    "tension_oval",
     "abdomen_stop",
     "hand_dent,hand_push",
     "mesentery_swing,mesentery_strain",

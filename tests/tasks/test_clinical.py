@@ -36,6 +36,7 @@ def switches(cfg: Any) -> list[bool]:
         colon.material == "clinical" and law.stiffening == 1.5 and law.thickness_by_diameter,
         law.relaxation,
         colon.gas.enabled and cfg.metrics.max_lumen_pressure is not None,
+        colon.gas.tense,
         sim.weight.enabled,
         scope.grading.active and scope.actuators["bending"].play > 0.0 and scope.actuators["bending"].lag > 0.0,
         sim.contact.friction == 0.12 and sim.contact.static_friction == 1.4,
@@ -59,7 +60,8 @@ def test_all_of_them() -> None:
 
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_one_of_them_alone(effect: str) -> None:
-    assert switches(configured(f"env.clinical=[{effect}]")) == [name == effect for name in EFFECTS]
+    brought = ("gas",) if effect == "tension" else ()
+    assert switches(configured(f"env.clinical=[{effect}]")) == [name in (effect, *brought) for name in EFFECTS]
 
 
 def test_what_is_written_down_are_effects_not_groups() -> None:

@@ -18,6 +18,10 @@ class GasCfg:
     enabled: bool = False
     """Whether gas is simulated. Switch it on for insufflation, suction and a lumen that collapses. Off, the wall keeps
     the shape in which it was imaged without a pressure, as in every figure measured without gas."""
+    pretension: bool = False
+    """Whether the wall of a lumen at rest is under the tension that bears the imaging pressure, as an inflated wall is.
+    Off, what the two do together is left out at and above that pressure: the wall is as limp there as an empty one,
+    and kinks over what pulls in it."""
     imaging_pressure: float = 20.0 * MMHG
     """Pressure in the lumen when the stage's shape was imaged [Pa]: the shape is that of a wall under it. CT
     colonography stops insufflating at 20 to 25 mmHg (McLaughlin et al., ARRS). Change it with the stages."""
@@ -53,6 +57,11 @@ class GasCfg:
     def active(self) -> bool:
         """Whether it is on."""
         return self.enabled
+
+    @property
+    def tense(self) -> bool:
+        """Whether the wall is under tension at rest."""
+        return self.enabled and self.pretension
 
     def validate_config(self) -> None:
         """Check bounds.

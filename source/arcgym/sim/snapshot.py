@@ -52,6 +52,10 @@ class Snapshot:
         still = {"joint_qd", "nodal_vel"}
         return Snapshot({name: np.zeros_like(a) if name in still else a for name, a in self.arrays.items()})
 
+    def to_be_filled(self) -> Snapshot:
+        """Return the same place without an amount of gas: a lumen that is filled when the state is written."""
+        return Snapshot({name: array for name, array in self.arrays.items() if not name.startswith(GAS)})
+
 
 @dataclass(frozen=True)
 class SnapshotSet:

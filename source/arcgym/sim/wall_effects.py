@@ -39,10 +39,12 @@ def wall_effects(
     Raises:
         ValueError: If one is on that ``SimulationCfg.solver`` does not have.
     """
-    return _gas(sim, walls, lumen), _weight(sim, walls), _law(sim), _surroundings(sim, walls, modes)
+    return _gas(sim, walls, modes, lumen), _weight(sim, walls), _law(sim), _surroundings(sim, walls, modes)
 
 
-def _gas(sim: Simulation, walls: Sequence[WallParameters], lumen: LumenTopology) -> LumenGas | None:
+def _gas(
+    sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes], lumen: LumenTopology
+) -> LumenGas | None:
     gas, wall = sim.colon.cfg.gas, sim.colon.wall
     if not gas.enabled:
         return None
@@ -50,7 +52,7 @@ def _gas(sim: Simulation, walls: Sequence[WallParameters], lumen: LumenTopology)
     if not sim.cfg.wall.coarse_correction:
         raise ValueError("Gas needs the coarse correction: set env.sim.wall.coarse_correction=true.")
     assert isinstance(wall, ShellMesh)  # as ColonCfg checks
-    return LumenGas(gas, lumen, walls, wall.triangles, sim.patient, sim.cfg.dt, sim.device)
+    return LumenGas(gas, lumen, walls, modes, wall.triangles, sim.patient, sim.cfg.dt, sim.device)
 
 
 def _weight(sim: Simulation, walls: Sequence[WallParameters]) -> WallWeight | None:

@@ -115,7 +115,8 @@ class Drive:
     def snapshots(self, about: dict[str, object], patient: int = 0) -> SnapshotSet:
         """Return the states kept so far of a patient, with what the file shall say about them."""
         states = self.routes[patient].states
-        return SnapshotSet(tuple(states), tuple(states.values()), fingerprint(self.scene.sim, patient), about)
+        empty = tuple(state.to_be_filled() for state in states.values())
+        return SnapshotSet(tuple(states), empty, fingerprint(self.scene.sim, patient), about)
 
     def _step(self) -> None:
         self.population.disturb()

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 FORMAT = 1
 """Raise it when drives or files change, and older files are made anew."""
 NOT_IN_STATE = ("class_type", "usd_path", "num_patients", "gas", "expert", "device", "use_graph")
-"""Fields of configurations that change no state, or whose content is hashed instead of their name. States are made
-without gas: at the pressure at which it was imaged, gas does nothing to a wall."""
+"""Fields of configurations that change no state, or whose content is hashed instead of their name. States are of
+the pressure at which the colon was imaged, at which gas does nothing to a wall but for its tension."""
 
 EFFECTS = ("wall_law", "weight", "grading", "abdomen", "mesentery", "loops")
 """Fields that change no state while they are not ``active``."""
@@ -87,6 +87,9 @@ def settings_of(cfg: Any) -> dict[str, Any]:
     """Return the settings of a configuration that states depend on."""
     off = [name for name in EFFECTS if hasattr(cfg, name) and not getattr(cfg, name).active]
     kept = {name: value for name, value in to_plain(cfg).items() if name not in (*NOT_IN_STATE, *off)}
+    gas = getattr(cfg, "gas", None)
+    if gas is not None and gas.tense:
+        kept["tension"] = gas.imaging_pressure - gas.abdominal_pressure
     for drive in kept.get("actuators", {}).values():
         for name in OF_DRIVES:
             if drive.get(name) == 0.0:

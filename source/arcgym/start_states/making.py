@@ -131,11 +131,15 @@ def key_of(scene: InteractiveScene, patient: int = 0) -> StateKey:
 def build_scene(
     scene_cfg: InteractiveSceneCfg, sim_cfg: SimulationCfg, patients: Sequence[Path] | None = None
 ) -> InteractiveScene:
-    """Return the worlds in which a robot is driven, without gas, some for each patient or in the scene's first."""
+    """Return the worlds in which a robot is driven, some for each patient or in the scene's first.
+
+    There is gas only where it keeps the wall under tension, and then at the pressure of the image.
+    """
     own: dict[str, Any] = {"num_patients": 1}
     if patients is not None:
         own = {"usd_path": [str(patient) for patient in patients], "num_patients": None}
-    own["gas"] = replace(scene_cfg.colon.gas, enabled=False)
+    gas = scene_cfg.colon.gas
+    own["gas"] = replace(gas, enabled=gas.tense, start_pressure=None)
     colon, worlds = replace(scene_cfg.colon, **own), CPU_WORLDS if sim_cfg.device == "cpu" else GPU_WORLDS
     count = worlds * (1 if patients is None else len(patients))
     return InteractiveScene(InteractiveSceneCfg(num_envs=count, colon=colon, endoscope=scene_cfg.endoscope), sim_cfg)

@@ -10,7 +10,7 @@ from arcgym.envs import mdp
 from arcgym.managers import EventTermCfg
 from arcgym.utils.validation import FieldError
 
-PHYSICS = ("tissue", "relaxation", "gas", "weight", "scope", "friction", "abdomen", "mesentery", "loops")
+PHYSICS = ("tissue", "relaxation", "gas", "tension", "weight", "scope", "friction", "abdomen", "mesentery", "loops")
 """Effects on what is simulated."""
 CAMERA = ("latency", "exposure", "light", "preparation")
 """Effects on what the camera sees."""
@@ -58,7 +58,7 @@ def check(cfg: Any) -> None:
         FieldError: If a wall of tetrahedra or another solver has none of them.
     """
     on = set(chosen(cfg.clinical))
-    if on & {"tissue", "relaxation", "gas", "abdomen"} and cfg.scene.colon.wall_model != "shell":
+    if on & {"tissue", "relaxation", "gas", "tension", "abdomen"} and cfg.scene.colon.wall_model != "shell":
         raise FieldError(
             cfg, "clinical", f"is {list(cfg.clinical)}, which needs env.scene.colon.wall_model=shell; it is 'solid'."
         )
@@ -96,6 +96,12 @@ def _relaxation(cfg: Any) -> None:
 
 def _gas(cfg: Any) -> None:
     _where_default(cfg, "gas", "none", "present")
+
+
+def _tension(cfg: Any) -> None:
+    """Keep the tension that bears the gas, which is then there, too."""
+    _gas(cfg)
+    cfg.scene.colon.gas.pretension = True
 
 
 def _weight(cfg: Any) -> None:
@@ -165,6 +171,7 @@ _SWITCHES = {
     "tissue": _tissue,
     "relaxation": _relaxation,
     "gas": _gas,
+    "tension": _tension,
     "weight": _weight,
     "scope": _scope,
     "friction": _friction,

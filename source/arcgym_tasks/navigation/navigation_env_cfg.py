@@ -240,9 +240,9 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     clinical: tuple[str, ...] = ()
     """Effects of a living colon and a used scope to switch on: ``[all]``, or some of ``tissue``, ``relaxation``,
-    ``gas``, ``weight``, ``scope``, ``friction``, ``abdomen``, ``mesentery``, ``loops``, and of the camera's, together
-    ``camera``, ``latency``, ``exposure``, ``light`` and ``preparation``; see docs/physics.md, Clinical. None in every
-    benchmark."""
+    ``gas``, ``tension``, ``weight``, ``scope``, ``friction``, ``abdomen``, ``mesentery``, ``loops``, and of the
+    camera's, together ``camera``, ``latency``, ``exposure``, ``light`` and ``preparation``; see docs/physics.md,
+    Clinical. None in every benchmark."""
 
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()
     """Limits that reward, costs, metrics, terminations and videos name ``comfort``, ``unsafe`` and ``perforation``."""

@@ -43,6 +43,7 @@ TABLE: tuple[Check, ...] = (
     line("wall_oval_in_situ", "wall:oval_mode", material="in_situ"),
     line("gas_pressure gas_radius", "gas:inflation", quick=True),
     line("gas_collapse", "gas:collapse", quick=True),
+    line("tension_oval", "tension:press_oval", quick=True),
     line("abdomen_stop", "abdomen:stop", quick=True),
     line("hand_dent hand_push", "abdomen:hand", quick=True),
     line("mesentery_swing mesentery_strain", "mesentery:hang", quick=True),

@@ -63,6 +63,9 @@ class GasLoads:
     patient: wp.array[int]  # patient of each world, shape (W,)
     push: wp.array[float]  # pressure outwards beyond that of the image, or of the abdomen inwards [Pa], shape (W,)
     draw: wp.array[float]  # pressure that is missing to bear the tension that the wall had then [Pa], shape (W,)
+    tense: int  # whether the wall keeps its tension where the gas bears it
+    share: wp.array[float]  # of that tension that the gas bears, 0 to 1, shape (W,)
+    hold: wp.array2d[wp.vec3]  # what else holds each vertex then [N], shape (V, W)
     prop: wp.array2d[float]  # pressure of opposite sides on each other [Pa], shape (R, W)
     ring: wp.array[int]  # of each triangle, shape (F,)
     tie: wp.array2d[wp.vec2]  # of each corner's edges to the next two: force over length, over ``draw`` [m], (3*F, P)
@@ -144,6 +147,10 @@ def set_loads(law: GasLaw, gas: GasState, loads: GasLoads, w: int):
     across = gas.pressure[w] - gas.abdominal[w]
     loads.push[w] = wp.max(across - law.imaged, 0.0) + wp.min(across, 0.0)
     loads.draw[w] = wp.clamp(law.imaged - across, 0.0, law.imaged)
+    if loads.tense == 1:
+        loads.push[w] = across
+        loads.draw[w] = law.imaged
+        loads.share[w] = wp.clamp(across / wp.max(law.imaged, 1.0), 0.0, 1.0)
 
 
 @wp.kernel

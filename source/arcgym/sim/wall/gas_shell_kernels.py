@@ -15,8 +15,8 @@ triangles' edges.
 
 import warp as wp
 
-from arcgym.sim.wall.band_kernels import Rings
-from arcgym.sim.wall.band_matrix_kernels import BandMatrix
+from arcgym.sim.wall.band_kernels import Rings, band_fields
+from arcgym.sim.wall.band_matrix_kernels import BandMatrix, add_edge
 from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.shell_kernels import ShellElements, add_band_triangle, add_elements, add_forces
 from arcgym.sim.wall.wall_kernels import VertexBlock
@@ -72,6 +72,8 @@ def add_gas_elements(
     """
     shell = elements.shell
     out = add_elements(block, shell, x, i, w, moduli)
+    if elements.gas.tense == 1:
+        out.force += elements.gas.hold[i, w]
     here = x[i, w]
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
         triangle = shell.fan[k]
@@ -89,7 +91,38 @@ def add_gas_forces(
     block: VertexBlock, elements: GasShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3
 ) -> VertexBlock:
     """Add the measured forces of the triangles around vertex ``i`` of world ``w``, the gas among them."""
-    return add_forces(block, elements.shell, x, i, w, moduli)
+    out = add_forces(block, elements.shell, x, i, w, moduli)
+    if elements.gas.tense == 1:
+        out.force += elements.gas.hold[i, w]
+    return out
+
+
+@wp.func
+def rest_ties(gas: GasLoads, t: int, w: int) -> wp.vec3:
+    """Return force over length along the edges of a triangle, from each corner to the next, of its tension at rest
+    [N/m]; zero without one.
+
+    The pressure, which takes part of this stiffness back, is left out: the coarse matrix must nowhere be softer than
+    the wall.
+    """
+    if gas.tense == 0:
+        return wp.vec3(0.0)
+    return wp.vec3(gas_ties(gas, 3 * t, w)[0], gas_ties(gas, 3 * t + 1, w)[0], gas_ties(gas, 3 * t + 2, w)[0])
+
+
+@wp.func
+def add_band_ties(band: BandMatrix, elements: GasShellElements, rings: Rings, t: int, r: int, w: int) -> BandMatrix:
+    """Add the tension at rest of triangle ``t`` to the stiffness of the band of ring ``r`` of world ``w``."""
+    p = elements.shell.patient[w]
+    corners = elements.shell.triangles[t]
+    ties = rest_ties(elements.gas, t, w)
+    a = band_fields(rings, corners[0], r, p)
+    b = band_fields(rings, corners[1], r, p)
+    c = band_fields(rings, corners[2], r, p)
+    eye = wp.identity(n=3, dtype=float)
+    out = add_edge(band, b - a, ties[0] * eye)
+    out = add_edge(out, c - b, ties[1] * eye)
+    return add_edge(out, a - c, ties[2] * eye)
 
 
 @wp.func
@@ -103,5 +136,8 @@ def add_gas_band_triangle(
     w: int,
     moduli: wp.vec3,
 ) -> BandMatrix:
-    """Add triangle ``t`` to a band as :func:`.shell_kernels.add_band_triangle`; the gas adds no stiffness there."""
-    return add_band_triangle(band, elements.shell, rings, x, t, r, w, moduli)
+    """Add triangle ``t`` to a band as :func:`.shell_kernels.add_band_triangle`, and a tension that is there at rest."""
+    out = add_band_triangle(band, elements.shell, rings, x, t, r, w, moduli)
+    if elements.gas.tense == 1:
+        out = add_band_ties(out, elements, rings, t, r, w)
+    return out

@@ -14,7 +14,9 @@ import warp as wp
 from arcgym.assets.gas_cfg import GasCfg
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import gas_kernels as kernels
+from arcgym.sim.wall.ring_modes import RingModes
 from arcgym.sim.wall.wall_parameters import WallParameters
+from arcgym.sim.wall.wall_tension import WallTension
 from arcgym.sim.wall.wall_topology import LumenTopology, ring_mean
 
 GAS = "gas."
@@ -35,6 +37,7 @@ class LumenGas:
         cfg: GasCfg,
         topology: LumenTopology,
         walls: Sequence[WallParameters],
+        modes: Sequence[RingModes],
         triangles: np.ndarray,
         patient: wp.array,
         dt: float,
@@ -46,6 +49,7 @@ class LumenGas:
             cfg: Settings.
             topology: Faces of the lumen.
             walls: Wall of each patient.
+            modes: Its ring modes.
             triangles: Vertices of the shell's triangles, shape (F, 3).
             patient: Patient of each world, shape (W,), int32, read in every step.
             dt: Physics step [s].
@@ -67,12 +71,20 @@ class LumenGas:
         """Parts of the lumen's volume, between each ring's faces and the origin [m^3], shape (R, W)."""
         self.loads = kernels.GasLoads()
         self.loads.patient = patient
-        self.loads.push, self.loads.draw = (wp.zeros(self.num_envs, dtype=float, device=device) for _ in range(2))
+        for name in ("push", "draw", "share"):
+            setattr(self.loads, name, wp.zeros(self.num_envs, dtype=float, device=device))
         self.loads.prop = wp.zeros(shape, dtype=float, device=device)
         ring = walls[0].ring[triangles].min(axis=1)
         self.loads.ring = wp.array(ring.astype(np.int32), dtype=int, device=device)
         tensions = [ties(points, triangles, walls[0].ring, cut.radius) for points, cut in zip(rest, cuts, strict=True)]
         self.loads.tie = patient_array(tensions, wp.vec2, device)
+        self.loads.tense = int(cfg.pretension)
+        held = (len(rest[0]), self.num_envs) if cfg.pretension else (0, 0)
+        self.loads.hold = wp.zeros(held, dtype=wp.vec3, device=device)
+        self.tension = None
+        """What holds the imaged shapes against their tension, if the walls keep it at rest."""
+        if cfg.pretension:
+            self.tension = WallTension(walls, modes, triangles, tensions, self.law.imaged, self.loads, device)
 
     @property
     def memory(self) -> dict[str, torch.Tensor]:
@@ -94,6 +106,11 @@ class LumenGas:
         """Begin a physics step: let gas flow, and measure the lumen at ``x`` [m], shape (V, W), vec3."""
         self._launch(kernels.add_flow, self.num_envs, [self.law, self.dt], [self.state])
         self.measure(x)
+
+    def hold(self, x: wp.array) -> None:
+        """Turn what holds the imaged shape against its tension with the rings at ``x`` [m], shape (V, W), vec3."""
+        if self.tension is not None:
+            self.tension.turn(x)
 
     def measure(self, x: wp.array) -> None:
         """Measure volume and props of the lumen at ``x`` [m], shape (V, W), vec3."""

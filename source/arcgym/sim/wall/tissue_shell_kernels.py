@@ -22,7 +22,7 @@ from arcgym.sim.wall.band_kernels import Rings, band_fields
 from arcgym.sim.wall.band_matrix_kernels import BandMatrix, add_edge, add_next_edge, add_own_edge
 from arcgym.sim.wall.cell_strain_kernels import Cells, cell_excess
 from arcgym.sim.wall.gas_kernels import GasLoads
-from arcgym.sim.wall.gas_shell_kernels import gas_pressure, gas_ties
+from arcgym.sim.wall.gas_shell_kernels import gas_pressure, gas_ties, rest_ties
 from arcgym.sim.wall.shell_kernels import (
     ShellElements,
     VertexTriangle,
@@ -215,6 +215,8 @@ def add_gas_terms(
 ) -> VertexBlock:
     """Add the gas around vertex ``i`` of world ``w``. The Hessian of the pressure is zero for a closed fan."""
     out = block
+    if gas.tense == 1:
+        out.force += gas.hold[i, w]
     here = x[i, w]
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
         triangle = shell.fan[k]
@@ -266,7 +268,11 @@ def add_tissue_forces(
     block: VertexBlock, elements: TissueShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3
 ) -> VertexBlock:
     """Add the measured forces of the triangles around vertex ``i`` of world ``w``."""
-    return add_forces(block, elements.shell, x, i, w, moduli)
+    out = add_forces(block, elements.shell, x, i, w, moduli)
+    if elements.gassy == 1:
+        if elements.gas.tense == 1:
+            out.force += elements.gas.hold[i, w]
+    return out
 
 
 @wp.struct
@@ -275,6 +281,7 @@ class BandCorners:
 
     corners: wp.vec3i
     rest: wp.vec4
+    first: int  # which of the triangle's corners is the first one
 
 
 @wp.func
@@ -287,9 +294,11 @@ def band_corners(shell: ShellElements, rings: Rings, t: int, p: int) -> BandCorn
         if rings.ring[corners[1]] == rings.ring[corners[2]]:
             corners = wp.vec3i(corners[1], corners[2], corners[0])
             rest = wp.vec4(rest[1], rest[2], rest[0], rest[3])
+            out.first = 1
         else:
             corners = wp.vec3i(corners[2], corners[0], corners[1])
             rest = wp.vec4(rest[2], rest[0], rest[1], rest[3])
+            out.first = 2
     out.corners = corners
     out.rest = rest
     return out
@@ -306,8 +315,9 @@ def add_band_stretching(
     w: int,
     moduli: wp.vec3,
     stiffening: float,
+    tie: wp.vec3,
 ) -> BandMatrix:
-    """Add the stretching of triangle ``t`` to the stiffness of the band of ring ``r`` of world ``w``.
+    """Add the stretching of triangle ``t`` and its tension at rest to the band of ring ``r`` of world ``w``.
 
     Two of its corners lie in one ring: the edge between them is the first one, that to the third the second.
     """
@@ -316,6 +326,12 @@ def add_band_stretching(
     corners = ordered.corners
     x0 = x[corners[0], w]
     k = tissue_edge_stiffness(x[corners[1], w] - x0, x[corners[2], w] - x0, ordered.rest, moduli, stiffening)
+    own_tie = tie[ordered.first]
+    far_tie = tie[(ordered.first + 1) % 3]
+    eye = wp.identity(n=3, dtype=float)
+    k.one += (own_tie + far_tie) * eye
+    k.two += (tie[(ordered.first + 2) % 3] + far_tie) * eye
+    k.both -= far_tie * eye
     along = rings.plane[corners[1], p] - rings.plane[corners[0], p]
     across = band_fields(rings, corners[2], r, p) - band_fields(rings, corners[0], r, p)
     out = add_edge(band, across, k.two)
@@ -337,4 +353,7 @@ def add_tissue_band_triangle(
 ) -> BandMatrix:
     """Add the stretching at once of triangle ``t`` to a band as :func:`.shell_kernels.add_band_stretching`."""
     own = triangle_moduli(elements, t, w, moduli)
-    return add_band_stretching(band, elements.shell, rings, x, t, r, w, own, elements.stiffening)
+    tie = wp.vec3(0.0)
+    if elements.gassy == 1:
+        tie = rest_ties(elements.gas, t, w)
+    return add_band_stretching(band, elements.shell, rings, x, t, r, w, own, elements.stiffening, tie)

@@ -181,6 +181,7 @@ class WallSolver:
             self.surroundings.measure(x, self.tissue, self.dt)
             self.surroundings.advance(x, v, self.self_contact, self.dt)
         if self.gas is not None:
+            self.gas.hold(x)
             self.gas.begin(self.inertial)
         self._measure(self.inertial)
         self._prepared = True
@@ -256,6 +257,8 @@ class WallSolver:
         self.self_contact.measure(x)
         if self.surroundings is not None:
             self.surroundings.measure(x, self.tissue, self.dt)
+        if self.gas is not None:
+            self.gas.hold(x)
         self._measure(x)
         inertial = x
         if self.weight is not None:
