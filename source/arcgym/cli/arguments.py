@@ -92,7 +92,7 @@ class TaskArguments:
 
 @dataclass(frozen=True, kw_only=True)
 class RunArguments(TaskArguments):
-    """Arguments that choose a training run and its checkpoint, and switch videos on."""
+    """Arguments that choose a training run and its checkpoint."""
 
     experiment_name: str | None = argument("folder below logs/rsl_rl (default: the agent's)", None, group="run")
     load_run: str | None = argument(
@@ -100,5 +100,11 @@ class RunArguments(TaskArguments):
     )
     checkpoint: str | None = argument("path, file name, 'latest' or 'best' (default: latest)", None, group="run")
     no_params: bool = argument("use the registered configurations, not those of the run", False, group="run")
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmedRunArguments(RunArguments):
+    """The same for subcommands that film what they run."""
+
     video: bool = argument("record MP4 videos", False, group="video")
     video_length: int = argument("control steps of a video (default: 200)", 200, type=positive, group="video")

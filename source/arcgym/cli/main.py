@@ -55,6 +55,10 @@ COMMANDS = {
 """Module and one line of help by subcommand. A name may have two words, such as ``bench soak``."""
 
 
+INTERRUPTED = 128 + 2
+"""Exit status after Ctrl-C, as shells expect it."""
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``arcgym <subcommand> …`` and return its exit status.
 
@@ -94,15 +98,20 @@ def run_command(name: str, argv: Sequence[str] | None = None, prog: str | None =
         argv: Its arguments; None takes those of the process.
         prog: Name to show in messages; None takes ``arcgym <name>``.
     """
-    module = importlib.import_module(COMMANDS[name][0])
-    accepts = (getattr(module, mark, False) for mark in ("TAKES_OVERRIDES", "PASSES_ON"))
-    parser = CommandParser(prog or f"arcgym {name}", module.__doc__, *accepts)
-    module.add_arguments(parser)
-    args = parser.parse(sys.argv[1:] if argv is None else argv)
+    prog = prog or f"arcgym {name}"
     try:
-        return int(module.run(args) or 0)
-    except UsageError as error:
-        parser.error(str(error))
+        module = importlib.import_module(COMMANDS[name][0])
+        accepts = (getattr(module, mark, False) for mark in ("TAKES_OVERRIDES", "PASSES_ON"))
+        parser = CommandParser(prog, module.__doc__, *accepts)
+        module.add_arguments(parser)
+        args = parser.parse(sys.argv[1:] if argv is None else argv)
+        try:
+            return int(module.run(args) or 0)
+        except UsageError as error:
+            parser.error(str(error))
+    except KeyboardInterrupt:
+        print(f"{prog}: stopped by SIGINT", file=sys.stderr)
+        return INTERRUPTED
 
 
 def run_script(name: str) -> int:

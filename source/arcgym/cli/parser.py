@@ -39,7 +39,7 @@ class CommandParser(argparse.ArgumentParser):
         epilog = "Any other argument is an override: env.scene.num_envs=64 agent.algorithm.learning_rate=1e-4"
         super().__init__(
             prog=prog,
-            description=description,
+            description=_plain(description),
             epilog=epilog if takes_overrides else None,
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
@@ -77,3 +77,8 @@ class CommandParser(argparse.ArgumentParser):
             return f"unknown flag '{text}'. {did_you_mean(text.partition('=')[0], flags)}"
         hint = " An override is written env.path=value or agent.path=value." if self.takes_overrides else ""
         return f"unexpected argument '{text}'.{hint}"
+
+
+def _plain(description: str | None) -> str | None:
+    """Return a module's docstring without the markup of the documentation, for a terminal."""
+    return description and description.replace("``", "'").replace("::\n", ":\n")

@@ -18,7 +18,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass, replace
 
-from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.arguments import FilmedRunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.task import PLAY, load_cfgs, load_run_cfgs
 from arcgym.utils.errors import UsageError
 
@@ -26,7 +26,7 @@ TAKES_OVERRIDES = True
 
 
 @dataclass(frozen=True, kw_only=True)
-class PlayArguments(RunArguments):
+class PlayArguments(FilmedRunArguments):
     """Arguments of ``arcgym play``."""
 
     policy: str = argument(

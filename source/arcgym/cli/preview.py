@@ -8,6 +8,7 @@ import argparse
 from pathlib import Path
 
 from arcgym.utils.errors import UsageError
+from arcgym.utils.paths import resolve_stage
 
 SUFFIXES = (".png", ".jpg", ".jpeg")
 """Kinds of pictures."""
@@ -15,7 +16,7 @@ SUFFIXES = (".png", ".jpg", ".jpeg")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the stage and the picture."""
-    parser.add_argument("stage", type=Path, help="stage file (colon.usda)")
+    parser.add_argument("stage", type=Path, help="stage file (colon.usda), or name (colon_1)")
     parser.add_argument("out", type=Path, help="picture to write (.png or .jpg)")
 
 
@@ -26,7 +27,7 @@ def run(args: argparse.Namespace) -> None:
     from arcgym.anatomy import StageError, read_colon
 
     try:
-        stage = read_colon(args.stage)
+        stage = read_colon(resolve_stage(args.stage))
     except StageError as error:
         raise UsageError(str(error)) from error
     from arcgym.viewers.colon_page import draw_page

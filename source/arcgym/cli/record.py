@@ -21,8 +21,9 @@ from typing import Any
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.stopping import stopped_cleanly
-from arcgym.cli.task import load_cfgs, load_run_cfgs
+from arcgym.cli.task import agent_names, load_cfgs, load_run_cfgs
 from arcgym.utils.errors import UsageError
+from arcgym.utils.string import did_you_mean
 
 TAKES_OVERRIDES = True
 SCRIPTED = ("expert", "zero", "random")
@@ -57,6 +58,9 @@ def run(namespace: argparse.Namespace) -> int:
     """
     args = read_fields(RecordArguments, namespace)
     scripted = args.agent in SCRIPTED
+    known = (*SCRIPTED, "policy", *agent_names(args.task))
+    if len(known) > len(SCRIPTED) + 1 and args.agent not in known and not args.agent.endswith("cfg_entry_point"):
+        raise UsageError(f"--agent is '{args.agent}'. {did_you_mean(args.agent, known)}")
     key = "rsl_rl_cfg_entry_point" if scripted or args.agent == "policy" else args.agent
     asked = replace(args, agent=key)
     env_cfg, agent_cfg, checkpoint = (*load_cfgs(asked), None) if scripted else load_run_cfgs(asked)
@@ -84,7 +88,6 @@ def _named(name: str) -> Sequence[str | Path]:
     """Return the stage files that a name of patients means: a colon that comes along, a file, a folder, a split."""
     from arcgym.assets.patient_files import find_stages
     from arcgym.utils.paths import assets_dir, resolve_asset
-    from arcgym.utils.string import did_you_mean
 
     for path in (name, f"{name}/colon.usda"):
         if resolve_asset(path).is_file():

@@ -15,7 +15,7 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
-from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.arguments import FilmedRunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.stopping import stopped_cleanly
 from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs, with_trained_agent
 
@@ -23,7 +23,7 @@ TAKES_OVERRIDES = True
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainArguments(RunArguments):
+class TrainArguments(FilmedRunArguments):
     """Arguments of ``arcgym train``."""
 
     max_iterations: int | None = argument("updates to run, on top of those of a resumed run", None, type=positive)
@@ -66,5 +66,5 @@ def run(namespace: argparse.Namespace) -> int:
         evaluates=args.evaluate,
         agent=agent_key(args.agent),
     )
-    with stopped_cleanly("no update was under way"):
+    with stopped_cleanly("before the first update; nothing is left"):
         return train(args.task, env_cfg, agent_cfg, options)

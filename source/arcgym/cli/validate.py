@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from arcgym.cli.arguments import positive
 from arcgym.cli.expert_reach import ROBOTS, expert_reach
+from arcgym.utils.paths import resolve_stage
 
 if TYPE_CHECKING:
     from arcgym.anatomy.validation.checks import Check
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the stages and how far to check them."""
-    parser.add_argument("stage", type=Path, nargs="+", help="stage files (colon.usda)")
+    parser.add_argument("stage", type=Path, nargs="+", help="stage files (colon.usda), or names (colon_1)")
     parser.add_argument("--json", action="store_true", help="print all figures as JSON in the last line")
     parser.add_argument(
         "--experts", nargs="*", choices=ROBOTS, metavar="ROBOT", help=f"drive experts up: {', '.join(ROBOTS)} (all)"
@@ -41,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Check the stages and return 1 if any check fails."""
     robots = args.experts or (ROBOTS if args.experts is not None else ())
-    reports = [check_stage(path, not args.no_physics, robots, args.expert_time) for path in args.stage]
+    reports = [check_stage(resolve_stage(path), not args.no_physics, robots, args.expert_time) for path in args.stage]
     if args.json:
         print(json.dumps({"stages": reports}, allow_nan=False))
     return 0 if all(report["ok"] for report in reports) else 1
@@ -61,7 +62,7 @@ def check_stage(path: Path, physics: bool, robots: Sequence[str] = (), expert_ti
     for check in all_checks(path, physics):
         print(f"  {'ok  ' if check.ok else 'FAIL'} {check}", flush=True)
         checks.append(check)
-    rows = [{"name": c.name, "value": finite(c.value), "bound": c.bound, "ok": c.ok} for c in checks]
+    rows = [{"name": c.name, "value": finite(c.value), "bound": finite(c.bound), "ok": c.ok} for c in checks]
     ok = all(check.ok for check in checks)
     print(f"  {'passes' if ok else 'FAILS'}", flush=True)
     experts = []

@@ -20,6 +20,7 @@ from typing import Any
 
 from arcgym.cli.arguments import add_fields, argument, positive, read_fields, whole
 from arcgym.utils.errors import UsageError
+from arcgym.utils.paths import resolve_stage
 
 TAKES_OVERRIDES = True
 WALKER = "ARC-Rectum-Capsule"
@@ -42,7 +43,7 @@ class ViewArguments:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("what", type=Path, help="recording (.hdf5), stage (colon.usda) or folder of a run")
+    parser.add_argument("what", type=Path, help="recording (.hdf5), stage (colon.usda, or colon_1) or folder of a run")
     add_fields(parser, ViewArguments)
 
 
@@ -56,6 +57,8 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.rl.agent_checks import check_installed
 
     check_installed("viser", "the page", extra="teleop")
+    if not what.exists() or (what / "colon.usda").is_file():
+        what = resolve_stage(what)
     if not what.exists():
         raise UsageError(f"There is no '{what}'; expected a recording, a stage or the folder of a run.")
     if what.is_dir():

@@ -75,6 +75,10 @@ def open_recording(path: str | Path) -> h5py.File:
     except FileNotFoundError as error:
         raise RecordingError(f"There is no recording '{path}'.") from error
     except OSError as error:
+        if Path(path).is_dir():
+            names = sorted(file.name for file in Path(path).glob(f"*{SUFFIX}"))[:5]
+            has = f"a file in it, such as {', '.join(names)}" if names else f"a file ending in {SUFFIX}"
+            raise RecordingError(f"{path} is a folder, expected {has}.") from error
         raise RecordingError(f"{path} is no HDF5 file: {error}") from error
     version = file.attrs.get("arcgym_recording")
     if version is None or "data" not in file or version > FORMAT:

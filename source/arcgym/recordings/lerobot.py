@@ -16,7 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from arcgym.recordings.lerobot_stats import FeatureStats, merged
-from arcgym.recordings.samples import Samples
+from arcgym.recordings.samples import NO_EPISODE, Samples
 from arcgym.utils.errors import UsageError
 from arcgym.viewers.video import VideoRecorder
 
@@ -93,7 +93,7 @@ class LeRobotWriter:
             UsageError: If there is no episode.
         """
         if not self._episodes:
-            raise UsageError("There is no episode to convert.")
+            raise UsageError(NO_EPISODE)
         meta = self._folder / "meta"
         rows = [
             row | {"meta/episodes/chunk_index": 0, "meta/episodes/file_index": 0} | _flat(stats)

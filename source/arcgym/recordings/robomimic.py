@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from arcgym.recordings.samples import Samples
+from arcgym.recordings.samples import NO_EPISODE, Samples
 from arcgym.utils.errors import UsageError
 
 GYM = 2
@@ -50,7 +50,7 @@ def write_robomimic(samples: Iterable[Samples], path: Path) -> int:
                 total += len(one)
                 tasks.add(one.task)
             if not names:
-                raise UsageError("There is no episode to convert.")
+                raise UsageError(NO_EPISODE)
             data.attrs["total"] = total
             args = {"env_name": "+".join(sorted(tasks)), "type": GYM, "env_kwargs": {}}
             data.attrs["env_args"] = json.dumps(args)

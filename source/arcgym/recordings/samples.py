@@ -17,6 +17,10 @@ from arcgym.utils.string import did_you_mean
 
 STATE = ("poses/tip_pos_w", "poses/tip_quat_w", "poses/inserted_length", "forces/tip")
 """Values that make the state, unless others are named."""
+NO_EPISODE = (
+    "There is no episode to convert: expected one of two steps or more, with --only_successes one that succeeded."
+)
+"""What is said where there is nothing to write."""
 IMAGE = "images/rgb"
 """Pictures, unless others are named."""
 

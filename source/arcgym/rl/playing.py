@@ -74,10 +74,10 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
         print(result)
     finally:
         env.close()
-    for path in getattr(env.env, "paths", []) if video else []:
-        print(f"video: {path}")
-    if records and options.record:
-        print(f"recorded: {_finish_records(options.record, records)}")
+        for path in getattr(env.env, "paths", []) if video else []:
+            print(f"video: {path}")
+        if records and options.record and records.is_dir():
+            print(f"recorded: {_finish_records(options.record, records)}")
     if options.json:
         print(result.to_json())
     return result

@@ -61,6 +61,12 @@ def resolve_asset(path: str | Path) -> Path:
     return given if given.is_absolute() or given.exists() else assets_dir() / given
 
 
+def resolve_stage(path: str | Path) -> Path:
+    """Return the stage of a colon that is named by its file, its folder, or as one that comes along, ``colon_1``."""
+    found = resolve_asset(path)
+    return found / "colon.usda" if (found / "colon.usda").is_file() else found
+
+
 def portable_asset(path: str | Path) -> str:
     """Return how another machine finds an asset: the path inside :func:`assets_dir`, else the path itself."""
     place, given = assets_dir().resolve(), Path(path).resolve()

@@ -30,7 +30,9 @@ class Check:
         return bool(np.isfinite(self.value)) and kept
 
     def __str__(self) -> str:
-        """One line with figure and bound."""
+        """One line with figure and bound, or the name alone where there is nothing to measure."""
+        if np.isnan(self.value) and np.isnan(self.bound):
+            return self.name
         return f"{self.name} {self.value:.4g} (must be {'>=' if self.at_least else '<='} {self.bound:.4g})"
 
 

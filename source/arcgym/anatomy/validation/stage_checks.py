@@ -39,7 +39,7 @@ def inspect_file(path: str) -> tuple[ColonStage | None, list[Check]]:
     try:
         stage = read_colon(path)
     except StageError as error:
-        return None, [Check(f"schema and units: {error}", 1, 0, at_least=False)]
+        return None, [Check(f"schema and units: {error}", np.nan, np.nan, at_least=False)]
     return stage, [*_check_schema(path), *inspect_stage(stage)]
 
 
