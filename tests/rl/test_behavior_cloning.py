@@ -156,6 +156,13 @@ def test_noise_is_carried_out_and_not_kept():
     assert 0.1 < (torch.cat(env.carried_out) - 0.5).std() < 0.5
 
 
+def test_a_round_shows_how_far_it_is(capsys):
+    """A round of 8 steps in 4 worlds: 32 steps, a line at least for every tenth of them."""
+    ask_expert(Shown(4), lambda obs: torch.zeros(4, 2), ["policy"], "cpu", 32)
+    shown = capsys.readouterr().out
+    assert all(f"{done} of 32" in shown for done in (4, 16, 32)), shown
+
+
 def test_an_expert_that_never_succeeds_is_named():
     env = Shown(2)
     env.succeeded[:] = False

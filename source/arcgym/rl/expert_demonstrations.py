@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import torch
@@ -47,7 +49,8 @@ def ask_expert(
     episodes = count = 0
     with counted("asking the expert", num_steps) as show, torch.inference_mode():
         while count < num_steps:
-            found, number = _round(env, expert, groups, device, noise, successful_only)
+            tell = partial(_tell, show, count, num_steps)
+            found, number = _round(env, expert, groups, device, noise, successful_only, tell)
             if number == 0:
                 wanted = "succeeded" if successful_only else "ended"
                 raise UsageError(f"The expert's first episodes of {env.num_envs} worlds: none {wanted}.")
@@ -60,21 +63,37 @@ def ask_expert(
     return Demonstrations(observations, torch.cat([actions for _, actions in kept]), episodes)
 
 
+def _tell(show: Callable[[int], None], before: int, total: int, asked: int) -> None:
+    """Show the steps of the rounds before and of this one, ``total`` at most."""
+    show(min(before + asked, total))
+
+
 def _round(
-    env: VecEnv, expert: Policy, groups: list[str], device: str, noise: float, successful_only: bool
+    env: VecEnv,
+    expert: Policy,
+    groups: list[str],
+    device: str,
+    noise: float,
+    successful_only: bool,
+    show: Callable[[int], None],
 ) -> tuple[list[tuple[TensorDict, torch.Tensor]], int]:
-    """Run each world's next episode to its end; return a step's observations and actions each, and the episodes."""
+    """Run each world's next episode to its end; return a step's observations and actions each, and the episodes.
+
+    ``show`` is told the steps that were asked for in this round, those of episodes that will be left out among them.
+    """
     obs, _ = env.reset()
     running = torch.ones(env.num_envs, dtype=torch.bool, device=env.device)
     forget = getattr(expert, "reset", lambda dones: None)
     forget(running)
     steps: list[tuple[torch.Tensor, TensorDict, torch.Tensor]] = []
     good = ~running
+    asked = 0
     while bool(running.any()) and len(steps) < int(env.max_episode_length):
         actions, worlds = expert(obs), running.nonzero().flatten()
         steps.append((worlds, obs.select(*groups)[worlds], actions[worlds]))
         obs, _, dones, _ = env.step(actions + noise * torch.randn_like(actions))
         forget(dones)
+        show(asked := asked + len(worlds))
         ends = running & (dones > 0)
         good |= ends & env.unwrapped.succeeded if successful_only else ends  # type: ignore
         running = running & ~ends
