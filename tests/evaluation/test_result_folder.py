@@ -1,11 +1,13 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import ResultFolder, alone_in, read_run, read_trial_rows
 from arcgym.evaluation.sharing import gather
 from arcgym.evaluation.summary import summarize, to_markdown
 from arcgym.utils.errors import UsageError
@@ -44,6 +46,24 @@ def test_other_code_does_not_go_on(tmp_path: Path) -> None:
     ResultFolder(tmp_path, {**RUN, "versions": {**versions, "python": "3.12"}})
     with pytest.raises(UsageError, match="was begun with arcgym commit abc, and now it is def"):
         ResultFolder(tmp_path, {**RUN, "versions": {**versions, "arcgym commit": "def"}})
+
+
+def test_two_evaluations_do_not_write_to_one_folder(tmp_path: Path) -> None:
+    """Each would write a heading and all trials. A process that was killed holds nothing."""
+    script = "import sys, time\nfrom pathlib import Path\nfrom arcgym.evaluation.result_folder import alone_in\n"
+    script += "with alone_in(Path(sys.argv[1])):\n    print('held', flush=True)\n    time.sleep(60)\n"
+    with subprocess.Popen([sys.executable, "-c", script, str(tmp_path / "a")], stdout=subprocess.PIPE) as other:
+        assert other.stdout is not None and other.stdout.readline() == b"held\n"
+        with pytest.raises(UsageError, match="Another evaluation writes to .*/a: wait for it, or give another --out"):
+            with alone_in(tmp_path / "a"):
+                pass
+        with alone_in(tmp_path / "b"), alone_in(tmp_path / "b" / "parts" / "1_of_2"):
+            pass
+        other.kill()
+    with alone_in(tmp_path / "a"):
+        pass
+    with alone_in(tmp_path / "a"):
+        assert list((tmp_path / "a").iterdir()) == []
 
 
 def test_another_device_does_not_go_on(tmp_path: Path) -> None:

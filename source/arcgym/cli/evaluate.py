@@ -25,7 +25,7 @@ from typing import Any
 from arcgym.cli.arguments import add_fields, argument, positive, read_fields
 from arcgym.cli.stopping import stopped_cleanly
 from arcgym.evaluation.result_folder import ResultFolder
-from arcgym.evaluation.sharing import Share, gather, share
+from arcgym.evaluation.sharing import Share, share
 from arcgym.evaluation.trials import Conditions
 
 TAKES_OVERRIDES = True
@@ -81,7 +81,6 @@ def run(namespace: argparse.Namespace) -> None:
         return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
     with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"):
-        gather(Path(args.out))
         if min(args.processes, len(conditions.trials)) > 1:
             folder = _evaluate_in_processes(args, conditions, len(tasks))
         else:

@@ -17,9 +17,9 @@ import torch
 
 from arcgym.envs.provenance import versions
 from arcgym.evaluation.agents import inputs_of, trained_agent
-from arcgym.evaluation.result_folder import ResultFolder
+from arcgym.evaluation.result_folder import ResultFolder, alone_in
 from arcgym.evaluation.run_trials import run_trials
-from arcgym.evaluation.sharing import Share
+from arcgym.evaluation.sharing import Share, gather
 from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
@@ -107,18 +107,20 @@ def evaluate(
         out: Folder of the results.
 
     Raises:
-        UsageError: The folder holds another evaluation, or a setting of a task is wrong.
+        UsageError: The folder holds another evaluation, or is written to by one, or a setting of a task is wrong.
     """
     run = run_record(tasks, conditions, options)
     _check_all(tasks, load_cfgs, options)
-    folder = ResultFolder(out, run)
-    for task in tasks:
-        done = folder.done(task)
-        trials = options.share.trials(conditions.trials)
-        left = [trial for trial in trials if trial.trial not in done]
-        print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
-        for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
-            _run_batch(task, agent, batch, load_cfgs, options, folder)
+    with alone_in(out):
+        gather(out)
+        folder = ResultFolder(out, run)
+        for task in tasks:
+            done = folder.done(task)
+            trials = options.share.trials(conditions.trials)
+            left = [trial for trial in trials if trial.trial not in done]
+            print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
+            for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
+                _run_batch(task, agent, batch, load_cfgs, options, folder)
     return folder
 
 

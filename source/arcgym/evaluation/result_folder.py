@@ -11,8 +11,15 @@ import csv
 import gzip
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 from arcgym.utils.errors import UsageError
 
@@ -100,6 +107,32 @@ class ResultFolder:
             out.flush()
             os.fsync(out.fileno())
         self.rows.append(row)
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Make a folder and hold it while the block writes to it; what a process held that was killed is free.
+
+    Raises:
+        UsageError: Another process holds it. Where folders cannot be locked, nobody does.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    handle = os.open(folder, os.O_RDONLY) if fcntl else None
+    try:
+        if fcntl and handle is not None:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                raise UsageError(
+                    f"Another evaluation writes to {folder}: wait for it, or give another --out. Shares have folders "
+                    "of their own, which arcgym results merge puts together."
+                ) from error
+            except OSError:
+                pass
+        yield
+    finally:
+        if handle is not None:
+            os.close(handle)
 
 
 def result_folders(folder: Path) -> list[Path]:

@@ -15,7 +15,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from arcgym.evaluation.merge import merge
-from arcgym.evaluation.result_folder import PARTS, RUN_FILE, TRIALS_FILE, ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import (
+    PARTS,
+    RUN_FILE,
+    TRIALS_FILE,
+    ResultFolder,
+    alone_in,
+    read_run,
+    read_trial_rows,
+)
 from arcgym.evaluation.trials import Trial
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
@@ -67,8 +75,8 @@ def run_shares(
 ) -> ResultFolder:
     """Run an evaluation in several processes, each with its share of the trials, and return the folder of all rows.
 
-    Each share has a folder and a log below :data:`PARTS`. After :func:`gather` the same call goes on where one was cut
-    off, also with another number of processes.
+    Each share has a folder and a log below :data:`PARTS`. The same call goes on where one was cut off, also with
+    another number of processes.
 
     Args:
         words: Arguments of ``arcgym evaluate`` but ``--out`` and ``--share``.
@@ -78,9 +86,18 @@ def run_shares(
         out: Folder of the results.
 
     Raises:
-        UsageError: A process failed; with the last line of its log.
+        UsageError: A process failed, with the last line of its log, or the folder is written to by another call.
     """
-    shares = [Share(number, processes) for number in range(1, processes + 1)]
+    with alone_in(out):
+        gather(out)
+        return _run_shares(
+            words, [Share(number, processes) for number in range(1, processes + 1)], trials, num_tasks, out
+        )
+
+
+def _run_shares(
+    words: Sequence[str], shares: Sequence[Share], trials: Sequence[Trial], num_tasks: int, out: Path
+) -> ResultFolder:
     folders = [out / PARTS / f"{part.number}_of_{part.of}" for part in shares]
     (out / PARTS).mkdir(parents=True, exist_ok=True)
     for part, folder in zip(shares, folders, strict=True):
