@@ -14,6 +14,7 @@ from scipy.stats import kstest, truncnorm
 
 from arcgym.anatomy import ColonSpec
 from arcgym.anatomy.bends import acute_bends
+from arcgym.anatomy.generator import output
 from arcgym.anatomy.generator.acceptance import check_course
 from arcgym.anatomy.generator.generate import AnatomyError, draw_surface
 from arcgym.anatomy.generator.population import LENGTH_RANGE, draw_spec, segment_lengths
@@ -167,6 +168,22 @@ def test_bad_spec_leaves_nothing_behind(tmp_path: Path) -> None:
     result = run(write(tmp_path, "sigmoid_shape: knot"), tmp_path / "out")
     assert result.returncode == 2 and "'knot' is unknown; expected one of plain" in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["spec.yaml"]
+
+
+def test_a_colon_that_another_process_made_meanwhile_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "patient"
+    out.mkdir()
+
+    def remove_and_be_overtaken(folder: Path) -> None:
+        (folder / "colon.usda").write_text("theirs")
+
+    monkeypatch.setattr(output, "make_colon", lambda spec, folder: folder.mkdir())
+    monkeypatch.setattr(output, "write_colon", lambda stage, path: path.write_text("ours"))
+    monkeypatch.setattr(Path, "rmdir", remove_and_be_overtaken)
+    with pytest.raises(OSError):
+        output.make_to_folder(ColonSpec(), out)
+    assert [path.name for path in out.iterdir()] == ["colon.usda"]
+    assert (out / "colon.usda").read_text() == "theirs"
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.assets import patient_files
-from arcgym.assets.patient_files import find_stages, register_population
+from arcgym.assets.patient_files import find_stages, named_colon, register_population
 
 
 @pytest.fixture
@@ -37,6 +37,16 @@ def population(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[str, int 
     monkeypatch.setattr(patient_files, "_POPULATIONS", {})
     register_population("people", resolve)
     yield asked
+
+
+def test_words_of_a_command_line_name_colons(folder: Path) -> None:
+    assert named_colon("colon_1") == named_colon("colon_1/colon.usda") == "colon_1/colon.usda"
+    for path in ("a", "a/colon.usdc", "b/colon.usdc", "b"):
+        expected = "a/colon.usda" if path == "a" else path
+        assert named_colon(str(folder / path)) == str(folder / expected)
+    assert named_colon("population:20000*0.8") == "population:20000*0.8"
+    with pytest.raises(ValueError, match="no colon 'colon_11', which is no stage file. Did you mean 'colon_1'"):
+        named_colon("colon_11")
 
 
 def test_a_folder_stands_for_the_stages_in_its_folders(folder: Path) -> None:

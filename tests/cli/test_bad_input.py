@@ -85,6 +85,7 @@ def nothing_is_built(tmp_path, monkeypatch):
         (["replay", "."], ". is a folder, expected a file ending in .hdf5."),
         (["preview", "colon_9", "page.png"], "no such file. Existing stages in"),
         (["snapshots", *TASK, "--device", "tpu"], "--device is 'tpu', expected cpu, cuda or cuda:<n>"),
+        (["teleop", *TASK, "--patient", "colon_11"], "--patient: There is no colon 'colon_11'"),
         ([*ZERO, "--steps", "0"], "--steps: 0 is too small, expected 1 or more"),
         ([*ZERO, "env.scene.colon.material=none"], "'none'"),
     ],

@@ -143,6 +143,8 @@ def test_no_world_named_is_no_reset(env) -> None:
         ({"env_ids": [2]}, IndexError, r"env_ids are \[2\]; worlds go from 0 to 1"),
         ({"reset_mask": [True]}, ValueError, r"torch.bool of shape \(1,\), expected torch.bool of shape \(2,\)"),
         ({"env_ids": [0], "reset_mask": [True, False]}, ValueError, "both env_ids and reset_mask"),
+        ({"env_ids": np.array([False, True])}, TypeError, "env_ids are torch.bool, expected whole numbers.*reset_mask"),
+        ({"env_ids": [0.0, 1.0]}, TypeError, "env_ids are torch.float32, expected whole numbers"),
     ],
 )
 def test_malformed_options_are_named(env, options, error, message) -> None:

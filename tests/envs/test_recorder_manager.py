@@ -34,6 +34,7 @@ from arcgym.managers import (
     save_episode,
 )
 from arcgym.managers.recorder_files import claim_path, next_path
+from arcgym.managers.recorder_joining import join
 from arcgym.utils import configclass
 
 
@@ -191,6 +192,14 @@ def test_configuration_mistakes_are_named(cfg) -> None:
     cfg.recorders = RecorderCfg(dataset_export_mode="some")
     with pytest.raises(TypeError, match="dataset_export_mode. expects.*Available: all, none, succeeded_only"):
         ManagerBasedRLEnv(cfg)
+
+
+def test_joining_that_fails_leaves_nothing_behind(recording, tmp_path) -> None:
+    run(recording(), 5)
+    (tmp_path / "torn_000009.hdf5").write_bytes(b"no recording")
+    with pytest.raises(RecordingError):
+        join(sorted(tmp_path.glob("*.hdf5")), tmp_path / "out" / "all.hdf5")
+    assert list((tmp_path / "out").iterdir()) == []
 
 
 def test_episodes_can_be_joined_in_one_file(recording, tmp_path) -> None:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,20 @@ def test_trials_of_an_earlier_version_say_so_and_give_way_to_the_present_ones(tm
     text = page([old, new], tmp_path)
     assert "| expert | 200 | 10 (7–15) |" in text and "population_v2" not in text
     assert "--suite population --robot Magnetic --agent expert --out" not in text
+
+
+def test_a_copy_that_grew_keeps_no_rows_of_the_smaller_one(tmp_path: Path) -> None:
+    """30 trials are written plainly, 50 are packed, and 30 again are plain again."""
+    keep, source = tmp_path / "keep", tmp_path / "all" / "one"
+    for task, suite, name in (
+        (TASK, "paper", "trials.csv"),
+        ("ARC-LeftColon-Magnetic", "left_colon", "trials.csv.gz"),
+        (TASK, "paper", "trials.csv"),
+    ):
+        shutil.rmtree(source, ignore_errors=True)
+        write_result_folder(source, 20, task, suite)
+        page([tmp_path / "all"], tmp_path, "--keep", str(keep))
+        assert [path.name for path in (keep / "one").glob("trials*")] == [name]
 
 
 def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:

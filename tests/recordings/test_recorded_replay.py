@@ -108,6 +108,7 @@ def test_command_draws_and_judges(recorded, tmp_path, capsys) -> None:
 
 def test_command_names_what_it_cannot_read(tmp_path, capsys) -> None:
     for words, message in (
+        (["replay", "a.hdf5", "--video", "a.mp4", "--pieces"], "--pieces draws no video: choose one of the two"),
         (["replay", str(tmp_path / "no.hdf5")], "There is no recording"),
         (["replay", str(tmp_path / "no.hdf5"), "--video", "a.avi"], "expected a name that ends in .mp4"),
     ):

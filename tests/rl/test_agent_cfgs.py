@@ -10,6 +10,8 @@ from rsl_rl.utils import resolve_callable
 
 from arcgym.cli.task import agent_key
 from arcgym.rl import RslRlVecEnvWrapper, constrained_runner
+from arcgym.rl.agent_checks import check_agent
+from arcgym.utils.errors import UsageError
 from arcgym.utils.registry import list_tasks, load_cfg_from_registry
 from arcgym.utils.threads import one_thread
 
@@ -84,3 +86,13 @@ def test_frame_stacks_are_those_of_the_task():
     stacks = load_cfg_from_registry(TASK, agent_key("sac")).algorithm.frame_stacks
     policy = load_cfg_from_registry(TASK, "env_cfg_entry_point").observations.policy
     assert stacks == {"policy": policy.rgb.history_length}
+
+
+def test_images_among_the_further_terms_of_a_group_are_checked() -> None:
+    """The camera of 20 px is as much too small in ``terms`` as it is in a member."""
+    env_cfg, agent_cfg = (load_cfg_from_registry(TASK, key) for key in ("env_cfg_entry_point", agent_key("ppo")))
+    env_cfg.scene.camera.width = env_cfg.scene.camera.height = 20
+    policy = env_cfg.observations.policy
+    policy.terms, policy.rgb = {"picture": policy.rgb}, None
+    with pytest.raises(UsageError, match="does not fit the 20x20 px images"):
+        check_agent(env_cfg, agent_cfg, trains=False)

@@ -26,6 +26,12 @@ def test_every_tenth_is_a_line(capsys):
     assert lines == [f"playing: {done} of 40" for done in range(4, 41, 4)]
 
 
+def test_nothing_to_count_is_no_error(capsys):
+    with counted("playing", 0) as show:
+        show(0)
+    assert capsys.readouterr().out == ""
+
+
 def test_ten_seconds_without_a_tenth_are_a_line(capsys, monkeypatch):
     now = [0.0]
     monkeypatch.setattr(progress.time, "perf_counter", lambda: now[0])

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from arcgym.utils.paths import resolve_asset
+from arcgym.utils.paths import assets_dir, resolve_asset
 from arcgym.utils.string import did_you_mean, resolve_callable
 
 Resolver = Callable[[str, int | None], Sequence[Path]]
@@ -59,6 +59,24 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
     if twice is not None:
         raise ValueError(f"ColonCfg.usd_path names {twice} twice.")
     return paths
+
+
+def named_colon(name: str) -> str:
+    """Return the ``usd_path`` that a word on a command line means.
+
+    Args:
+        name: A colon that comes along, such as ``colon_1``, or all that :func:`find_stages` takes.
+
+    Raises:
+        ValueError: If there is no such file or folder, with the nearest of the colons that come along.
+    """
+    for path in (name, f"{name}/{STAGE_NAMES[0]}"):
+        if resolve_asset(path).is_file():
+            return path
+    if ":" in name or resolve_asset(name).is_dir():
+        return name
+    known = sorted(path.parent.name for path in assets_dir().glob(f"*/{STAGE_NAMES[0]}"))
+    raise ValueError(f"There is no colon '{name}', which is no stage file. {did_you_mean(name, known)}")
 
 
 def _joined(entries: list[str]) -> list[str]:

@@ -14,7 +14,6 @@ is. --patients takes names (colon_1), stage files, folders and splits (populatio
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -74,28 +73,17 @@ def run(namespace: argparse.Namespace) -> int:
 
 def _stages(colon: Any, patients: str | None) -> tuple[str, ...]:
     """Return the stage files of the patients, those of the task where none are named."""
-    from arcgym.assets.patient_files import find_stages
+    from arcgym.assets.patient_files import find_stages, named_colon
+    from arcgym.utils.paths import resolve_asset
 
     try:
         if patients is None:
             return tuple(map(str, find_stages(colon.usd_path, colon.num_patients)))
-        return tuple(str(path) for name in patients.split(",") for path in _named(name))
+        named = [named_colon(name) for name in patients.split(",")]
+        stages = [[path] if resolve_asset(path).is_file() else find_stages(path) for path in named]
+        return tuple(str(path) for some in stages for path in some)
     except (ValueError, OSError) as error:
         raise UsageError(str(error)) from error
-
-
-def _named(name: str) -> Sequence[str | Path]:
-    """Return the stage files that a name of patients means: a colon that comes along, a file, a folder, a split."""
-    from arcgym.assets.patient_files import find_stages
-    from arcgym.utils.paths import assets_dir, resolve_asset
-
-    for path in (name, f"{name}/colon.usda"):
-        if resolve_asset(path).is_file():
-            return [path]
-    if ":" in name or resolve_asset(name).is_dir():
-        return find_stages(name)
-    known = sorted(path.parent.name for path in assets_dir().glob("*/colon.usda"))
-    raise UsageError(f"--patients names '{name}', which is no stage file. {did_you_mean(name, known)}")
 
 
 def _record(

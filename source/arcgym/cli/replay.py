@@ -52,6 +52,8 @@ def run(namespace: argparse.Namespace) -> int:
     args = read_fields(ReplayArguments, namespace)
     if args.video and not args.video.endswith(".mp4"):
         raise UsageError(f"--video is '{args.video}', expected a name that ends in .mp4")
+    if args.video and args.pieces:
+        raise UsageError("--pieces draws no video: choose one of the two.")
     from arcgym.managers import Episode, RecordingError
 
     try:
@@ -108,7 +110,7 @@ def _tell_pieces(pieces: Any) -> int:
     for piece in pieces:
         print(piece)
     exact = sum(piece.is_exact for piece in pieces)
-    farthest = 1000.0 * max(piece.tip_distance for piece in pieces)
+    farthest = 1000.0 * max((piece.tip_distance for piece in pieces), default=0.0)
     print(f"outcome: {exact} of {len(pieces)} pieces the same, bit for bit; tips end at most {farthest:.2f} mm off")
     return 0 if exact == len(pieces) else 1
 

@@ -34,7 +34,7 @@ class TeleopArguments(RunArguments):
     """Arguments of ``arcgym teleop``."""
 
     driver: str = argument("who drives at first: hand (default), expert, zero, random or policy", "hand")
-    patient: str | None = argument("colon: colon_1 or a stage file (default: the task's)", None)
+    patient: str | None = argument("colon: colon_1, a stage file or population:20000 (default: the task's)", None)
     tissue: str | None = argument("preset of the tissue (default: the task's)", None)
     start: str | None = argument("where to begin (default: the task's)", None, choices=("segment", "rest"))
     out: str = argument("folder of the recordings (default: logs/teleop)", "logs/teleop")
@@ -105,11 +105,9 @@ def serve(args: Any, steers: bool) -> None:
     from arcgym.teleop.session import Session
 
     drivers, settings = make_drivers(args)
-    patient = args.patient
-    if patient is not None and not patient.endswith(".usda"):
-        patient = f"{patient}/colon.usda"
     choice = Choice(
-        args.task, patient, args.tissue, args.start, args.driver, choose_device(args.device), args.seed or 0,
+        args.task, _patient(args.patient), args.tissue, args.start, args.driver, choose_device(args.device),
+        args.seed or 0,
         overrides=tuple(text for text in args.overrides if text.startswith("env.")), settings=settings,
         num_envs=args.num_envs or 1, reduced=getattr(args, "reduced", False),
         gas=steers and not args.no_gas and "policy" not in drivers,
@@ -119,6 +117,15 @@ def serve(args: Any, steers: bool) -> None:
     session = Session(choice, out, drivers)
     session.needs_page = session.starts_paused = steers and args.seconds is None
     show(session, args, steers)
+
+
+def _patient(name: str | None) -> str | None:
+    from arcgym.assets.patient_files import named_colon
+
+    try:
+        return None if name is None else named_colon(name)
+    except ValueError as error:
+        raise UsageError(f"--patient: {error}") from error
 
 
 def show(session: Any, args: Any, steers: bool) -> None:

@@ -102,6 +102,7 @@ def worlds_to_reset(options: dict[str, Any] | None, num_envs: int, device: str) 
 
     Raises:
         ValueError: If an option is unknown, both are given, or the mask has another shape or type.
+        TypeError: If the indices are no whole numbers.
         IndexError: If a world does not exist.
     """
     for name in options or ():
@@ -113,7 +114,10 @@ def worlds_to_reset(options: dict[str, Any] | None, num_envs: int, device: str) 
         raise ValueError("reset got both env_ids and reset_mask; give one of them.")
     if "reset_mask" in options:
         return _masked_worlds(torch.as_tensor(options["reset_mask"], device=device), num_envs)
-    env_ids = torch.as_tensor(options["env_ids"], device=device).flatten().unique().long()
+    env_ids = torch.as_tensor(options["env_ids"], device=device).flatten()
+    if len(env_ids) and (env_ids.dtype == torch.bool or env_ids.is_floating_point()):
+        raise TypeError(f"reset's env_ids are {env_ids.dtype}, expected whole numbers; a bool a world is a reset_mask.")
+    env_ids = env_ids.unique().long()
     if len(env_ids) and not 0 <= int(env_ids[0]) <= int(env_ids[-1]) < num_envs:
         raise IndexError(f"reset's env_ids are {env_ids.tolist()}; worlds go from 0 to {num_envs - 1}.")
     return env_ids

@@ -67,6 +67,8 @@ def _write(folder: Path, run: dict[str, Any], rows: Sequence[Row]) -> None:
     for row in rows:
         named = {**row, "agent": agents.get(row["agent"], row["agent"])}
         writer.writerow([_text(named[name]) for name in columns])
+    for old in (PACKED_FILE, TRIALS_FILE):
+        (folder / old).unlink(missing_ok=True)
     content = out.getvalue().encode()
     if len(rows) > LONG:
         (folder / PACKED_FILE).write_bytes(gzip.compress(content, mtime=0))

@@ -29,10 +29,21 @@ def join(sources: Sequence[Path], path: str | Path, only_successes: bool = False
     Returns:
         Number of episodes.
     """
-    path, count, total = Path(path), 0, 0
+    path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(path.stem + PARTIAL)
-    with h5py.File(partial, "w", libver="latest") as file:
+    try:
+        count = _copy(sources, partial, only_successes)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+    os.replace(partial, path)
+    return count
+
+
+def _copy(sources: Sequence[Path], path: Path, only_successes: bool) -> int:
+    count, total = 0, 0
+    with h5py.File(path, "w", libver="latest") as file:
         file.attrs["arcgym_recording"] = FORMAT
         group = file.create_group("data")
         for one in sources:
@@ -49,5 +60,4 @@ def join(sources: Sequence[Path], path: str | Path, only_successes: bool = False
                     total += int(demo.attrs["num_samples"])
                     count += 1
         group.attrs["total"] = total
-    os.replace(partial, path)
     return count

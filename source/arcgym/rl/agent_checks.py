@@ -112,7 +112,8 @@ def _check_images(env_cfg: Any, agent_cfg: Any, name: str) -> None:
 
 def _images(env_cfg: Any, group: str) -> Iterator[tuple[str, int, int]]:
     """Yield name, height and width [px] of each camera whose images a group observes."""
-    for term in _entries(_entries(env_cfg.observations)[group]).values():
+    own = _entries(_entries(env_cfg.observations)[group])
+    for term in (*own.values(), *(own.get("terms") or {}).values()):
         func = getattr(term, "func", None)
         if not callable(func):
             continue

@@ -97,8 +97,9 @@ def _printer(title: str, total: int) -> Callable[[int], None]:
 
     def show(done: int) -> None:
         nonlocal tenths, printed
-        if 10 * done // total > tenths or time.perf_counter() - printed > LINE_PERIOD_S:
-            tenths, printed = 10 * done // total, time.perf_counter()
+        reached = 10 * done // max(total, 1)
+        if reached > tenths or time.perf_counter() - printed > LINE_PERIOD_S:
+            tenths, printed = reached, time.perf_counter()
             print(f"{title}: {done} of {total}", flush=True)
 
     return show

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-import shutil
+import os
 import tempfile
 from pathlib import Path
 
@@ -29,6 +29,7 @@ def make_to_folder(spec: ColonSpec, out: Path) -> ColonStage:
 
     Raises:
         ValueError: If the folder exists and is not empty.
+        OSError: If another process made it meanwhile.
         AnatomyError: If the spec gives no valid colon.
     """
     check_folder(out)
@@ -39,5 +40,5 @@ def make_to_folder(spec: ColonSpec, out: Path) -> ColonStage:
         write_colon(stage, made / "colon.usda")
         if out.exists():
             out.rmdir()
-        shutil.move(made, out)
+        os.rename(made, out)  # fails where another process made it meanwhile
     return stage
