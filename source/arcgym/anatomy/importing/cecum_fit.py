@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.curve import Curve
+from arcgym.anatomy.importing.blind_end import blind_end
 from arcgym.anatomy.importing.polar import cast_rings
 from arcgym.anatomy.voxel_grid import Grid
 
@@ -54,6 +55,13 @@ class CecumFitSettings:
     """Largest shift of the axis's base, in radii; beyond, the path stays as it was."""
     largest_move: float = 0.035
     """Largest shift of the pole [m]; beyond, the path stays as it was."""
+    largest_miss: float = 0.025
+    """Largest distance of the fitted pole from the blind end [m]; beyond, the path is led to the blind end. Of 20 ceca
+    with the fit right it was 6 to 17 mm, in both from CT 18 and 20 mm, in three with a bulge fitted 34 to 40 mm."""
+    turn_in: float = 1.6
+    """Distance from the blind end at which a path is turned to it, in radii."""
+    turns: tuple[float, ...] = (0.5, 0.3, 0.1)
+    """How far the turn goes on straight first, over that distance: the first is taken that stays in the lumen."""
     step: float = 0.003
     """Distance of points along the path [m]."""
 
@@ -117,7 +125,8 @@ def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
         points: Centreline from the anus to the wall of the caecum [m], evenly spaced, shape (n, 3).
 
     Returns:
-        The centreline, its last part replaced; as it was where the fit leads out of the lumen or far away.
+        The centreline, its last part replaced; led to the blind end where the fit ends far from it; as it was where the
+        fit leads far away.
     """
     curve = Curve(points, np.linspace(0.0, 1.0, 9)[1:])
     radius = _typical_radius(grid, curve)
@@ -128,10 +137,29 @@ def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
     reach = float(np.linalg.norm(last - base))
     bullet = _fit(_wall_points(grid, curve, start, radius), base, (last - base) / reach, reach + radius, radius)
     axis = _axis(grid, bullet)
+    end = blind_end(grid, curve, start, radius)
     moved = np.linalg.norm(axis[-1] - points[-1])
     if moved > SETTINGS.largest_move or np.linalg.norm(bullet.base - base) > SETTINGS.largest_turn * radius:
+        led = points
+    else:
+        led = _blended(curve, start, axis)
+    return led if np.linalg.norm(led[-1] - end) < SETTINGS.largest_miss else _turned_to(grid, points, end, radius)
+
+
+def _turned_to(grid: Grid, points: np.ndarray, end: np.ndarray, radius: float) -> np.ndarray:
+    """Return the centreline turned to the blind end in the widest parabola inside; as it was where none is."""
+    near = np.linalg.norm(points - end, axis=1) < SETTINGS.turn_in * radius
+    first = int(near.argmax())
+    if first < 2:
         return points
-    return _blended(curve, start, axis)
+    ahead = points[first] - points[first - 2]
+    ahead *= np.linalg.norm(end - points[first]) / np.linalg.norm(ahead)
+    t = np.linspace(0.0, 1.0, 40)[:, None]
+    for share in SETTINGS.turns:
+        arc = points[first] + 2.0 * t * (1.0 - t) * share * ahead + t**2 * (end - points[first])
+        if (grid.sample(arc[:-4]) > 0.5).all():
+            return np.concatenate([points[:first], arc])
+    return points
 
 
 def _typical_radius(grid: Grid, curve: Curve) -> float:
