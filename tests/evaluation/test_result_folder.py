@@ -16,7 +16,15 @@ RUN = {"agent": "zero", "checkpoint_sha256": [], "suite": "paper", "conditions_s
 
 
 def row(trial: int, success: int, task: str = "ARC-A", progress: float = 0.5) -> dict:
-    return {"task": task, "trial": trial, "group": 0, "success": success, "end": "success", "progress": progress}
+    return {
+        "task": task,
+        "agent": "zero",
+        "trial": trial,
+        "group": 0,
+        "success": success,
+        "end": "success",
+        "progress": progress,
+    }
 
 
 def test_rows_are_on_the_disk_as_they_come(tmp_path: Path) -> None:

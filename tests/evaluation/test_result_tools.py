@@ -14,6 +14,7 @@ from arcgym.cli.main import main
 from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
 from arcgym.evaluation.compare import compare, notes
 from arcgym.evaluation.leaderboard import submissions
+from arcgym.evaluation.merge import merge
 from arcgym.evaluation.result_folder import ResultFolder, result_folders
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.trials import read_conditions
@@ -37,14 +38,17 @@ def changed(task: str, **fields) -> dict:
     return {**RUN, "changes": RUN["changes"] | {task: {name.replace("__", "."): pair for name, pair in fields.items()}}}
 
 
-def result(path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = slice(None), **changes) -> Path:
-    """A folder in which every trial succeeds; ``changes`` are made in the first row."""
+def result(
+    path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = slice(None), every: dict | None = None, **changes
+) -> Path:
+    """A folder in which every trial succeeds; ``every`` is changed in all rows, ``changes`` in the first."""
     folder = ResultFolder(path, run)
     for task in TASKS:
         for trial in CONDITIONS.trials[trials]:
             row = {"task": task, "agent": "a", **vars(trial), "success": 1, "end": "success", "reward": 1.0}
             row |= {"seconds": seconds + trial.trial, "progress": 1.0, "centered_rate": 1.0, "p95_tip_force": 0.0}
             row |= {"mean_tip_force": 0.0, "max_tip_force": 0.0, "peak_tip_force": 0.0}
+            row |= every or {}
             folder.add(row | (changes if not folder.rows else {}))
     return path
 
@@ -89,6 +93,18 @@ def test_parts_of_two_machines_make_a_whole(tmp_path: Path) -> None:
     assert main(["results", "check", str(tmp_path / "all")]) == 0
     parquet = pytest.importorskip("pyarrow.parquet").read_table(tmp_path / "all" / "trials.parquet")
     assert sorted(set(parquet["trial"].to_pylist())) == list(range(30))
+
+
+def test_a_checkpoint_has_one_name_wherever_it_lies(tmp_path: Path) -> None:
+    """One machine has it in /a, the other in /b: it is one training run, and the trial that both ran is the same."""
+    ours = {**RUN, "checkpoint": ["/a/1.pt", "/a/2.pt", "/a/3.pt"]}
+    theirs = {**RUN, "checkpoint": ["/b/1.pt", "/b/2.pt", "/b/3.pt"]}
+    first = result(tmp_path / "a", run=ours, trials=slice(0, 16), every={"agent": "/a/2.pt"})
+    second = result(tmp_path / "b", run=theirs, trials=slice(15, 30), every={"agent": "/b/2.pt"})
+    rows = merge([first, second], tmp_path / "all").rows
+    assert len(rows) == 120 and {row["agent"] for row in rows} == {"/a/2.pt"}
+    assert ResultFolder(first, theirs).names == {f"/b/{k}.pt": f"/a/{k}.pt" for k in (1, 2, 3)}
+    assert problems(tmp_path / "all") == [f"names the checkpoint /a/{k}.pt, which ran no trial" for k in (1, 3)]
 
 
 def test_two_results_of_one_trial_are_refused(tmp_path: Path) -> None:

@@ -131,6 +131,17 @@ def test_agents_of_two_kinds_are_no_evaluation(tmp_path: Path, conditions: Path,
     assert "--agent is zero,model.pt; expected checkpoints" in capsys.readouterr().err
 
 
+def test_more_training_seeds_than_groups_are_refused(tmp_path: Path) -> None:
+    """All fifty trials of the five colons are one group: the second checkpoint would be named and never run."""
+    from arcgym.evaluation.evaluate import EvaluationOptions, run_record
+    from arcgym.evaluation.suites import read_suites
+    from arcgym.evaluation.trials import read_conditions
+
+    conditions = read_conditions(read_suites()["left_colon"].conditions_path)
+    with pytest.raises(UsageError, match="has 2 checkpoints, and trials of five_colons_v1 have 1 group"):
+        run_record(["ARC-LeftColon-Magnetic"], conditions, EvaluationOptions(("1.pt", "2.pt"), "left_colon"))
+
+
 @pytest.mark.parametrize(("device", "name"), [("cpu", "no GPU"), ("cuda:1", "GPU cuda:1"), (None, "GPU cuda:0")])
 def test_the_machine_is_that_which_ran_the_trials(monkeypatch, device: str | None, name: str) -> None:
     """On a machine with two GPUs."""

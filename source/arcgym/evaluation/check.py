@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.result_folder import CHANGED, COMMIT, Row, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import CHANGED, COMMIT, HASH, Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
@@ -63,7 +63,7 @@ def problems(path: Path, whole: bool = True) -> list[str]:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
     conditions = suite.conditions_of(run.get("conditions_sha256"))
     found = [*_run_problems(run, conditions, suite), *_row_problems(rows, conditions), *_other_tasks(rows, suite)]
-    unfit = [*_outdated(conditions, suite), *_unfit_to_compete(run, conditions), *_silent(run, rows)]
+    unfit = [*_outdated(conditions, suite), *_unfit_to_compete(run, rows, conditions), *_silent(run, rows)]
     return found + [*unfit, *_missing_trials(rows, conditions, suite)] * whole
 
 
@@ -110,13 +110,17 @@ def _is_of_nothing(task: str, path: str, changed: set[str]) -> bool:
     return getattr(found, SWITCH, None) is False
 
 
-def _unfit_to_compete(run: dict[str, Any], conditions: Conditions) -> list[str]:
+def _unfit_to_compete(run: dict[str, Any], rows: list[Row], conditions: Conditions) -> list[str]:
     """Return a problem for too few training seeds, rules that know more than the policy, and code that nobody has."""
     commit = str(run.get("versions", {}).get(COMMIT, ""))
     found = [f"was run by code that is not that of its commit: {commit}"] if commit.endswith(CHANGED) else []
     checkpoints, wanted = len(set(run.get("checkpoint_sha256", []))), min(conditions.groups, SEEDS)
     if run.get("agent") == "checkpoint" and 0 < checkpoints < wanted:
         found.append(f"has {checkpoints} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups")
+    ran = {str(row.get("agent")) for row in rows}
+    named = zip(run.get("checkpoint", []), run.get("checkpoint_sha256", []), strict=False)
+    idle = [path for path, digest in named if path not in ran and digest[:HASH] not in ran]
+    found += [f"names the checkpoint {path}, which ran no trial" for path in idle]
     for task, inputs in run.get("inputs", {}).items():
         if inputs["simulator_depth"]:
             found.append(f"{task} was run with rules on actions that read the simulator's depth")

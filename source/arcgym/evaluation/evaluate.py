@@ -139,13 +139,19 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
     Checkpoints are listed in the order of the tasks that have some of their own, then of the groups.
 
     Raises:
-        UsageError: A checkpoint is missing, or there are several agents and one of them is none.
+        UsageError: A checkpoint is missing or would run no trial, or of several agents one is no checkpoint.
     """
     untrained = [agent for agent in options.agents if agent in UNTRAINED]
     if untrained and len(options.agents) > 1:
         raise UsageError(
             f"--agent is {','.join(options.agents)}; expected checkpoints, which are training seeds, or {untrained[0]} "
             "alone: other agents are evaluations of their own."
+        )
+    if len(options.agents) > conditions.groups:
+        raise UsageError(
+            f"--agent has {len(options.agents)} checkpoints, and trials of {conditions.name} have {conditions.groups} "
+            "group(s), one for each training seed: the others would run nothing. Evaluate each in a folder of its own, "
+            "or take a suite with more groups, such as paper or population."
         )
     agents = dict.fromkeys(agent for task in tasks for agent in options.agents_for(task))
     checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in agents]
@@ -247,7 +253,7 @@ def _run_batch(
             started = len(folder.rows)
 
             def keep(row: dict[str, Any]) -> None:
-                folder.add({"task": task, "agent": agent, **row})
+                folder.add({"task": task, "agent": folder.names.get(agent, agent), **row})
                 show(len(folder.rows) - started)
 
             run_trials(env, make_policy, trials, keep, patients)

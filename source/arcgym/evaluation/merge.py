@@ -23,11 +23,12 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
     known = {(row["task"], row["trial"]): row for row in folder.rows}
     for part in parts:
         run = read_run(part)
-        ResultFolder(out, run)
+        names = ResultFolder(out, run).names
         _merge_changes(folder, part, run.get("changes", {}))
         for task, inputs in run.get("inputs", {}).items():
             folder.note_inputs(task, inputs)
         for row in read_trial_rows(part):
+            row["agent"] = names.get(row["agent"], row["agent"])
             key = (row["task"], row["trial"])
             if key not in known:
                 known[key] = row

@@ -40,6 +40,9 @@ ANY_VERSION = ("python",)
 TEXTS = ("task", "agent", "patient", "end")
 """Columns that are texts, whatever they look like: a hash may be made of digits."""
 
+HASH = 12
+"""Digits of a checkpoint's hash that stand for it in the rows of small copies."""
+
 COMMIT, CHANGED = "arcgym commit", " with changes"
 """Name of ARCGym's commit among the versions, and its ending where the code was not that of the commit."""
 
@@ -67,6 +70,8 @@ class ResultFolder:
             _check_same(file, json.loads(file.read_text()), run)
         else:
             _write_run(file, run)
+        self.names = _names(run, read_run(path))
+        """Checkpoint that rows name, by the path that it was given with: of the same file the one in ``run.json``."""
         _cut_torn_line(path / TRIALS_FILE)
         self.rows = read_trial_rows(path)
         """Rows so far."""
@@ -179,6 +184,15 @@ def _write_run(file: Path, run: dict[str, Any]) -> None:
     temporary = file.with_suffix(".tmp")
     temporary.write_text(json.dumps(run, indent=1, sort_keys=True) + "\n")
     os.replace(temporary, file)
+
+
+def _names(given: dict[str, Any], written: dict[str, Any]) -> dict[str, str]:
+    """Return the written path of each checkpoint that is given, which may lie elsewhere now, or on another machine."""
+    old, new = (
+        list(zip(run.get("checkpoint", []), run.get("checkpoint_sha256", []), strict=False)) for run in (written, given)
+    )
+    paths = {digest: path for path, digest in old}
+    return {path: path if (path, digest) in old else paths.get(digest, path) for path, digest in new}
 
 
 def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:

@@ -14,7 +14,7 @@ from typing import Any
 
 from arcgym.evaluation.check import BASIC
 from arcgym.evaluation.floors import FIGURES
-from arcgym.evaluation.result_folder import PACKED_FILE, RUN_FILE, TRIALS_FILE, Row
+from arcgym.evaluation.result_folder import HASH, PACKED_FILE, RUN_FILE, TRIALS_FILE, Row
 from arcgym.evaluation.results import Result
 from arcgym.evaluation.results_page import METRICS
 from arcgym.utils.errors import UsageError
@@ -27,9 +27,6 @@ DIGITS = 5
 
 LONG = 40
 """Trials beyond which a file is packed."""
-
-HASH = 12
-"""Digits of a checkpoint's hash that stand for it in the rows."""
 
 PARTS = 3
 """Names of a checkpoint's path that are kept: cell, run and file."""
