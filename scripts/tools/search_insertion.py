@@ -7,13 +7,14 @@
 
 Every process goes back to a mark that got far, tries a few seconds with other settings of the scripted expert, often
 after having withdrawn and turned the shaft, and marks where that led to. What leads to the foremost mark is one
-continuous insertion: ``best.npz`` has its actions, and the steps at which it was marked. The same command goes on
-where it was stopped.
+continuous insertion: ``best.npz`` has its actions, and the steps at which it was marked. It ends with its time, also
+where it has arrived; the same command goes on where it was stopped.
 """
 
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import multiprocessing
 import os
@@ -120,7 +121,7 @@ def main() -> int:
     tasks.put((0, marks.all[0].state, guide.pop(0)) if guide else marks.choose())
     for _ in workers[1:]:
         tasks.put(marks.choose())
-    while time.monotonic() < end and not marks.arrived(args.patient):
+    while time.monotonic() < end:
         try:
             parent, found = results.get(timeout=5.0)
         except queue.Empty:
@@ -149,7 +150,7 @@ class Marks:
         self.out, self.chance, self.all = out, chance, list[Mark]()
         self.cells: dict[tuple[int, int], int] = {}
         self.began = self.said = self.saved = time.monotonic()
-        self.count, self.goal = 0, 9.0
+        self.count = 0
         if (out / "marks.pkl").exists():
             self.all = pickle.loads((out / "marks.pkl").read_bytes())
             for index in range(len(self.all)):
@@ -202,10 +203,6 @@ class Marks:
             plan["back"] = c.choice([c.randrange(4, 15), c.randrange(10, 80)])
         return plan
 
-    def arrived(self, patient: str) -> bool:
-        """Whether the foremost is at the end of the colon."""
-        return max(mark.arc for mark in self.all) > self.goal
-
     def report(self) -> None:
         """Say how far it is, every ten seconds, and save now and then."""
         now = time.monotonic()
@@ -240,10 +237,12 @@ class Marks:
             "window": best.window,
             "steps": best.steps,
         }
-        np.savez_compressed(self.out / "best.npz", actions=actions, steps=steps, facts=json.dumps(facts))
+        content = io.BytesIO()
+        np.savez_compressed(content, actions=actions, steps=steps, facts=json.dumps(facts))
+        write(self.out / "best.npz", content.getvalue())
         plain = [{name: value for name, value in mark.plan.items() if name != "actions"} for mark in line]
         plans = [{"arc": round(mark.arc, 4), "steps": mark.steps, **p} for mark, p in zip(line, plain, strict=True)]
-        (self.out / "best.json").write_text(json.dumps(plans, indent=1))
+        write(self.out / "best.json", json.dumps(plans, indent=1).encode())
 
 
 def guided(path: Path) -> Iterator[dict[str, Any]]:

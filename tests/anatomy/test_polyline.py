@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from arcgym.anatomy.blending import smooth_step, soft_limit
+from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.polyline import arc_lengths, resample, restore_lengths, smooth
 
 CORNER = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 1.0, 0.0]])
@@ -35,8 +35,3 @@ def test_both_ends_of_a_short_edge_move() -> None:
 
 def test_smooth_step_is_a_half_in_the_middle() -> None:
     assert smooth_step(1.0, 3.0, np.array([0.0, 1.0, 2.0, 3.0, 9.0])).tolist() == [0.0, 0.0, 0.5, 1.0, 1.0]
-
-
-def test_soft_limit_changes_nothing_up_to_four_fifths() -> None:
-    limited = soft_limit(np.array([0.5, 0.8, 1.0, 99.0]), np.array(1.0))
-    assert limited == pytest.approx([0.5, 0.8, 0.8 + 0.2 * np.tanh(1.0), 1.0])

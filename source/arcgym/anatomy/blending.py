@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Smooth steps and limits, elementwise."""
+"""Smooth steps, elementwise."""
 
 from __future__ import annotations
 
@@ -11,9 +11,3 @@ def smooth_step(low: float, high: float, x: np.ndarray) -> np.ndarray:
     """Return 0 below ``low``, 1 above ``high`` and the cubic ``t^2 (3 - 2 t)`` between, shape like ``x``."""
     t = np.clip((x - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
-
-
-def soft_limit(values: np.ndarray, limit: np.ndarray) -> np.ndarray:
-    """Return values that approach a limit: unchanged up to 0.8 of it, never above it, shape like ``values``."""
-    excess = np.maximum(values - 0.8 * limit, 0.0)
-    return np.minimum(values, 0.8 * limit) + 0.2 * limit * np.tanh(excess / (0.2 * limit))

@@ -24,6 +24,7 @@ ENDOSCOPE_PATH = "/Endoscope"
 LINKS_PATH = "/Endoscope/Links"
 JOINTS_PATH = "/Endoscope/Joints"
 ROOT_JOINT_PATH = "/Endoscope/Joints/root"
+"""Prim paths of an endoscope's stage."""
 ROLL_LIMIT = 3600.0
 """Range of the roll to either side [deg]: ten turns, practically free, but an axis without a range is not imported."""
 TURNS = ("bend_x", "bend_y", "twist")

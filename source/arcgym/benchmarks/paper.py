@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figures of the paper that benchmarks stand beside."""
 
-PAPER_TRANSITIONS = 44_000
 PAPER_RATE = {1: 12.22, 5: 34.65}
 """Control steps per second over all worlds, by number of worlds, in the table of throughput of "ARCGym: Benchmarking
 Deep Reinforcement Learning in Autonomous Robotic Colonoscopy" (RA-L 2026); measured there on an RTX PRO 6000."""

@@ -31,7 +31,9 @@ VARIANTS: dict[str, tuple[str, ...]] = {
 }
 """Overrides by name; ``examiner`` has a script that pushes gently and pulls back."""
 EXAMINER = "examiner"
+"""Name of that variant."""
 GPU_WORLDS, CPU_WORLDS = 6, 1
+"""Worlds of each patient where none are given."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -29,8 +29,11 @@ from arcgym.utils.errors import UsageError
 
 TAKES_OVERRIDES = True
 ROBOTS = ("capsule", "magnetic", "proximal")
+"""Robots that have an expert, as the rows name them."""
 TISSUES = ("paper", "in_situ")
+"""Tissue presets that are driven through where none are given."""
 GPU_WORLDS, CPU_WORLDS = 12, 4
+"""Worlds of each patient where none are given."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -33,7 +33,9 @@ from arcgym.utils.errors import UsageError
 TAKES_OVERRIDES = True
 ROBOTS = ("Capsule", "Magnetic", "Proximal")
 GPU_STEPS, CPU_MINUTES = 1_000_000, 60.0
+"""Control steps of all tasks and worlds on a GPU, time for all tasks on a CPU [min], where none are given."""
 GPU_WORLDS, CPU_WORLDS = 1024, 8
+"""Worlds where none are given."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -23,6 +23,7 @@ from arcgym.cli.arguments import counts, positive
 
 TAKES_OVERRIDES = True
 GPU_COUNTS, CPU_COUNTS = [1, 16, 64, 256, 1024, 4096], [1, 4]
+"""Numbers of worlds that are measured where none are given."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

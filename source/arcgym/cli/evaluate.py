@@ -31,6 +31,7 @@ from arcgym.evaluation.trials import Conditions
 TAKES_OVERRIDES = True
 
 REFERENCE_AGENTS = ("zero", "random", "expert")
+"""Agents that need no checkpoint."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,6 +32,7 @@ SHIPPED = Path(__file__).parents[2] / "arcgym_tasks" / "navigation" / "studies"
 """Folder of the studies that come with the package; their names are enough."""
 
 LAUNCHERS = ("pool", "submitit_slurm", "submitit_local", "ray", "basic")
+"""What can run the cells of a study: processes of this machine, or a launcher of Hydra."""
 
 
 @dataclass(frozen=True, kw_only=True)

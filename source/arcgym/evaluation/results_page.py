@@ -39,6 +39,7 @@ METRICS = {
 """Heading and digits of the figures beside success."""
 
 REFERENCE_AGENTS = ("zero", "random", "expert")
+"""Agents without training, first in every table."""
 TRAINED = "model.pt"
 """Stands for a checkpoint in commands."""
 

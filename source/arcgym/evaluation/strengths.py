@@ -16,6 +16,7 @@ from arcgym.evaluation.statistics import paired_difference, training_runs, wilso
 from arcgym.evaluation.suites import read_suites, split_task
 
 STRENGTHS = ("1", "2", "3")
+"""Ends of the names of robustness variants, from weak to strong."""
 UNSPOILED = "none"
 """Variant that the others are compared with."""
 Cells = dict[tuple[str, str], list[dict[str, Any]]]

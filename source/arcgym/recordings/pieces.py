@@ -22,6 +22,7 @@ from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
 STATE, SETTINGS = "marks/state/", "world_settings/"
+"""Beginnings of the names of the states at marks, and of the physical settings of the recorded world."""
 
 
 @dataclass(frozen=True)

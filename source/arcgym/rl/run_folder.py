@@ -21,6 +21,7 @@ from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 
 LOG_ROOT = Path("logs") / "rsl_rl"
+"""Folder of the runs, below the one in which a command is called."""
 
 
 def create_run_folder(experiment: str, run_name: str = "", root: Path = LOG_ROOT) -> Path:

@@ -12,6 +12,7 @@ from arcgym.sensors.shading_kernels import Lighting, SurfaceView, covered_radian
 from arcgym.utils import warp_setup  # noqa: F401
 
 PROBES = wp.constant(14)
+"""Directions in which a lens looks for the side of the wall that it is on."""
 
 
 @wp.func

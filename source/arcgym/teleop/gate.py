@@ -23,7 +23,9 @@ HEAD_LIMIT = 65536
 HEAD_TIME = 10.0
 """Longest time that a head may take [s]."""
 NONSENSE = b"No request."
+"""Answer to what is no HTTP request."""
 NEEDED = b"This page needs the address that 'arcgym teleop' printed, with its token."
+"""Answer to a request without token or cookie."""
 
 
 class Gate:

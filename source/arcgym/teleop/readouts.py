@@ -18,6 +18,7 @@ CELL = (
     "<div style='min-width:88px'><div style='font-size:11px;opacity:.65'>{label}</div>"
     "<div style='font-size:17px;font-variant-numeric:tabular-nums;color:{color}'>{value}</div></div>"
 )
+"""A figure of the page with its name above it."""
 
 
 def readouts(frame: Frame | None, status: Status, tiers: Tiers, latency: float, picture_rate: float) -> str:

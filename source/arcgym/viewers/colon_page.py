@@ -19,6 +19,7 @@ STRIP = 150
 """Height of the unrolled wall [px]."""
 GROUND = (16, 19, 25)
 INK = (236, 240, 246)
+"""Colors of the page and of its text, RGB."""
 
 
 def draw_page(stage: ColonStage) -> Image.Image:

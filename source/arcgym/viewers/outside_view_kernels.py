@@ -8,7 +8,9 @@ import warp as wp
 from arcgym.utils import warp_setup  # noqa: F401
 
 MAX_HITS = wp.constant(24)
+"""Layers of wall that a ray goes through, at most."""
 FAR = wp.constant(10.0)
+"""Distance of where nothing was hit [m]."""
 
 
 @wp.struct

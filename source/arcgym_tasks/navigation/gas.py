@@ -12,6 +12,7 @@ from arcgym.managers import MetricsTermCfg as MetricsTerm
 from arcgym.utils.validation import FieldError, require
 
 NONE, PRESENT, COMMANDED = "none", "present", "commanded"
+"""Values of ``env.gas``: no gas, gas without an action, gas that an action insufflates and sucks off."""
 
 
 def check_gas(cfg: Any) -> None:

@@ -10,6 +10,7 @@ from arcgym.envs import mdp
 from arcgym.utils.validation import FieldError, require
 
 NONE, COMMANDED = "none", "commanded"
+"""Values of ``env.hand_pressure``: no hand on the abdomen, one that an action moves."""
 
 
 def check_hand(cfg: Any) -> None:

@@ -22,6 +22,7 @@ LEAST_LIKENESS = 0.60
 0.48 and less."""
 
 KEEP = "--keep-doubtful makes the folder all the same, for looking at."
+"""What to do about an import that was refused for its doubts."""
 
 
 def path_doubts(report: dict[str, Any]) -> list[str]:

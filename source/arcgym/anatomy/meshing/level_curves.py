@@ -57,7 +57,7 @@ def level_rings(
     following[found.start], flux[found.start] = found.end, found.flux
     chain_to = following.tolist()
     rings, placed = np.full((len(levels), sectors, 4), np.nan), np.zeros(len(levels), bool)
-    main = _main_loops(found, len(levels))
+    main = _main_loops(found)
     forward = np.sign(sum(turns for _, turns in main)) or 1.0
     for first, turns in main:
         loop = _walk(chain_to, first)
@@ -117,7 +117,7 @@ def _slopes(mapped: ConformalMap) -> np.ndarray:
     return np.linalg.norm(rising, axis=1) / np.maximum(area, 1e-18)
 
 
-def _main_loops(found: _Crossings, count: int) -> list[tuple[int, float]]:
+def _main_loops(found: _Crossings) -> list[tuple[int, float]]:
     """Return a point of the loop of each level that has the largest flux, and its turns in v."""
     size = len(found.level)
     graph = coo_array((np.ones(len(found.start), np.int8), (found.start, found.end)), shape=(size, size))

@@ -16,6 +16,7 @@ Figures = dict[str, Any]
 APPLEYARD = "Appleyard et al. 2000, 21 examinations"
 PAINTER = "Painter et al. 1999, 136 examinations"
 SHAH = "Shah et al. 2002, 650 demands"
+"""Studies whose figures the insertions stand beside."""
 
 
 def _percent(value: float | None) -> str:

@@ -135,11 +135,6 @@ class InsertionAction(VelocityAction):
         self._bending_drive = self._asset.actuator(cfg.bending_name)
         self._bending = torch.zeros(self.num_envs, 2, device=self.device)
 
-    @property
-    def bending_target(self) -> torch.Tensor:
-        """Commanded pitch and yaw [rad], shape (N, 2)."""
-        return self._bending
-
     def process_actions(self, actions: torch.Tensor) -> None:
         """Clip and scale ``actions``, shape (N, A), and move the bending target by one control step."""
         super().process_actions(actions)

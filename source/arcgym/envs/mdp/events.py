@@ -154,8 +154,8 @@ def randomize_preparation(
     """Draw how clean the colon is: Boston bowel preparation scores of right, transverse and left colon.
 
     The sum of the three is 5, 6, or evenly 7, 8 or 9, and is shared out as evenly as it can be, the rest at random.
-    Where what is left lies is drawn anew. Of 2352 adequate preparations 22 % scored 6 and 78 % 7 to 9; that a tenth is
-    less is an estimate.
+    Where what is left lies is drawn anew. Of 2352 adequate preparations 529 scored 6 and 1823 scored 7 to 9 (Kim et
+    al. 2024, doi:10.1038/s41598-024-52244-8); that a tenth is less is an estimate.
 
     Args:
         shares: Share of worlds with a sum of 5, of 6 and of 7 to 9; they sum up to one.

@@ -27,7 +27,9 @@ TAIL = 15
 """Lines of the log that are kept of a cell that failed."""
 
 POLL_S = 0.5
+"""Time between two looks at a training that runs [s]."""
 REPORT_S = 60.0
+"""Time between two lines about it [s]."""
 _WATCHED = {"iteration": r"Learning iteration (\d+)", "reward": r"Mean reward: *(\S+)"}
 
 

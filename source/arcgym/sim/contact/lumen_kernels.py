@@ -12,6 +12,7 @@ from arcgym.sim.geometry_kernels import segment_parameter
 from arcgym.utils import warp_setup  # noqa: F401
 
 FAR = wp.constant(1.0e9)
+"""Distance of where no wall was found [m]."""
 
 
 @wp.struct

@@ -16,6 +16,7 @@ from arcgym.sim.wall.ring_modes import MODES as RING_MODES
 from arcgym.utils import warp_setup  # noqa: F401
 
 MODES = wp.constant(RING_MODES)
+"""Unknowns of a ring, see :data:`arcgym.sim.wall.ring_modes.MODES`."""
 SMALLEST_PIVOT = wp.constant(1.0e-6)
 """Least pivot of a factor, so that rounding alone never takes the root of a negative number [N/m]."""
 Unknowns = wp.types.vector(length=RING_MODES, dtype=float)
