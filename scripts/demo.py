@@ -10,7 +10,6 @@ film is that of one that was trained before.
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -26,9 +25,6 @@ PLAY += [
     "env.viewer.outside.width=456",
     "env.viewer.outside.height=416",
 ]  # drawn in half the time
-
-THREADS = "ARCGYM_CPU_THREADS"
-"""Environment variable with the threads that physics and drawing use; two give the same bits as one."""
 
 
 def main() -> None:
@@ -50,8 +46,7 @@ def run(stage: str, arguments: list[str]) -> str:
     command = [sys.executable, "-u", f"scripts/rsl_rl/{stage}.py", "--task", TASK, *arguments]
     print(f"\n$ {' '.join(command)}", flush=True)
     lines = []
-    variables = {THREADS: "2", **os.environ} if (os.cpu_count() or 1) > 1 else dict(os.environ)
-    with subprocess.Popen(command, cwd=ROOT, env=variables, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         for line in process.stdout:
             print(line, end="", flush=True)

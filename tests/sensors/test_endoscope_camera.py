@@ -12,7 +12,7 @@ from tube_scene import FORWARD, MIDDLE, RADIUS, TubeScene
 
 from arcgym.sensors import EndoscopeCamera, EndoscopeCameraCfg, ExposureCfg
 from arcgym.sensors.camera_rays import fisheye_rays
-from arcgym.utils.two_threads import VARIABLE
+from arcgym.utils.cpu_threads import VARIABLE
 
 SIZE = 32
 

@@ -43,7 +43,7 @@ def matrix(sim: Simulation, points: np.ndarray) -> np.ndarray:
     inputs, outputs = [sim.nodal_pos, solver.rings, solver.loads], [solver.axes, solver.shift]
     wp.launch(coarse_kernels.place_rings, (rings, 1), inputs=inputs, outputs=outputs)
     inputs = [sim.nodal_pos, solver.elements.data, solver.rings, solver.axes, solver.tissue]
-    wp.launch(solver.elements.measure_bands, (rings - 1, 1), inputs=inputs, outputs=[solver.bands])
+    wp.launch(solver.elements.measure_bands, (rings - 1, 1), inputs=[0, *inputs], outputs=[solver.bands])
     upper = np.triu(solver.bands.numpy()[..., 0].astype(float))
     of_rings = np.zeros((15, 2 * MODES))  # t of the ring less t of the next one, g_p and g_q of the one, of the other
     of_rings[:9, :9] = np.eye(9)

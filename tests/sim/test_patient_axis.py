@@ -122,11 +122,11 @@ def test_a_world_that_takes_another_patient_goes_on_as_that_one(
 
 def test_no_kernel_or_graph_is_made_anew(tiny: TinySim, paths: list[str]) -> None:
     sim = push(tiny("capsule", num_envs=2, colon={"usd_path": paths}))
-    graph = sim._physics.graph
+    graph = sim._physics.recorded
     sim.colon.write_patient_to_sim(torch.tensor([1, 0]))
     sim.write_snapshot(-1)
     push(sim)
-    assert graph is not None and sim._physics.graph is graph
+    assert graph is not None and sim._physics.recorded is graph
 
 
 def test_each_patient_has_start_states_of_its_own(tiny: TinySim, paths: list[str]) -> None:

@@ -9,27 +9,30 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.utils.two_threads import VARIABLE
+from arcgym.utils.cpu_threads import VARIABLE
+from arcgym.utils.stages import Stages
 
 
 @pytest.mark.parametrize("kind", ["capsule", "proximal"])
-def test_two_threads_make_the_same_steps_as_one(tiny_sim: TinySim, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_several_threads_make_the_same_steps_as_one(
+    tiny_sim: TinySim, kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     ends = []
-    for threads in ("1", "2"):
+    for threads in ("1", "2", "3"):
         monkeypatch.setenv(VARIABLE, threads)
         sim = tiny_sim(kind, num_envs=2)
         wp.to_torch(sim.nodal_pos)[..., 0] += 0.014  # of a tube of 20 mm radius around the scope
         sim.forward()
         sim.step(30)
-        assert (sim._physics._beside is not None) == (threads == "2")
+        assert isinstance(sim._physics.recorded, Stages) == (threads != "1")
         assert sim.contact.records.start.numpy()[:, -1].min() > 0
         ends.append({name: array.clone() for name, array in sim.world_arrays().items()})
     for name, array in ends[0].items():
-        assert torch.equal(array, ends[1][name]), name
+        assert all(torch.equal(array, end[name]) for end in ends[1:]), name
 
 
 def test_a_wall_that_stands_still_needs_one_thread(tiny_sim: TinySim, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(VARIABLE, "2")
     sim = tiny_sim("capsule", colon={"rigid": True})
     sim.step(3)
-    assert sim._physics.graph is not None and sim._physics._beside is None
+    assert isinstance(sim._physics.recorded, wp.Graph)

@@ -69,10 +69,10 @@ def test_share_and_contents_add_up(tube: TinySim) -> None:
 def test_turning_takes_off_the_weight_of_the_imaging(tube: TinySim) -> None:
     sim = weighing(tube, contents_per_length=0.0)
     sim.step(4)  # a graph holds the step by now
-    graph = sim._physics.graph
+    graph = sim._physics.recorded
     sim.write_gravity(torch.tensor([[-9.81, 0.0, 0.0]]))
     sim.step(1)
-    assert sim._physics.graph is graph and graph is not None
+    assert sim._physics.recorded is graph and graph is not None
     # From (0, -g, 0) to (-g, 0, 0): down is to the left, and what had pulled to the back is gone.
     torch.testing.assert_close(speed(sim)[:2], torch.tensor([-1.0, 1.0]) * 9.81 * STEP, rtol=0.01, atol=0.0)
 

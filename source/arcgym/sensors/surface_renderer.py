@@ -26,7 +26,7 @@ from arcgym.sensors.motion_kernels import smear
 from arcgym.sensors.shading_kernels import Lighting, SurfaceView
 from arcgym.sensors.texture_density import texel_density
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.two_threads import both, cpu_threads
+from arcgym.utils.cpu_threads import Pace, share_out
 
 if TYPE_CHECKING:
     from arcgym.anatomy.stage import VisualMesh
@@ -112,6 +112,7 @@ class SurfaceRenderer:
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
         self._drawn_before = False
+        self._casting, self._developing = Pace(), Pace()
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)
         self.view = _surface_view(surface, visuals, textures)
         self.overlay: Callable[[wp.array], None] | None = None
@@ -135,27 +136,32 @@ class SurfaceRenderer:
             outputs=[self.covered],
             device=self.device,
         )
-        self._in_halves(lambda rows: self._cast(poses, looks, drawn, rows))
+        self._in_parts(self._casting, lambda rows: self._cast(poses, looks, drawn, rows))
         if self.soil is not None:
             self.soil(poses, drawn)
         if self.overlay is not None:
             self.overlay(poses)
         self._expose(poses, drawn)
         radiance = self.radiance if motion is None else self._smear(motion, drawn)
-        self._in_halves(lambda rows: self._develop(radiance, looks, drawn, rows))
+        self._in_parts(self._developing, lambda rows: self._develop(radiance, looks, drawn, rows))
         self._drawn_before = True
 
-    def _in_halves(self, work: Callable[[slice], None]) -> None:
-        """Do ``work`` on the rows of all pictures: with two threads of a CPU, on the upper and the lower ones at once.
+    def _in_parts(self, pace: Pace, work: Callable[[slice], None]) -> None:
+        """Do ``work`` on the rows of all pictures: on a CPU on as many parts of them at once as there are threads.
 
         Not with the first picture, which loads the kernels.
         """
         device, height = wp.get_device(self.device), self.shape[1]
-        if device.is_cuda or device.is_capturing or cpu_threads() == 1 or not self._drawn_before or height == 1:
+        if device.is_cuda or device.is_capturing or not self._drawn_before:
             work(slice(0, height))
-        else:
-            upper, lower = slice(0, height // 2), slice(height // 2, height)
-            both(lambda: work(upper), lambda: work(lower))
+            return
+
+        def draw(threads: int) -> None:
+            bounds = [height * k // threads for k in range(threads + 1)]
+            parts = [slice(first, end) for first, end in zip(bounds[:-1], bounds[1:], strict=True) if end > first]
+            share_out(threads, parts, work)
+
+        pace.run(draw)
 
     def _cast(self, poses: wp.array, looks: WorldLooks, drawn: wp.array, rows: slice) -> None:
         num_envs, _, width = self.shape

@@ -4,48 +4,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import functools
 from typing import TYPE_CHECKING
 
 import warp as wp
 
 from arcgym.sim.coupling.two_level_coupling import TwoLevelCoupling
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.two_threads import both, cpu_threads
+from arcgym.utils.cpu_threads import Pace, cpu_threads
+from arcgym.utils.stages import Stages
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
 
 
 class PhysicsStep:
-    """Advances a simulation by one physics step.
+    """Advances a simulation by physics steps.
 
     The first two steps ever made run kernel by kernel, which compiles them; the next is recorded in a graph, which is
-    replayed from then on. On two threads of a CPU it is three graphs: contacts are found and the scope moves while the
-    wall prepares its step, each part in a thread that replays it outside Python. As the two share nothing that either
-    writes, results are those of one thread to the bit.
+    replayed from then on. With several threads of a CPU it is recorded in stages, which they replay together.
     """
 
     def __init__(self, sim: Simulation):
         """Nothing is launched yet; ``sim`` has to be built but for this."""
         self._sim = sim
-        self._beside: tuple[wp.Graph, wp.Graph] | None = None
-        self.graph: wp.Graph | None = None
-        """The recorded step, or of one on two cores what comes after the parts done at the same time."""
+        self.recorded: wp.Graph | Stages | None = None
+        """The recorded step: stages for several threads of a CPU, a graph for one of them or a GPU."""
         self._eager_steps = 0
+        self._pace = Pace()
 
-    def make(self) -> None:
-        """Make the step."""
-        if self.graph is None and (not self._sim.cfg.use_graph or self._eager_steps < 2):
+    def make(self, steps: int = 1) -> None:
+        """Make some steps."""
+        while steps > 0 and (not self._sim.cfg.use_graph or self._eager_steps < 2):
             self._launch()
             self._eager_steps += 1
+            steps -= 1
+        if steps == 0:
             return
-        if self.graph is None:
+        if self.recorded is None:
             self._record()
-        if self._beside is not None:
-            one, other = self._beside
-            both(lambda: wp.capture_launch(one), lambda: wp.capture_launch(other))
-        wp.capture_launch(self.graph)
+        if isinstance(self.recorded, Stages):
+            self._pace.run(functools.partial(self.recorded.run, steps), steps)
+            return
+        for _ in range(steps):
+            wp.capture_launch(self.recorded)
 
     def _launch(self) -> None:
         self._sim.coupling.step()
@@ -60,23 +62,17 @@ class PhysicsStep:
                 sim.surroundings.read(sim.nodal_pos, sim.wall.tissue, sim.wall_readout)
 
     def _record(self) -> None:
-        coupling = self._sim.coupling
-        if not isinstance(coupling, TwoLevelCoupling) or not self._two_threads():
-            self.graph = self._recorded(self._launch)
+        threads = self._threads()
+        if threads > 1:
+            self.recorded = Stages(threads)
+            self.recorded.record(self._launch)
             return
-
-        def rest() -> None:
-            coupling.finish()
-            self._collect()
-
-        self._beside = self._recorded(coupling.prepare_wall), self._recorded(coupling.move_scope)
-        self.graph = self._recorded(rest)
-
-    def _two_threads(self) -> bool:
-        """Whether a CPU is to use two cores, and the wall has something to do meanwhile."""
-        return wp.get_device(self._sim.device).is_cpu and self._sim.wall.moves and cpu_threads() == 2
-
-    def _recorded(self, work: Callable[[], None]) -> wp.Graph:
         with wp.ScopedCapture(device=self._sim.device) as capture:
-            work()
-        return capture.graph
+            self._launch()
+        self.recorded = capture.graph
+
+    def _threads(self) -> int:
+        """Return how many threads have something to do."""
+        sim = self._sim
+        shared = isinstance(sim.coupling, TwoLevelCoupling) and sim.wall.moves and wp.get_device(sim.device).is_cpu
+        return cpu_threads() if shared else 1

@@ -206,10 +206,13 @@ class Simulation:
         self.wall_readout.clear()
         if self.gas is not None:
             self.gas.clear()
-        for left in range(n, 0, -1):
-            for watch in self.watchers:
-                watch(left, n)
-            self._physics.make()
+        if self.watchers:
+            for left in range(n, 0, -1):
+                for watch in self.watchers:
+                    watch(left, n)
+                self._physics.make()
+        else:
+            self._physics.make(n)
         for array in averages:
             wp.to_torch(array).mul_(1.0 / n)
         self.scope_readout.finish(n)

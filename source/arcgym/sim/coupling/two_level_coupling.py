@@ -10,6 +10,7 @@ import warp as wp
 
 from arcgym.sim.contact import link_load_kernels as kernels
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
+from arcgym.utils.stages import at_the_same_time
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -59,8 +60,7 @@ class TwoLevelCoupling:
     def step(self) -> None:
         """Advance by one physics step, in place."""
         if self._scope_stream is None:
-            self.move_scope()
-            self.prepare_wall()
+            at_the_same_time(self.move_scope, self.prepare_wall)
         else:
             with wp.ScopedStream(self._scope_stream):
                 self.move_scope()

@@ -93,6 +93,7 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
 
     @wp.kernel(module="unique", launch_bounds=(GPU_BLOCK, 3))
     def measure_bands(
+        first: int,
         x: wp.array2d[wp.vec3],
         elements: elements_type,
         rings: Rings,
@@ -100,9 +101,10 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
         tissue: Tissue,
         bands: wp.array4d[float],
     ):
-        """Measure the stiffness of every band. Launch (R - 1, W).
+        """Measure the stiffness of every band. Launch (R - 1, W), or some of the rows.
 
         Args:
+            first: First row of this launch.
             x: Positions [m], shape (V, W).
             elements: Elements of all patients.
             rings: Rings of all patients.
@@ -111,6 +113,7 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
             bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W); written.
         """
         r, w = wp.tid()
+        r += first
         band = BandMatrix()
         for e in range(rings.band_start[r], rings.band_start[r + 1]):
             band = add_element(band, elements, rings, x, rings.band[e], r, w, tissue.moduli[w])

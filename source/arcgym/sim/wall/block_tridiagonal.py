@@ -45,6 +45,17 @@ class BlockTridiagonalSolver:
             shape, threads = (self.num_envs, cuda_kernels.THREADS), cuda_kernels.THREADS
             wp.launch(kernel, shape, outputs=[*blocks, *sides], device=self.device, block_dim=threads)
             return
-        wp.launch(kernels.solve_rows, self.num_envs, outputs=[*blocks, self.rhs], device=self.device)
+        self.eliminate(0, self.diagonal.shape[0])
+        self.substitute()
         if also is not None:
             wp.launch(kernels.solve_again, self.num_envs, inputs=blocks, outputs=[also], device=self.device)
+
+    def eliminate(self, first: int, count: int) -> None:
+        """Begin to solve, on a CPU: go down ``count`` rows from ``first`` on, those before it having been done."""
+        outputs = [self.diagonal, self.upper, self.rhs]
+        wp.launch(kernels.eliminate_rows, self.num_envs, inputs=[first, count], outputs=outputs, device=self.device)
+
+    def substitute(self) -> None:
+        """Finish solving, on a CPU, when all rows have been gone down."""
+        outputs = [self.diagonal, self.upper, self.rhs]
+        wp.launch(kernels.substitute_rows, self.num_envs, outputs=outputs, device=self.device)

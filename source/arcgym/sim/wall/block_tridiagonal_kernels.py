@@ -101,28 +101,44 @@ def substitute_back(r: int, w: int, diagonal: wp.array4d[float], upper: wp.array
 
 
 @wp.kernel
-def solve_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]):
-    """Solve every world's system. Launch (W,).
+def eliminate_rows(
+    first: int, count: int, diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]
+):
+    """Go some rows down every world's system. Launch (W,).
 
     Args:
+        first: First of the rows, those before it having been done.
+        count: How many.
         diagonal: Blocks D, shape (R, W, M, M); the factors L afterwards.
         upper: Couplings U to the next row, shape (R, W, M, M); W afterwards.
-        rhs: Right-hand side b, shape (R, W, M); the solution x afterwards.
+        rhs: Right-hand side b, shape (R, W, M); y afterwards.
     """
     w = wp.tid()
-    rows = diagonal.shape[0]
-    for r in range(rows):
+    for r in range(first, first + count):
         if r > 0:
             subtract_row_before(r, w, diagonal, upper, rhs)
         factor(r, w, diagonal)
         eliminate(r, w, diagonal, upper, rhs)
+
+
+@wp.kernel
+def substitute_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]):
+    """Go back up every world's system, after ``eliminate_rows``. Launch (W,).
+
+    Args:
+        diagonal: Its factors L, shape (R, W, M, M).
+        upper: Its blocks W, shape (R, W, M, M).
+        rhs: y, shape (R, W, M); the solution x afterwards.
+    """
+    w = wp.tid()
+    rows = diagonal.shape[0]
     for back in range(rows):
         substitute_back(rows - 1 - back, w, diagonal, upper, rhs)
 
 
 @wp.kernel
 def solve_again(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float]):
-    """Solve every world's system for another right-hand side, after ``solve_rows``. Launch (W,).
+    """Solve every world's system for another right-hand side, after ``eliminate_rows``. Launch (W,).
 
     Args:
         diagonal: Its factors L, shape (R, W, M, M).

@@ -187,6 +187,7 @@ def next_sign(i: int) -> float:
 
 @wp.kernel
 def assemble(
+    first: int,
     force: wp.array2d[wp.vec3],
     rings: Rings,
     loads: RingLoads,
@@ -202,9 +203,12 @@ def assemble(
     upper: wp.array4d[float],
     rhs: wp.array3d[float],
 ):
-    """Assemble one row of the coarse system of every world. Launch (R, W, M) in blocks of ``GPU_BLOCK``.
+    """Assemble one row of the coarse system of every world.
+
+    Launch (R, W, M), or some of the rows, in blocks of ``GPU_BLOCK``.
 
     Args:
+        first: First row of this launch.
         force: Residual of each vertex [N], shape (V, W).
         rings: Rings of all patients.
         loads: Loads of all patients.
@@ -221,6 +225,7 @@ def assemble(
         rhs: Force on each unknown [N], shape (R, W, M); written.
     """
     r, w, a = wp.tid()
+    r += first
     field = axis(a // 3)
     along = axis(a % 3)
     p = rings.patient[w]
@@ -282,16 +287,18 @@ def assemble(
 
 
 @wp.kernel
-def prolong(rings: Rings, solution: wp.array3d[float], largest_move: float, x: wp.array2d[wp.vec3]):
-    """Move every vertex with its ring. Launch (V, W).
+def prolong(first: int, rings: Rings, solution: wp.array3d[float], largest_move: float, x: wp.array2d[wp.vec3]):
+    """Move every vertex with its ring. Launch (V, W), or some of the rows.
 
     Args:
+        first: First row of this launch.
         rings: Rings of all patients.
         solution: Amplitude of each unknown [m], shape (R, W, M).
         largest_move: Longest displacement of a vertex [m].
         x: Wall positions [m], shape (V, W); moved in place.
     """
     i, w = wp.tid()
+    i += first
     r = rings.ring[i]
     fields = ring_fields(rings, i, rings.patient[w])
     d = wp.vec3(0.0)

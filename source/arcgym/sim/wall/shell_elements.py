@@ -19,6 +19,7 @@ from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangl
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_topology import vertex_entries
+from arcgym.utils.stages import launch_rows
 
 
 class Shell:
@@ -81,11 +82,9 @@ class Shell:
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data = self.data
-        shape = data.angle_change.shape
-        wp.launch(shell_kernels.measure_hinges, shape, inputs=[x], outputs=[data], device=self.device)
-        wp.launch(shell_kernels.measure_moments, shape, inputs=[tissue], outputs=[data], device=self.device)
-        shape = data.scaled_normal.shape
-        wp.launch(shell_kernels.measure_triangles, shape, inputs=[x, tissue], outputs=[data], device=self.device)
+        launch_rows(shell_kernels.measure_hinges, data.angle_change.shape, [x], [data], self.device)
+        launch_rows(shell_kernels.measure_moments, data.angle_change.shape, [tissue], [data], self.device)
+        launch_rows(shell_kernels.measure_triangles, data.scaled_normal.shape, [x, tissue], [data], self.device)
 
 
 class GasShell:

@@ -150,16 +150,21 @@ def hinge_angle(shell: ShellElements, x: wp.array2d[wp.vec3], h: int, w: int) ->
 
 
 @wp.kernel
-def measure_hinges(x: wp.array2d[wp.vec3], shell: ShellElements):
-    """Write ``shell.angle_change`` at the positions ``x`` [m], shape (V, W). Launch (H, W)."""
+def measure_hinges(first: int, x: wp.array2d[wp.vec3], shell: ShellElements):
+    """Write ``shell.angle_change`` at the positions ``x`` [m], shape (V, W), from row ``first`` on. Launch (H, W)."""
     h, w = wp.tid()
+    h += first
     shell.angle_change[h, w] = hinge_angle(shell, x, h, w) - shell.rest_angle[h, shell.patient[w]]
 
 
 @wp.kernel
-def measure_moments(tissue: Tissue, shell: ShellElements):
-    """Moment of every hinge, from its own angle and those of the hinges it is coupled with. Launch (H, W)."""
+def measure_moments(first: int, tissue: Tissue, shell: ShellElements):
+    """Moment of every hinge from row ``first`` on, from its own angle and those of the hinges it is coupled with.
+
+    Launch (H, W).
+    """
     h, w = wp.tid()
+    h += first
     moduli = tissue.moduli[w]
     nu = moduli[1] / (moduli[1] + 2.0 * moduli[0])  # plane stress
     moment = float(0.0)
@@ -178,13 +183,16 @@ def hinge_moment(shell: ShellElements, h: int, w: int) -> float:
 
 
 @wp.kernel
-def measure_triangles(x: wp.array2d[wp.vec3], tissue: Tissue, shell: ShellElements):
-    """Write ``shell.scaled_normal`` and ``shell.corner_force`` at ``x`` [m], shape (V, W). Launch (F, W).
+def measure_triangles(first: int, x: wp.array2d[wp.vec3], tissue: Tissue, shell: ShellElements):
+    """Write ``shell.scaled_normal`` and ``shell.corner_force`` at ``x`` [m], shape (V, W), from row ``first`` on.
+
+    Launch (F, W).
 
     A hinge turns its triangle by pulling at the corners along the normal: at the corner opposite with its moment over
     the height, and back at the others by where the foot of the height is.
     """
     t, w = wp.tid()
+    t += first
     corners = shell.triangles[t]
     x0 = x[corners[0], w]
     d1 = x[corners[1], w] - x0

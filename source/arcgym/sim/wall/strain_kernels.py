@@ -42,6 +42,7 @@ def face_strain(a: wp.vec3, b: wp.vec3, c: wp.vec3, inverse: wp.vec3) -> float:
 
 @wp.kernel
 def measure_rings(
+    first: int,
     x: wp.array2d[wp.vec3],
     rings: RestRings,
     anchor_scale: wp.array[float],
@@ -50,9 +51,11 @@ def measure_rings(
     tension: wp.array2d[float],
     tension_peak: wp.array2d[float],
 ):
-    """Add this step's largest strain and net anchor pull of each ring to the sums and peaks. Launch (R, W).
+    """Add this step's largest strain and net anchor pull of each ring to the sums and peaks. Launch (R, W), or some of
+    the rows.
 
     Args:
+        first: First row of this launch.
         x: Wall positions [m], shape (V, W).
         rings: Lumen faces and springs of all patients.
         anchor_scale: Factor on the springs of each world, shape (W,).
@@ -62,6 +65,7 @@ def measure_rings(
         tension_peak: Largest tension [N], shape (R, W); raised.
     """
     r, w = wp.tid()
+    r += first
     p = rings.anchors.patient[w]
     largest = float(0.0)
     for k in range(rings.face_start[r], rings.face_start[r + 1]):

@@ -77,6 +77,7 @@ def sweep_kernels(
 
     @wp.kernel(module="unique")
     def residual(
+        first: int,
         nodes: WallNodes,
         elements: elements_type,
         tissue: Tissue,
@@ -86,9 +87,12 @@ def sweep_kernels(
         x: wp.array2d[wp.vec3],
         force: wp.array2d[wp.vec3],
     ):
-        """Compute the total force on every mobile vertex where elements and contacts were measured. Launch (V, W).
+        """Compute the total force on every mobile vertex where elements and contacts were measured.
+
+        Launch (V, W), or some of the rows.
 
         Args:
+            first: First row of this launch.
             nodes: Vertices of all patients.
             elements: Elements of all patients, measured.
             tissue: Values of each world.
@@ -99,6 +103,7 @@ def sweep_kernels(
             force: Force [N], shape (V, W); written.
         """
         i, w = wp.tid()
+        i += first
         block = VertexBlock()
         if nodes.mobile[i, nodes.patient[w]] == 1 and tissue.rigid[w] == 0:
             block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))

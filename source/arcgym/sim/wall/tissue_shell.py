@@ -24,6 +24,7 @@ from arcgym.sim.wall.shell_kernels import STIFFENING
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_parameters import ShellParameters, WallParameters
+from arcgym.utils.stages import launch_rows
 
 RELAXATION = "relaxation."
 """Begins the names of the wall's memory of its tension. A state without them is that of a wall that has rested."""
@@ -116,8 +117,8 @@ class TissueShell:
         """Measure the shell with its tissue, and add the gas to its corner forces."""
         shell = self._shell.data
         device, hinges, triangles = self._shell.device, shell.angle_change.shape, shell.scaled_normal.shape
-        wp.launch(shell_kernels.measure_hinges, hinges, inputs=[x], outputs=[shell], device=device)
-        wp.launch(shell_kernels.measure_moments, hinges, inputs=[tissue], outputs=[shell], device=device)
+        launch_rows(shell_kernels.measure_hinges, hinges, [x], [shell], device)
+        launch_rows(shell_kernels.measure_moments, hinges, [tissue], [shell], device)
         wp.launch(kernels.measure_tissue, triangles, inputs=[x, tissue], outputs=[self.data], device=device)
         if self.data.gassy == 1:
             wp.launch(gas_shell_kernels.add_gas, triangles, inputs=[x, self._with_gas], device=device)

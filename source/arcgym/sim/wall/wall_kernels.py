@@ -305,6 +305,7 @@ def add_outer_force(block: VertexBlock, outer: OuterForce, x: wp.vec3, i: int, w
 
 @wp.kernel
 def predict(
+    first: int,
     x: wp.array2d[wp.vec3],
     v: wp.array2d[wp.vec3],
     nodes: WallNodes,
@@ -315,9 +316,10 @@ def predict(
     x_prev: wp.array2d[wp.vec3],
     inertial: wp.array2d[wp.vec3],
 ):
-    """Find where mobile vertices would go at their damped velocity. Launch (V, W).
+    """Find where mobile vertices would go at their damped velocity. Launch (V, W), or some of the rows.
 
     Args:
+        first: First row of this launch.
         x: Positions [m], shape (V, W).
         v: Velocities [m/s], shape (V, W).
         nodes: Vertices of all patients.
@@ -329,6 +331,7 @@ def predict(
         inertial: Positions that inertia pulls to [m], shape (V, W); written.
     """
     i, w = wp.tid()
+    i += first
     target = x[i, w]
     x_prev[i, w] = target
     if nodes.mobile[i, nodes.patient[w]] == 1 and tissue.rigid[w] == 0:
@@ -337,7 +340,11 @@ def predict(
 
 
 @wp.kernel
-def finish(x: wp.array2d[wp.vec3], x_prev: wp.array2d[wp.vec3], dt: float, v: wp.array2d[wp.vec3]):
-    """Write the velocity ``v`` [m/s] of a step from ``x_prev`` to ``x`` [m], shape (V, W) each. Launch (V, W)."""
+def finish(first: int, x: wp.array2d[wp.vec3], x_prev: wp.array2d[wp.vec3], dt: float, v: wp.array2d[wp.vec3]):
+    """Write the velocity ``v`` [m/s] of a step from ``x_prev`` to ``x`` [m], shape (V, W) each, from row ``first`` on.
+
+    Launch (V, W).
+    """
     i, w = wp.tid()
+    i += first
     v[i, w] = (x[i, w] - x_prev[i, w]) / dt

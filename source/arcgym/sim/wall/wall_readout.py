@@ -15,6 +15,7 @@ from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall.strain_kernels import RestRings, measure_rings
 from arcgym.sim.wall.wall_parameters import wall_anchors
 from arcgym.sim.wall.wall_topology import LumenTopology
+from arcgym.utils.stages import launch_rows
 from arcgym.utils.worlds import fill_worlds
 
 
@@ -66,13 +67,8 @@ class WallReadout:
 
     def measure(self, x: wp.array) -> None:
         """Add one physics step with wall positions ``x`` [m], shape (V, W), vec3."""
-        wp.launch(
-            measure_rings,
-            self._shape,
-            inputs=[x, self._rings, self._anchor_scale],
-            outputs=[self.strain, self.strain_peak, self.tension, self.tension_peak],
-            device=self._device,
-        )
+        outputs = [self.strain, self.strain_peak, self.tension, self.tension_peak]
+        launch_rows(measure_rings, self._shape, [x, self._rings, self._anchor_scale], outputs, self._device)
 
     def finish(self, steps: int) -> None:
         """End a control step of ``steps`` physics steps: sums become means."""

@@ -28,6 +28,7 @@ from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall.wall_topology import ring_mean
 from arcgym.sim.wall.wall_weight import WallWeight
+from arcgym.utils.stages import in_parts, in_sequence, launch_rows
 from arcgym.utils.warp_setup import GPU_BLOCK
 
 REGULARISATION = 1.0e-5
@@ -173,7 +174,7 @@ class WallSolver:
         decay = math.exp(-self.cfg.drag * self.dt)
         inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
         shape, outputs = (self.vertex_count, self.num_envs), [self.x_prev, self.inertial]
-        self._launch(wall_kernels.predict, shape, inputs, outputs)
+        self._launch_rows(wall_kernels.predict, shape, inputs, outputs)
         if self.weight is not None:
             self.weight.add(self.nodes, self.tissue, self.dt, self.inertial)
         self.self_contact.measure(x)
@@ -215,10 +216,10 @@ class WallSolver:
             if self.cfg.coarse_correction:
                 self._correct_rings(x, contacts)
             for _ in range(self.cfg.iterations):
-                self._sweep(x, contacts)
+                self._sweep(x, contacts, contact.carried is None)
         if self.gas is not None:
             self.gas.end()
-        self._launch(wall_kernels.finish, x.shape, [x, self.x_prev, self.dt], [v])
+        self._launch_rows(wall_kernels.finish, x.shape, [x, self.x_prev, self.dt], [v])
 
     def finish_contacts(
         self, x: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array, link_force: wp.array
@@ -234,15 +235,20 @@ class WallSolver:
             inputs = [contact.records, measured, link_force]
             self._launch(wall_kernels.settle_debts, contact.debt.shape, inputs, [contact.debt])
 
-    def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
+    def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts, together: bool) -> None:
+        """Move the vertices color by color; those of a color ``together`` where no contact joins two of them."""
+        inputs = [self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
+        inputs += [self.cfg.largest_move, ROUNDING * self.elements.size, self.force]
         for color in self.colors:
-            inputs = [color, self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
-            self._launch(
-                self._sweep_color,
-                (len(color), self.num_envs),
-                [*inputs, self.cfg.largest_move, ROUNDING * self.elements.size, self.force],
-                [x],
-            )
+
+            def move(first: int, rows: int, color: wp.array = color) -> None:
+                part = color[first : first + rows]
+                self._launch(self._sweep_color, (rows, self.num_envs), [part, *inputs], [x])
+
+            if together:
+                in_parts(len(color), move)
+            else:
+                move(0, len(color))
 
     def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
         """Return the force on every mobile vertex at rest [N], shape (V, W), vec3, without friction.
@@ -276,7 +282,7 @@ class WallSolver:
         inputs, outputs = [x, rings, self.loads], [self.axes, self.shift]
         self._launch(coarse_kernels.place_rings, self.shift.shape, inputs, outputs)
         inputs = [x, self.elements.data, rings, self.axes, self.tissue]
-        self._launch(self.elements.measure_bands, shape, inputs, [self.bands])
+        self._launch_rows(self.elements.measure_bands, shape, inputs, [self.bands])
 
     def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
         """Measure the contacts at ``x``, and sum all up to the ``force`` on every vertex."""
@@ -286,32 +292,40 @@ class WallSolver:
         shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
         self._launch(wall_kernels.measure_contacts, shape, [contacts, x], [measured])
-        self._launch(
-            self._sum_forces,
-            x.shape,
-            [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x],
-            [force],
-        )
+        inputs = [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x]
+        self._launch_rows(self._sum_forces, x.shape, inputs, [force])
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
         shape, records = (self.num_envs, contacts.records.threads), contacts.records
         self._launch(coarse_kernels.measure_fields, shape, [rings, records], [self.measured])
-        inputs = [self.force, rings, self.loads, self.bands, self.shift, tissue, 1.0 / self.dt**2]
+        if self.surroundings is None and self.gas_rings is None and wp.get_device(self.device).is_cpu:
+            in_sequence(self.ring_count, lambda *rows: self._assemble(contacts, *rows), system.eliminate)
+            system.substitute()
+        else:
+            in_parts(self.ring_count, lambda *rows: self._assemble(contacts, *rows))
+            if self.surroundings is not None:
+                self.surroundings.add_rows(rings, tissue, system.diagonal)
+            if self.gas_rings is None:
+                system.solve()
+            else:
+                self.gas_rings.solve(self.elements.data.shell, rings, self.loads, tissue, system)
+        self._launch_rows(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
+
+    def _assemble(self, contacts: wall_kernels.WallContacts, first: int, rows: int) -> None:
+        """Write some rows of the rings' equations."""
+        system = self.ring_system
+        inputs = [first, self.force, self.rings, self.loads, self.bands, self.shift, self.tissue, 1.0 / self.dt**2]
         self._launch(
             coarse_kernels.assemble,
-            (self.ring_count, self.num_envs, MODES),
+            (rows, self.num_envs, MODES),
             [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact],
             [system.diagonal, system.upper, system.rhs],
         )
-        if self.surroundings is not None:
-            self.surroundings.add_rows(rings, tissue, system.diagonal)
-        if self.gas_rings is None:
-            system.solve()
-        else:
-            self.gas_rings.solve(self.elements.data.shell, rings, self.loads, tissue, system)
-        self._launch(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
+
+    def _launch_rows(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
+        launch_rows(kernel, shape, inputs, outputs, self.device, GPU_BLOCK)
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)
