@@ -49,6 +49,10 @@ def test_sound_tube_passes_every_check() -> None:
     assert failed(inspect_stage(tiny_colon_stage())) == []
 
 
+def test_stage_without_landmarks_is_checked_all_the_same() -> None:
+    assert failed(inspect_stage(replace(tiny_colon_stage(), landmarks={}))) == []
+
+
 def test_wall_pushed_through_the_opposite_side_is_found() -> None:
     """A vertex of ring 8 goes across the lumen (40 mm) and 10 mm out on the other side."""
     wall = tiny_colon_stage().wall

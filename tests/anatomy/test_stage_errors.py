@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Usd, UsdGeom
+from pxr import Sdf, Usd, UsdGeom
 from tiny import tiny_colon_stage, write_tiny_colon
 
 from arcgym.anatomy import StageError, read_colon, write_colon
@@ -22,6 +22,20 @@ def _broken(folder: Path, change: Callable[[Usd.Stage], None]) -> Path:
     change(usd)
     usd.Flatten().Export(str(folder / "broken.usda"))
     return folder / "broken.usda"
+
+
+def set_first(usd: Usd.Stage, prim: str, attribute: str, value: float) -> None:
+    """Replace the first number of an array."""
+    found = usd.GetPrimAtPath(prim).GetAttribute(attribute)
+    values = list(found.Get())
+    found.Set([value, *values[1:]])
+
+
+def name_texture_by_text(usd: Usd.Stage) -> None:
+    """Make the attribute of the texture a plain text, which names no file."""
+    mucosa = usd.GetPrimAtPath("/Colon/Mucosa")
+    mucosa.RemoveProperty("arcgym:detailTexture")
+    mucosa.CreateAttribute("arcgym:detailTexture", Sdf.ValueTypeNames.String).Set("detail.png")
 
 
 def _remove(prim: str, attribute: str) -> Callable[[Usd.Stage], None]:
@@ -49,6 +63,23 @@ def _remove(prim: str, attribute: str) -> Callable[[Usd.Stage], None]:
             lambda usd: usd.GetPrimAtPath("/Colon/Tissue").GetAttribute("physics:poissonsRatio").Set(0.5),
             "/Colon/Tissue.*nu 0.5",
         ),
+        (
+            lambda usd: set_first(usd, "/Colon/Centerline", "primvars:arcgym:segment", 8),
+            "/Colon/Centerline, .*segment': indices from [0-9] to 8, expected 0 to 7",
+        ),
+        (
+            lambda usd: set_first(usd, "/Colon/Wall", "primvars:arcgym:segment", -1),
+            "/Colon/Wall, .*segment': indices from -1 to [0-9], expected 0 to 7",
+        ),
+        (
+            lambda usd: set_first(usd, "/Colon/Centerline", "primvars:arcgym:arc", 9.0),
+            "/Colon/Centerline, .*arc': 1 of [0-9]+ steps do not ascend",
+        ),
+        (
+            lambda usd: set_first(usd, "/Colon/Wall", "arcgym:ringArc", 9.0),
+            "/Colon/Wall, attribute 'arcgym:ringArc': 1 of [0-9]+ steps do not ascend",
+        ),
+        (name_texture_by_text, "/Colon/Mucosa, attribute 'arcgym:detailTexture': a str, expected a texture"),
     ],
 )
 def test_broken_stage(tmp_path: Path, change: Callable[[Usd.Stage], None], message: str) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade
 
 from arcgym.anatomy.measures import flipped_normal_fraction, tet_volumes, winds_outwards
+from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage import layout
 from arcgym.anatomy.stage.types import (
     Centerline,
@@ -111,16 +112,28 @@ class _Reader:
         return value.reshape(-1, width) if width > 1 else value.reshape(-1)
 
     def indices(self, path: str, name: str, width: int, count: int, rows: int | None = None) -> np.ndarray:
-        """Read an index array and check that every index points at one of ``count`` vertices."""
+        """Read an index array and check that every index points at one of ``count`` things."""
         value = self.array(path, name, width, rows)
         if value.size and (value.min() < 0 or value.max() >= count):
             raise self.error(path, name, f"indices from {value.min()} to {value.max()}, expected 0 to {count - 1}")
         return value
 
+    def arcs(self, path: str, name: str, rows: int | None = None) -> np.ndarray:
+        """Read arc lengths and check that they ascend."""
+        value = self.array(path, name, rows=rows)
+        steps = np.diff(value)
+        if not len(steps) or (steps <= 0).any():
+            found = f"{int((steps <= 0).sum())} of {len(steps)} steps do not ascend"
+            raise self.error(path, name, found, "Write two arc lengths or more, from the anal verge on")
+        return value
+
     def asset(self, path: str, name: str) -> Path:
         asset = self.value(path, name)
+        if not isinstance(asset, Sdf.AssetPath):
+            mend = "Give the attribute the type 'asset'"
+            raise self.error(path, name, f"a {type(asset).__name__}, expected a texture", mend)
         found = Path(asset.resolvedPath or self.path.parent / asset.path)
-        if not isinstance(asset, Sdf.AssetPath) or not found.is_file():
+        if not found.is_file():
             raise self.error(path, name, f"texture {asset.path} does not exist", "Put the image beside the stage")
         return found
 
@@ -140,12 +153,12 @@ def _read_wall(reader: _Reader) -> WallMesh:
     _check_schemas(reader, reader.prim(path, "TetMesh"), layout.WALL_SCHEMAS)
     points = reader.array(path, "points", 3)
     count = len(points)
-    ring_arc = reader.array(path, layout.RING_ARC)
+    ring_arc = reader.arcs(path, layout.RING_ARC)
     wall = WallMesh(
         points=points,
         tets=reader.indices(path, "tetVertexIndices", 4, count),
         anchor=reader.array(path, layout.ANCHOR, rows=count),
-        segment=reader.array(path, layout.SEGMENT, rows=count),
+        segment=reader.indices(path, layout.SEGMENT, 1, len(SEGMENTS), count),
         ring=reader.indices(path, layout.RING, 1, len(ring_arc), count),
         layer=reader.array(path, layout.LAYER, rows=count),
         frame_neighbors=reader.indices(path, layout.FRAME_NEIGHBORS, 4, count, count),
@@ -226,9 +239,9 @@ def _read_centerline(reader: _Reader) -> Centerline:
     count = len(points)
     return Centerline(
         points=points,
-        arc=reader.array(path, layout.ARC, rows=count),
+        arc=reader.arcs(path, layout.ARC, count),
         radius=reader.array(path, layout.RADIUS, rows=count),
-        segment=reader.array(path, layout.SEGMENT, rows=count),
+        segment=reader.indices(path, layout.SEGMENT, 1, len(SEGMENTS), count),
     )
 
 
