@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.result_folder import CHANGED, COMMIT, HASH, Row, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import CHANGED, COMMIT, HASH, TEXTS, UNTRAINED, Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
@@ -71,6 +71,8 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     found = []
     if run.get("conditions_sha256") != conditions.sha256:
         found.append(f"conditions are not those of {conditions.name}: the hash of the condition file differs")
+    if run.get("agent") not in ("checkpoint", *UNTRAINED):
+        found.append(f"agent is '{run.get('agent')}', expected checkpoint, {', '.join(UNTRAINED)}")
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
     found += _seen_in_training(run, str(run.get("suite")))
@@ -203,10 +205,12 @@ def _least_progress(task: str) -> float:
     return 0.97 if "-Cecum-" in task else 0.999
 
 
-def _impossible(row: Row) -> Iterator[tuple[str, float, str]]:
+def _impossible(row: Row) -> Iterator[tuple[str, float | str, str]]:
     """Yield the columns of a row whose value cannot be, with why."""
     for name, value in row.items():
         if not isinstance(value, float):
+            if isinstance(value, str) and name not in TEXTS:
+                yield name, value, "expected a number"
             continue
         if not math.isfinite(value):
             if row["end"] != "non_finite":  # an episode whose state broke may say so

@@ -14,13 +14,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.result_folder import UNTRAINED
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
 from arcgym.utils.errors import UsageError
 
-AGENTS = ("zero", "random", "expert")
+AGENTS = UNTRAINED
 """Agents of the floor, in the order of the rows."""
 
 FIGURES = {

@@ -21,6 +21,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+from arcgym.evaluation.run_shape import fault
 from arcgym.utils.errors import UsageError
 
 TRIALS_FILE = "trials.csv"
@@ -42,6 +43,9 @@ TEXTS = ("task", "agent", "patient", "end")
 
 HASH = 12
 """Digits of a checkpoint's hash that stand for it in the rows of small copies."""
+
+UNTRAINED = ("zero", "random", "expert")
+"""Agents that have no checkpoint: the floor."""
 
 COMMIT, CHANGED = "arcgym commit", " with changes"
 """Name of ARCGym's commit among the versions, and its ending where the code was not that of the commit."""
@@ -146,12 +150,16 @@ def result_folders(folder: Path) -> list[Path]:
 
 
 def read_trial_rows(path: Path) -> list[Row]:
-    """Return the rows of a result folder, numbers as numbers; none if it has none. They may be packed by gzip."""
+    """Return the rows of a result folder, numbers as numbers; none if it has none. They may be packed by gzip.
+
+    Raises:
+        UsageError: A line is no row.
+    """
     file, packed = path / TRIALS_FILE, path / PACKED_FILE
     if not file.is_file() and not packed.is_file():
         return []
     with file.open(newline="") if file.is_file() else gzip.open(packed, "rt", newline="") as text:
-        return [{name: _value(name, cell) for name, cell in row.items()} for row in csv.DictReader(text)]
+        return [_row(row, f"Line {line} of {file}") for line, row in enumerate(csv.DictReader(text), start=2)]
 
 
 def read_run(path: Path) -> dict[str, Any]:
@@ -161,11 +169,26 @@ def read_run(path: Path) -> dict[str, Any]:
         UsageError: It is no result folder.
     """
     try:
-        return json.loads((path / RUN_FILE).read_text())
+        run = json.loads((path / RUN_FILE).read_text())
     except (OSError, json.JSONDecodeError) as error:
         raise UsageError(
             f"{path} is no folder of an evaluation: {RUN_FILE} is missing or damaged ({error})."
         ) from error
+    if wrong := fault(run):
+        raise UsageError(f"{path / RUN_FILE} is damaged: {wrong}.")
+    return run
+
+
+def _row(cells: dict[str, Any], label: str) -> Row:
+    """Return a row with its numbers."""
+    count = sum(cell is not None for name, cell in cells.items() if name is not None)
+    if None in cells or count < len(cells):
+        given = count + len(cells.get(None, ()))  # type: ignore[call-overload]
+        raise UsageError(f"{label} has {given} cells, expected {len(cells) - (None in cells)}, as the heading has.")
+    try:
+        return {name: _value(name, cell) for name, cell in cells.items()}
+    except ValueError as error:
+        raise UsageError(f"{label} is no row: {error}.") from error
 
 
 def _value(name: str, cell: str) -> Any:
