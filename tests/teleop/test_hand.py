@@ -32,6 +32,13 @@ def test_keys() -> None:
     np.testing.assert_allclose(Hand(PULLED).from_keys(["KeyD", "KeyF"]), [0.6, -0.6, 0, 0, 0, 0], rtol=1e-6)
 
 
+def test_sliders_of_the_robot_before_command_nothing() -> None:
+    """Four sliders of a pushed scope are still on the page while a capsule of six axes is loaded."""
+    hand = Hand(PULLED)
+    hand.command("sliders", np.full(4, 0.5))
+    assert hand.value().tolist() == [0.0] * 6
+
+
 def test_gamepads() -> None:
     pad = {"axes": [0.5, -1.0, 0.05, 0.25], "buttons": [0, 0, 0, 0, 0, 1.0, 0.2, 0.7]}
     np.testing.assert_allclose(Hand(PUSHED).from_pad(pad), [1.0, 0.5, -0.25, 0.0])

@@ -5,8 +5,26 @@
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
 
 import pytest
+from small_session import choice
+
+from arcgym.teleop.session import Session
+
+
+def test_page_can_be_used_before_there_is_a_world(tiny_colon_path, tmp_path) -> None:
+    pytest.importorskip("viser")
+    from arcgym.teleop.page import Page
+
+    page = Page(Session(choice(tiny_colon_path), tmp_path, {}), "127.0.0.1", 0, None, size=64)
+    try:
+        camera = SimpleNamespace()
+        page._turn(SimpleNamespace(camera=camera), "front")
+        page._fade()
+        assert camera.look_at == (0.0, 0.0, 0.0) and camera.position == (0.0, 0.62, 0.08)
+    finally:
+        page.close()
 
 
 def test_speed_is_measured_without_a_browser(make_session) -> None:

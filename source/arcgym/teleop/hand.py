@@ -70,7 +70,12 @@ class Hand:
         return self._clock() - self._alive <= TIMEOUT
 
     def command(self, source: str, values: np.ndarray, lasts: float = float("inf")) -> None:
-        """Set what a source commands, shape (A,), for ``lasts`` seconds; what is no number counts as zero."""
+        """Set what a source commands, shape (A,), for ``lasts`` seconds; what is no number counts as zero.
+
+        Another number of values is of a robot that was here before and commands nothing.
+        """
+        if np.shape(values) != (len(self.axes),):
+            return self.drop(source)
         now, values = self._clock(), np.clip(np.nan_to_num(values), -1.0, 1.0).astype(np.float32)
         with self._lock:
             moved = now

@@ -77,6 +77,8 @@ class Page:
         self.gate.start()
         self._generation, self._tiers = -1, FORCE_TIERS
         self._looker: Looker | None = None
+        self._colon: Any = None
+        self._middle: Any = np.zeros(3)
         self._drawn, self._surface_at, self._text_at = -1, 0.0, 0.0
         self._times: deque[float] = deque(maxlen=11)
         self.pictures = 0
@@ -185,7 +187,7 @@ class Page:
                 given = {"patient": choices.patients(), "tissue": TISSUE_PRESETS, "start": ("segment", "rest")}
                 fields = {name: self._option(gui, name, options) for name, options in given.items()}
                 gui.add_button("Load").on_click(lambda _: self._load(task.value, fields))
-        self._opacity.on_update(lambda _: setattr(self._colon, "opacity", self._opacity.value))
+        self._opacity.on_update(lambda _: self._fade())
         views.on_click(lambda event: self._turn(event.client, event.target.value))
 
     def _load(self, task: str, fields: Mapping[str, Any]) -> None:
@@ -199,6 +201,10 @@ class Page:
         now = getattr(self._session.status.choice, name)
         known = dict.fromkeys([TASKS_OWN, *options, *([now] if now else [])])
         return gui.add_dropdown(name, tuple(known), initial_value=now or TASKS_OWN)
+
+    def _fade(self) -> None:
+        if self._colon is not None:
+            self._colon.opacity = self._opacity.value
 
     def _turn(self, client: Any, name: str) -> None:
         """Look at the colon from another side: +Y is anterior, +X the patient's right."""
