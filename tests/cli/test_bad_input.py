@@ -80,6 +80,12 @@ def nothing_is_built(tmp_path, monkeypatch):
             "'pppo', which ARC-Splenic-Proximal does not have. Did you mean 'ppo'",
         ),
         ([*PLAY, "--checkpoint", "runs/model_7.pt"], "--checkpoint is 'runs/model_7.pt': there is no such file."),
+        (
+            PLAY,
+            "Nothing was trained in logs/rsl_rl/arc_splenic_proximal. No policy is shipped for ARC-Splenic-Proximal,",
+        ),
+        (PLAY, "--policy expert, zero and random need no checkpoint."),
+        ([*PLAY, "--experiment_name", "nowhere"], "No checkpoint 'latest'"),
         ([*PLAY, "--policy", "rando"], "invalid choice: 'rando'"),
         (["record", *TASK, "--agent", "exprt"], "--agent is 'exprt'. Did you mean 'expert'"),
         (["replay", "."], ". is a folder, expected a file ending in .hdf5."),

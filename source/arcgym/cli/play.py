@@ -81,7 +81,7 @@ def _with_pretrained(args: PlayArguments) -> PlayArguments:
     """Return the arguments with the shipped policy as checkpoint, where it is asked for or nothing was trained.
 
     Raises:
-        UsageError: It is asked for and there is none, or another checkpoint is asked for as well.
+        UsageError: There is none where it is asked for or nothing was trained, or another is asked for as well.
     """
     from arcgym.rl.pretrained import pretrained_checkpoint
     from arcgym.rl.run_folder import has_checkpoints
@@ -96,7 +96,10 @@ def _with_pretrained(args: PlayArguments) -> PlayArguments:
         return args
     try:
         path = pretrained_checkpoint(args.task)
-    except UsageError:
-        return args
+    except UsageError as error:
+        if args.experiment_name:
+            return args
+        trained = f"Nothing was trained in logs/rsl_rl/{agent_cfg.experiment_name}."
+        raise UsageError(f"{trained} {error} --policy expert, zero and random need no checkpoint.") from error
     print(f"nothing was trained in logs/rsl_rl/{agent_cfg.experiment_name}: the policy that comes with ARCGym plays")
     return replace(args, checkpoint=str(path))
