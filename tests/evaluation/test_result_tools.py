@@ -13,7 +13,7 @@ from result_folders import write_result_folder
 from arcgym.cli.main import main
 from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
 from arcgym.evaluation.compare import compare, notes
-from arcgym.evaluation.leaderboard import submissions
+from arcgym.evaluation.leaderboard import entries_table, submissions
 from arcgym.evaluation.merge import merge
 from arcgym.evaluation.result_folder import ResultFolder, result_folders
 from arcgym.evaluation.suites import read_suites
@@ -316,6 +316,37 @@ def test_an_entry_that_saw_more_than_it_says_is_refused(tmp_path: Path) -> None:
     assert submissions(tmp_path / "all") == ([], {path: ["says that it sees policy, and saw force, policy"]})
     (path / "entry.yaml").write_text(ENTRY.replace("sees: policy", "sees: policy, force"))
     assert submissions(tmp_path / "all") == ([path], {})
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "reason"),
+    [
+        ("2.0e+6", "2e6", None),  # a text in YAML
+        ("2.0e+6", "many", "has transitions = 'many', expected a number"),
+        ("1.5", "-1", "has gpu_hours = -1, expected a number that is not negative"),
+        ("colon 1", "[colon 1, colon 2]", "has trained_on = ['colon 1', 'colon 2'], expected a line of text"),
+        ("name: Mine", "name: a|b", None),
+    ],
+)
+def test_what_an_entry_says_has_its_kind(tmp_path: Path, before: str, after: str, reason: str | None) -> None:
+    path = result(tmp_path / "all" / "mine")
+    (path / "entry.yaml").write_text(ENTRY.replace(before, after))
+    good, refused = submissions(tmp_path / "all")
+    if reason is None:
+        lines = [line for line in entries_table(good).splitlines() if line.startswith("| `")]
+        assert len(lines) == len(TASKS) and all("| 2e+06 | 1.5 |" in line and line.count("|") == 15 for line in lines)
+    else:
+        assert not good and reason in refused[path][0]
+
+
+def test_a_folder_that_is_not_there_empties_no_page(tmp_path: Path, capsys) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("<!-- entries -->\nold\n<!-- end of entries -->\n")
+    for words in (["leaderboard", "--page", str(page)], ["summary", "--out", str(page)]):
+        with pytest.raises(SystemExit):
+            main(["results", words[0], str(tmp_path / "nothing"), *words[1:]])
+        assert f"There is no folder {tmp_path / 'nothing'}" in capsys.readouterr().err
+    assert "old" in page.read_text()
 
 
 def test_the_floor_is_no_entry(tmp_path: Path) -> None:

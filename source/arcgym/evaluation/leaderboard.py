@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
@@ -20,6 +21,8 @@ from arcgym.utils.errors import UsageError
 
 ENTRY_FILE = "entry.yaml"
 """What a submission says of itself."""
+NUMBERS = ("transitions", "gpu_hours")
+"""Fields that are numbers; the others are lines of text."""
 BEGIN, END = "<!-- entries -->", "<!-- end of entries -->"
 """Marks of the page between which the tables stand."""
 METRICS = {"progress": ("progress", 2), "seconds": ("time [s]", 1), "p95_shaft_force": ("p95 shaft force [N]", 2)}
@@ -59,7 +62,7 @@ def read_entry(folder: Path) -> Entry:
     """Return what a submission says of itself.
 
     Raises:
-        UsageError: The file is missing or damaged, a field is missing, or unknown.
+        UsageError: The file is missing or damaged, or a field is missing, unknown or of another kind.
     """
     path = folder / ENTRY_FILE
     try:
@@ -75,7 +78,22 @@ def read_entry(folder: Path) -> Entry:
             f"{path} lacks {', '.join(missing) or 'nothing'} and has the unknown {', '.join(unknown) or 'nothing'}; "
             f"expected {', '.join(known)}."
         )
-    return Entry(**values)
+    return Entry(**{name: _typed(path, name, value) for name, value in values.items()})
+
+
+def _typed(path: Path, name: str, value: Any) -> Any:
+    """Return a value of an entry as its field has it; YAML takes 2e6, without a dot, for a text."""
+    if name in NUMBERS:
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = math.nan
+        if not 0.0 <= number < math.inf:
+            raise UsageError(f"{path} has {name} = {value!r}, expected a number that is not negative, such as 2.0e+6.")
+        return number
+    if not isinstance(value, str | int | float):
+        raise UsageError(f"{path} has {name} = {value!r}, expected a line of text.")
+    return str(value).replace("|", "/").replace("\n", " ").strip()
 
 
 def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:

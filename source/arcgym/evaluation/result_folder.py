@@ -145,7 +145,13 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 def result_folders(folder: Path) -> list[Path]:
-    """Return the result folders in a folder, itself included, in order; those of processes are parts of theirs."""
+    """Return the result folders in a folder, itself included, in order; those of processes are parts of theirs.
+
+    Raises:
+        UsageError: There is no such folder.
+    """
+    if not folder.is_dir():
+        raise UsageError(f"There is no folder {folder}; expected one with result folders in it.")
     return sorted(file.parent for file in folder.rglob(RUN_FILE) if file.parent.parent.name != PARTS)
 
 
