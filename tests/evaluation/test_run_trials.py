@@ -133,7 +133,8 @@ def test_agents_of_two_kinds_are_no_evaluation(tmp_path: Path, conditions: Path,
 
 def test_more_training_seeds_than_groups_are_refused(tmp_path: Path) -> None:
     """All fifty trials of the five colons are one group: the second checkpoint would be named and never run."""
-    from arcgym.evaluation.evaluate import EvaluationOptions, run_record
+    from arcgym.evaluation.identity import run_record
+    from arcgym.evaluation.options import EvaluationOptions
     from arcgym.evaluation.suites import read_suites
     from arcgym.evaluation.trials import read_conditions
 
@@ -147,7 +148,8 @@ def test_the_machine_is_that_which_ran_the_trials(monkeypatch, device: str | Non
     """On a machine with two GPUs."""
     import torch
 
-    from arcgym.evaluation.evaluate import EvaluationOptions, run_record
+    from arcgym.evaluation.identity import run_record
+    from arcgym.evaluation.options import EvaluationOptions
     from arcgym.evaluation.suites import read_suites
     from arcgym.evaluation.trials import read_conditions
 
@@ -209,7 +211,7 @@ def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) 
 
 def test_fields_of_an_effect_that_is_off_change_no_task() -> None:
     """The default of the abdomen's shape changed, and a policy trained before meets the same task, without abdomen."""
-    from arcgym.evaluation.evaluate import changes_of
+    from arcgym.evaluation.identity import changes_of
     from arcgym.utils.registry import load_cfg_from_registry
 
     task = "ARC-LeftColon-Magnetic"
@@ -286,7 +288,8 @@ def test_the_best_and_the_worst_trial_are_filmed_and_shown(tmp_path: Path, condi
 
 
 def test_each_task_may_have_checkpoints_of_its_own(tmp_path: Path) -> None:
-    from arcgym.evaluation.evaluate import EvaluationOptions, run_record
+    from arcgym.evaluation.identity import run_record
+    from arcgym.evaluation.options import EvaluationOptions
     from arcgym.evaluation.suites import read_suites
     from arcgym.evaluation.trials import read_conditions
     from arcgym.rl.checkpoint import write_checkpoint

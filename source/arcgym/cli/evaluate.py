@@ -71,7 +71,8 @@ def run(namespace: argparse.Namespace) -> None:
     _check_tasks(tasks)
     conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
 
-    from arcgym.evaluation.evaluate import EvaluationOptions, evaluate
+    from arcgym.evaluation.evaluate import evaluate
+    from arcgym.evaluation.options import EvaluationOptions
 
     overrides = (*suite.overrides, *args.overrides)
     options = EvaluationOptions(

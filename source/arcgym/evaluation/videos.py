@@ -7,7 +7,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.evaluate import EvaluationOptions, LoadCfgs, agent_of, checkpoint_of, opened
+from arcgym.evaluation.evaluate import agent_of, checkpoint_of, opened
+from arcgym.evaluation.options import EvaluationOptions, LoadCfgs
 from arcgym.evaluation.result_folder import ResultFolder, Row
 from arcgym.evaluation.run_trials import run_trials
 from arcgym.evaluation.trials import Conditions
