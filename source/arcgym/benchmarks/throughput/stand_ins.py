@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-import shutil
+import os
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -101,4 +101,8 @@ def _write(colon: ColonStage, path: Path) -> None:
         for texture in (stage.albedo_texture, stage.detail_texture):
             with (made / texture.name).open("ab") as file:
                 file.write(f"{number:08d}".encode())  # after the picture's end: other content, same picture
-        shutil.move(made, path.parent)
+        try:
+            os.rename(made, path.parent)
+        except OSError:
+            if not path.is_file():  # else another process, which makes the same one, was first
+                raise
