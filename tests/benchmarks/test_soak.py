@@ -172,6 +172,15 @@ def test_findings_of_all_sessions_add_up(tmp_path):
     assert [event["world"] for event in Journal(path).events(TASK)] == [2]
 
 
+def test_a_line_that_was_cut_off_by_a_kill_stops_no_later_session(tmp_path):
+    path = tmp_path / "soak.jsonl"
+    Journal(path).write_part(TASK, Tally(env_steps=10))
+    with path.open("a") as file:
+        file.write('{"kind": "part", "task": "ARC-Sig')
+    Journal(path).write_part(TASK, Tally(env_steps=5))
+    assert Journal(path).tally(TASK).env_steps == 15
+
+
 def test_broken_file_of_findings_is_named(tmp_path):
     path = tmp_path / "soak.jsonl"
     path.write_text('{"kind": "start", "task": "T"}\nnonsense\n')

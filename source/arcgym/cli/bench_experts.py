@@ -26,6 +26,7 @@ from typing import Any
 
 from arcgym.cli.arguments import positive
 from arcgym.utils.errors import UsageError
+from arcgym.utils.lines import append_line
 
 TAKES_OVERRIDES = True
 ROBOTS = ("capsule", "magnetic", "proximal")
@@ -115,8 +116,7 @@ def _drive(
 
     def done(row: dict[str, Any]) -> None:
         name = "rows.jsonl" if row["problem"] != OUT_OF_TIME else "unfinished.jsonl"
-        with open(rows.with_name(name), "a") as file:
-            file.write(json.dumps(row) + "\n")
+        append_line(rows.with_name(name), json.dumps(row))
         end = row["problem"] or "arrived"
         print(
             f"{row['patient']}, {robot}, {tissue}: {row['reached']:.2f} of {row['length']:.2f} m in {row['time']:.0f} s"

@@ -9,11 +9,15 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from arcgym.utils.lines import append_line
+
 SUMS = (
     *("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds", "pierced"),
     *("outside_links", "examined_links", "dropped_contacts", "missed_contacts", "touching_pairs", "contact_samples"),
 )
 """Findings that add up over the parts of a soak."""
+BEGINNING = '{"kind": '
+"""Beginning of every line of a journal."""
 
 
 @dataclass
@@ -96,12 +100,14 @@ class Journal:
         """Read what the file holds already.
 
         Raises:
-            ValueError: If a line of it is no JSON object with a kind and a task.
+            ValueError: If a line of it is no JSON object with a kind and a task. The beginning of a line, left by a
+                process that was killed while it wrote, is left out.
         """
         self.path = path
         self.lines: list[dict[str, Any]] = []
         if path.is_file():
-            self.lines = [self._parse(number, text) for number, text in enumerate(path.read_text().splitlines(), 1)]
+            texts = enumerate(path.read_text().splitlines(), 1)
+            self.lines = [self._parse(number, text) for number, text in texts if not _is_torn(text)]
 
     def _parse(self, number: int, text: str) -> dict[str, Any]:
         try:
@@ -111,12 +117,10 @@ class Journal:
             raise ValueError(f"{self.path}, line {number} is not of a soak: {text[:60]!r} ({error!r})") from error
 
     def write(self, kind: str, task: str, **content: Any) -> None:
-        """Append a line and flush it."""
+        """Append a line."""
         line = {"kind": kind, "task": task, **content}
         self.lines.append(line)
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        with self.path.open("a") as file:
-            file.write(json.dumps(line) + "\n")
+        append_line(self.path, json.dumps(line))
 
     def sessions(self, task: str) -> int:
         """Return how often the task was started."""
@@ -139,3 +143,12 @@ class Journal:
 
     def _of(self, kind: str, task: str) -> list[dict[str, Any]]:
         return [line for line in self.lines if line["kind"] == kind and line["task"] == task]
+
+
+def _is_torn(text: str) -> bool:
+    """Return whether a line is the beginning of one, left by a process that was killed while it wrote."""
+    try:
+        json.loads(text)
+    except ValueError:
+        return text.startswith(BEGINNING) or BEGINNING.startswith(text)
+    return False
