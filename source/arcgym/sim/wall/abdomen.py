@@ -13,11 +13,12 @@ import warp as wp
 from arcgym.assets.abdomen_cfg import AbdomenCfg
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import abdomen_kernels as kernels
-from arcgym.sim.wall.outer_force_kernels import OuterForce
 from arcgym.sim.wall.wall_parameters import WallParameters
 
 ABDOMEN = "abdomen."
 """Begins the names of what the abdomen's future depends on."""
+CORE = 0.999
+"""Share of the box in a superellipsoid whose points need no powers to be known inside."""
 FITTING_STEPS = 500
 """Steps in which the inside is fitted: its volume is then within a percent of the least."""
 
@@ -54,6 +55,7 @@ class Abdomen:
         shape.gap = wp.full(num_envs, cfg.gap, dtype=float, device=device)
         shape.stiffness = wp.full(num_envs, cfg.stiffness, dtype=float, device=device)
         shape.squareness, shape.damping = cfg.squareness, cfg.damping
+        shape.core = CORE * 3.0 ** (-1.0 / cfg.squareness)
         hand = self.hand = kernels.Hand()
         hand.force, hand.dent = (wp.zeros(num_envs, dtype=float, device=device) for _ in range(2))
         hand.place = wp.zeros(num_envs, dtype=wp.vec2, device=device)
@@ -76,13 +78,8 @@ class Abdomen:
         arrays = {"gap": self.shape.gap, "stiffness": self.shape.stiffness}
         return {f"{ABDOMEN}{name}": wp.to_torch(array) for name, array in arrays.items()}
 
-    def measure(self, x: wp.array, dt: float, outer: OuterForce) -> None:
-        """Add the push at positions ``x`` [m], shape (V, W), vec3, to ``outer`` for a step of ``dt`` [s]."""
-        inputs = [x, self.shape, self.hand, dt]
-        wp.launch(kernels.press_wall, self.load.shape, inputs=inputs, outputs=[outer, self.load], device=self.device)
-
     def advance(self, dt: float) -> None:
-        """Move the hands by a step of ``dt`` [s], after :meth:`measure`."""
+        """Move the hands by a step of ``dt`` [s], after the wall was pressed."""
         inputs, outputs = [self.load, dt], [self.hand, self.push]
         wp.launch(kernels.move_hand, len(self.push), inputs=inputs, outputs=outputs, device=self.device)
 

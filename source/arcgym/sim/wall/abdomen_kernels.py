@@ -30,6 +30,7 @@ class AbdomenShape:
     gap: wp.array[float]  # added to the semi-axes [m], shape (W,)
     stiffness: wp.array[float]  # pressure over depth [Pa/m], shape (W,)
     squareness: float  # exponent n
+    core: float  # where all |q_i / a_i| are less, a point is inside for sure
     damping: float  # over stiffness [s]
 
 
@@ -83,13 +84,15 @@ def hand_place(shape: AbdomenShape, hand: Hand, axes: wp.vec3, w: int) -> wp.vec
 
 
 @wp.func
-def depth_in_shape(q: wp.vec3, axes: wp.vec3, n: float) -> Depth:
+def depth_in_shape(q: wp.vec3, axes: wp.vec3, n: float, core: float) -> Depth:
     """Return how deep the point ``q`` from the middle is in a superellipsoid without a dent; its normal has a length.
 
     ``normal`` is the gradient of f and ``depth`` f - 1.
     """
     out = Depth()
     u = wp.vec3(wp.abs(q[0]) / axes[0], wp.abs(q[1]) / axes[1], wp.abs(q[2]) / axes[2])
+    if wp.max(u) < core:
+        return out
     total = wp.pow(u[0], n) + wp.pow(u[1], n) + wp.pow(u[2], n)
     if total > 1.0:
         f = wp.pow(total, 1.0 / n)
@@ -114,7 +117,7 @@ def depth_in_abdomen(shape: AbdomenShape, hand: Hand, x: wp.vec3, w: int) -> Dep
         aside = wp.vec2(q[0], q[2]) - hand_place(shape, hand, axes, w)
         window = hand_window(wp.length(aside), hand.radius)
         q = q + wp.vec3(0.0, dent * window[0], 0.0)
-    out = depth_in_shape(q, axes, shape.squareness)
+    out = depth_in_shape(q, axes, shape.squareness, shape.core)
     if out.depth > 0.0:
         gradient = out.normal
         if window[1] != 0.0:
@@ -127,7 +130,7 @@ def depth_in_abdomen(shape: AbdomenShape, hand: Hand, x: wp.vec3, w: int) -> Dep
     return out
 
 
-@wp.kernel
+@wp.func
 def press_wall(
     x: wp.array2d[wp.vec3],
     shape: AbdomenShape,
@@ -135,8 +138,10 @@ def press_wall(
     dt: float,
     outer: OuterForce,
     load: wp.array2d[wp.vec3],
+    r: int,
+    w: int,
 ):
-    """Push what has gone outside back in. Launch (R, W).
+    """Push what has gone outside of ring ``r`` of world ``w`` back in.
 
     Args:
         x: Wall positions [m], shape (V, W).
@@ -146,8 +151,9 @@ def press_wall(
         outer: Forces; added to.
         load: Of each ring on the hand [N], its stiffness there [N/m], and push on the abdomen altogether [N], shape
             (R, W); written.
+        r: Ring.
+        w: World.
     """
-    r, w = wp.tid()
     p = shape.patient[w]
     total = wp.vec3(0.0)
     for j in range(shape.members.shape[1]):

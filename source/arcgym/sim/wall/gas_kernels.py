@@ -101,15 +101,17 @@ def prop_share(opening: float) -> float:
     return wp.max(1.0 / kept - 1.0 + (kept - opening) / (kept * kept), 0.0)
 
 
-@wp.kernel
-def measure_slices(
+@wp.func
+def measure_slice(
     x: wp.array2d[wp.vec3],
     lumen: Lumen,
     law: GasLaw,
     volume: wp.array2d[float],
     prop: wp.array2d[float],
+    r: int,
+    w: int,
 ):
-    """Measure each ring's part of the volume, and how hard its opposite sides prop each other. Launch (R, W).
+    """Measure the part of ring ``r`` of the volume of world ``w``, and how hard its opposite sides prop each other.
 
     Args:
         x: Wall positions [m], shape (V, W).
@@ -117,8 +119,9 @@ def measure_slices(
         law: Settings.
         volume: Part of the lumen's volume, between the ring's faces and the origin [m^3], shape (R, W); written.
         prop: Pressure of opposite sides on each other [Pa], shape (R, W); written.
+        r: Ring.
+        w: World.
     """
-    r, w = wp.tid()
     total = float(0.0)
     for f in range(lumen.start[r], lumen.start[r + 1]):
         face = lumen.face[f]
@@ -130,6 +133,19 @@ def measure_slices(
     if inverse > 0.0 and law.least_opening > 0.0:
         push = law.prop_pressure * prop_share(slice_volume(x, lumen, r, w) * inverse / law.least_opening)
     prop[r, w] = push
+
+
+@wp.kernel
+def measure_slices(
+    x: wp.array2d[wp.vec3],
+    lumen: Lumen,
+    law: GasLaw,
+    volume: wp.array2d[float],
+    prop: wp.array2d[float],
+):
+    """Measure the slice of every ring, see :func:`measure_slice`. Launch (R, W)."""
+    r, w = wp.tid()
+    measure_slice(x, lumen, law, volume, prop, r, w)
 
 
 @wp.func
@@ -153,16 +169,9 @@ def set_loads(law: GasLaw, gas: GasState, loads: GasLoads, w: int):
         loads.share[w] = wp.clamp(across / wp.max(law.imaged, 1.0), 0.0, 1.0)
 
 
-@wp.kernel
-def add_flow(law: GasLaw, dt: float, gas: GasState):
-    """Let gas flow in and out for a step. Launch (W,).
-
-    Args:
-        law: Settings.
-        dt: Step [s].
-        gas: State; the amount is changed.
-    """
-    w = wp.tid()
+@wp.func
+def add_flow(law: GasLaw, dt: float, gas: GasState, w: int):
+    """Let gas flow in and out of world ``w`` for a step of ``dt`` [s]; the amount is changed."""
     pressure = gas.pressure[w]
     flow = gas.flow[w]
     if flow < 0.0:
@@ -172,30 +181,32 @@ def add_flow(law: GasLaw, dt: float, gas: GasState):
     gas.amount[w] = gas.amount[w] + dt * (law.ambient * flow - (law.ambient + pressure) * lost)
 
 
+@wp.func
+def note_pressure(gas: GasState, w: int):
+    """Take the pressure at the end of a step into mean and peak of the control step of world ``w``."""
+    pressure = gas.pressure[w]
+    gas.mean[w] = gas.mean[w] + pressure
+    gas.peak[w] = wp.max(gas.peak[w], pressure)
+
+
 @wp.kernel
-def fit_rigid(volume: wp.array2d[float], law: GasLaw, gas: GasState, loads: GasLoads):
-    """Set the pressure in lumens whose walls do not move. Launch (W,).
+def fit_rigid(volume: wp.array2d[float], law: GasLaw, dt: float, gas: GasState, loads: GasLoads):
+    """Make a step of lumens whose walls do not move. Launch (W,).
 
     Args:
         volume: Parts of the volume [m^3], shape (R, W).
         law: Settings.
-        gas: State; the pressure is changed.
+        dt: Step [s].
+        gas: State; changed in place.
         loads: Loads of the pressure; written.
     """
     w = wp.tid()
+    add_flow(law, dt, gas, w)
     here = total_volume(volume, w)
     gas.volume[w] = here
     gas.pressure[w] = gas.amount[w] / here - law.ambient
     set_loads(law, gas, loads, w)
-
-
-@wp.kernel
-def note_pressure(gas: GasState):
-    """Take the pressure at the end of a step into mean and peak of the control step. Launch (W,)."""
-    w = wp.tid()
-    pressure = gas.pressure[w]
-    gas.mean[w] = gas.mean[w] + pressure
-    gas.peak[w] = wp.max(gas.peak[w], pressure)
+    note_pressure(gas, w)
 
 
 @wp.kernel

@@ -11,31 +11,26 @@ import warp as wp
 from arcgym.sim.wall.band_kernels import Rings
 from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
 from arcgym.sim.wall.coarse_kernels import RingLoads, add_share, ring_fields
-from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, GasState, set_loads, total_volume
+from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, GasState, add_flow, note_pressure, set_loads, total_volume
 from arcgym.sim.wall.shell_kernels import ShellElements
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.math_kernels import clamp_length
 
 
-@wp.kernel
-def measure_shares(shell: ShellElements, share: wp.array2d[wp.vec3]):
-    """Measure what a move of each vertex adds to the lumen's volume. Launch (V, W).
-
-    Args:
-        shell: The shell, measured.
-        share: Change of the volume with the vertex, the force of 1 Pa on it [m^2], shape (V, W); written.
-    """
-    i, w = wp.tid()
+@wp.func
+def volume_share(shell: ShellElements, i: int, w: int) -> wp.vec3:
+    """Return what a move of vertex ``i`` adds to the volume of world ``w``, the force of 1 Pa on it [m^2]."""
     total = wp.vec3(0.0)
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
         scaled = shell.scaled_normal[shell.fan_corner[k] // 3, w]
         total += scaled / wp.max(wp.length_sq(scaled), 1.0e-12)
-    share[i, w] = total / 6.0
+    return total / 6.0
 
 
 @wp.kernel
 def assemble_push(
-    share: wp.array2d[wp.vec3],
+    shell: ShellElements,
     rings: Rings,
     loads: RingLoads,
     tissue: Tissue,
@@ -45,7 +40,7 @@ def assemble_push(
     """Sum up the force of 1 Pa on every unknown of the coarse system. Launch (R, W).
 
     Args:
-        share: Force of 1 Pa on each vertex [m^2], shape (V, W).
+        shell: The shell, measured.
         rings: Rings of all patients.
         loads: Loads of all patients.
         tissue: Values of each world.
@@ -59,7 +54,7 @@ def assemble_push(
         for j in range(loads.members.shape[1]):
             v = loads.members[r, j]
             if v >= 0:
-                total = add_share(total, ring_fields(rings, v, p), share[v, w])
+                total = add_share(total, ring_fields(rings, v, p), volume_share(shell, v, w))
     for a in range(MODES):
         push[r, w, a] = total[a]
         answer[r, w, a] = total[a]
@@ -91,21 +86,27 @@ def settle_pressure(
     volume: wp.array2d[float],
     gain: wp.array2d[wp.vec2],
     law: GasLaw,
+    dt: float,
+    last: int,
     gas: GasState,
     loads: GasLoads,
     change: wp.array[float],
 ):
-    """Find the pressure at which gas and wall agree at the end of the step. Launch (W,).
+    """Let gas flow, and find the pressure at which gas and wall agree at the end of the step. Launch (W,).
 
     Args:
         volume: Parts of the volume where the wall is [m^3], shape (R, W).
         gain: Volumes that its move adds without a change of pressure, and with it, shape (R, W).
         law: Settings.
-        gas: State; the pressure is changed.
+        dt: Time in which gas flows [s].
+        last: Whether the step ends with it: 1, or 0.
+        gas: State; amount and pressure are changed.
         loads: Loads of the pressure; written.
         change: Change of the pressure [Pa], shape (W,); written.
     """
     w = wp.tid()
+    if dt > 0.0:
+        add_flow(law, dt, gas, w)
     moved = float(0.0)
     given = float(0.0)
     for r in range(gain.shape[0]):
@@ -119,16 +120,41 @@ def settle_pressure(
     gas.volume[w] = there + given * by
     change[w] = by
     set_loads(law, gas, loads, w)
+    if last == 1:
+        note_pressure(gas, w)
 
 
 @wp.kernel
-def add_answer(answer: wp.array3d[float], change: wp.array[float], solution: wp.array3d[float]):
-    """Add the wall's answer to the change of pressure to its move. Launch (R, W, M).
+def prolong_with_gas(
+    first: int,
+    rings: Rings,
+    solution: wp.array3d[float],
+    answer: wp.array3d[float],
+    change: wp.array[float],
+    largest_move: float,
+    x: wp.array2d[wp.vec3],
+):
+    """Move every vertex with its ring, which answers to the change of pressure, too. Launch (V, W), or some rows.
 
     Args:
-        answer: Move by 1 Pa [m/Pa], shape (R, W, M).
+        first: First row of this launch.
+        rings: Rings of all patients.
+        solution: Amplitude of each unknown without a change of pressure [m], shape (R, W, M).
+        answer: That of 1 Pa [m/Pa], shape (R, W, M).
         change: Change of the pressure [Pa], shape (W,).
-        solution: Move of the wall [m], shape (R, W, M); changed in place.
+        largest_move: Longest displacement of a vertex [m].
+        x: Positions [m], shape (V, W); moved in place.
     """
-    r, w, a = wp.tid()
-    solution[r, w, a] = solution[r, w, a] + change[w] * answer[r, w, a]
+    i, w = wp.tid()
+    i += first
+    r = rings.ring[i]
+    by = change[w]
+    fields = ring_fields(rings, i, rings.patient[w])
+    d = wp.vec3(0.0)
+    for k in range(3):
+        d += fields[k] * wp.vec3(
+            solution[r, w, 3 * k] + by * answer[r, w, 3 * k],
+            solution[r, w, 3 * k + 1] + by * answer[r, w, 3 * k + 1],
+            solution[r, w, 3 * k + 2] + by * answer[r, w, 3 * k + 2],
+        )
+    x[i, w] = x[i, w] + clamp_length(d, largest_move)

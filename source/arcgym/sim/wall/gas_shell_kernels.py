@@ -98,6 +98,12 @@ def add_gas_forces(
 
 
 @wp.func
+def triangle_ties(gas: GasLoads, t: int, w: int) -> wp.vec3:
+    """Return force over length along the edges of a triangle, from each corner to the next [N/m]."""
+    return wp.vec3(gas_ties(gas, 3 * t, w)[0], gas_ties(gas, 3 * t + 1, w)[0], gas_ties(gas, 3 * t + 2, w)[0])
+
+
+@wp.func
 def rest_ties(gas: GasLoads, t: int, w: int) -> wp.vec3:
     """Return force over length along the edges of a triangle, from each corner to the next, of its tension at rest
     [N/m]; zero without one.
@@ -107,7 +113,7 @@ def rest_ties(gas: GasLoads, t: int, w: int) -> wp.vec3:
     """
     if gas.tense == 0:
         return wp.vec3(0.0)
-    return wp.vec3(gas_ties(gas, 3 * t, w)[0], gas_ties(gas, 3 * t + 1, w)[0], gas_ties(gas, 3 * t + 2, w)[0])
+    return triangle_ties(gas, t, w)
 
 
 @wp.func

@@ -102,28 +102,22 @@ class LumenGas:
         arrays = {"abdominal_pressure": state.abdominal, "start_pressure": state.start, "leak_conductance": state.leak}
         return {f"{GAS}{name}": wp.to_torch(array) for name, array in arrays.items()}
 
-    def begin(self, x: wp.array) -> None:
-        """Begin a physics step: let gas flow, and measure the lumen at ``x`` [m], shape (V, W), vec3."""
-        self._launch(kernels.add_flow, self.num_envs, [self.law, self.dt], [self.state])
-        self.measure(x)
-
     def hold(self, x: wp.array) -> None:
         """Turn what holds the imaged shape against its tension with the rings at ``x`` [m], shape (V, W), vec3."""
         if self.tension is not None:
             self.tension.turn(x)
 
     def measure(self, x: wp.array) -> None:
-        """Measure volume and props of the lumen at ``x`` [m], shape (V, W), vec3."""
-        shape = self.parts.shape
-        self._launch(kernels.measure_slices, shape, [x, self.lumen, self.law], [self.parts, self.loads.prop])
+        """Measure volume, props and what holds the image of the lumen at ``x`` [m], shape (V, W), vec3."""
+        shape, inputs = self.parts.shape, [x, self.lumen, self.law]
+        if self.tension is None:
+            self._launch(kernels.measure_slices, shape, inputs, [self.parts, self.loads.prop])
+        else:
+            self.tension.measure(x, self.lumen, self.law, self.parts)
 
     def fit_rigid(self) -> None:
-        """Set the pressure of walls that do not move, after :meth:`begin`."""
-        self._launch(kernels.fit_rigid, self.num_envs, [self.parts, self.law], [self.state, self.loads])
-
-    def end(self) -> None:
-        """End a physics step."""
-        self._launch(kernels.note_pressure, self.num_envs, [], [self.state])
+        """Make a physics step of walls that do not move, after :meth:`measure`."""
+        self._launch(kernels.fit_rigid, self.num_envs, [self.parts, self.law, self.dt], [self.state, self.loads])
 
     def fill(self, x: wp.array, mask: wp.array) -> None:
         """Fill lumens whose state was written without an amount of gas.

@@ -17,7 +17,6 @@ from arcgym.assets.anchors import way_along_segment
 from arcgym.assets.mesentery_cfg import MesenteryCfg
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import mesentery_kernels as kernels
-from arcgym.sim.wall.outer_force_kernels import OuterForce
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_topology import ring_mean
@@ -68,11 +67,6 @@ class Mesentery:
         """What may differ between worlds, shape (W,) each: fullness, and modulus times thickness [N/m]."""
         arrays = {"fullness": self.sheets.fullness, "stiffness": self.sheets.stiffness}
         return {f"{MESENTERY}{name}": wp.to_torch(array) for name, array in arrays.items()}
-
-    def measure(self, x: wp.array, tissue: Tissue, outer: OuterForce) -> None:
-        """Add the pull at positions ``x`` [m], shape (V, W), vec3, to ``outer``."""
-        inputs = [x, self.sheets, tissue.anchor]
-        wp.launch(kernels.pull_rings, self._shape, inputs=inputs, outputs=[outer], device=self._device)
 
     def read(self, x: wp.array, tissue: Tissue, readout: WallReadout) -> None:
         """Add the pulls at ``x`` [m], shape (V, W), vec3, to the tensions that the readout measured there."""

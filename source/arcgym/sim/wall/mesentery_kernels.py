@@ -63,17 +63,18 @@ def sheet_pull(sheets: Sheets, u: wp.vec3, r: int, w: int) -> wp.vec2:
     return sheets.width[r, p] * wp.vec2(law[0], law[1] / rest)
 
 
-@wp.kernel
-def pull_rings(x: wp.array2d[wp.vec3], sheets: Sheets, scale: wp.array[float], outer: OuterForce):
-    """Pull each ring to the root of its sheet, all its vertices alike. Launch (R, W).
+@wp.func
+def pull_ring(x: wp.array2d[wp.vec3], sheets: Sheets, scale: wp.array[float], outer: OuterForce, r: int, w: int):
+    """Pull ring ``r`` of world ``w`` to the root of its sheet, all its vertices alike.
 
     Args:
         x: Wall positions [m], shape (V, W).
         sheets: Mesenteries.
         scale: Factor on all attachments of a world, shape (W,).
         outer: Forces; added to.
+        r: Ring.
+        w: World.
     """
-    r, w = wp.tid()
     p = sheets.patient[w]
     if sheets.height[r, p] == 0.0:
         return

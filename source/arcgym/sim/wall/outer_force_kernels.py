@@ -35,15 +35,9 @@ def put_outer_force(outer: OuterForce, i: int, w: int, x: wp.vec3, force: wp.vec
     outer.stiffness[i, w] = outer.stiffness[i, w] + stiffness
 
 
-@wp.kernel
-def clear_outer_force(members: wp.array2d[int], outer: OuterForce):
-    """Forget the last step's forces. Launch (R, W).
-
-    Args:
-        members: Vertices of each ring, -1 padded, shape (R, S).
-        outer: Forces.
-    """
-    r, w = wp.tid()
+@wp.func
+def clear_outer_force(members: wp.array2d[int], outer: OuterForce, r: int, w: int):
+    """Forget the last step's forces on ring ``r`` of world ``w``; ``members`` has shape (R, S), -1 padded."""
     if outer.near[r, w] == 0:
         return
     outer.near[r, w] = 0

@@ -15,6 +15,7 @@ from arcgym.sim.wall.abdomen import Abdomen
 from arcgym.sim.wall.band_kernels import Rings
 from arcgym.sim.wall.mesentery import Mesentery
 from arcgym.sim.wall.ring_modes import MODES
+from arcgym.sim.wall.surroundings_kernels import Around, measure_surroundings
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_readout import WallReadout
 
@@ -51,6 +52,12 @@ class Surroundings:
         self.force.push = wp.zeros((len(ring), num_envs), dtype=wp.vec3, device=device)
         self.force.stiffness = wp.zeros((len(ring), num_envs), dtype=wp.mat33, device=device)
         self.force.near = wp.zeros((len(members), num_envs), dtype=int, device=device)
+        around = self._around = Around()
+        around.members = members
+        if abdomen is not None:
+            around.pressing, around.shape, around.hand, around.load = 1, abdomen.shape, abdomen.hand, abdomen.load
+        if mesentery is not None:
+            around.pulling, around.sheets = 1, mesentery.sheets
 
     @property
     def memory(self) -> dict[str, torch.Tensor]:
@@ -68,13 +75,8 @@ class Surroundings:
 
     def measure(self, x: wp.array, tissue: Tissue, dt: float) -> None:
         """Measure the forces of a step of ``dt`` [s] at positions ``x`` [m], shape (V, W), vec3."""
-        shape = self.force.near.shape
-        inputs, outputs = [self._members], [self.force]
-        wp.launch(kernels.clear_outer_force, shape, inputs=inputs, outputs=outputs, device=self._device)
-        if self.abdomen is not None:
-            self.abdomen.measure(x, dt, self.force)
-        if self.mesentery is not None:
-            self.mesentery.measure(x, tissue, self.force)
+        shape, inputs = self.force.near.shape, [x, self._around, tissue.anchor, dt]
+        wp.launch(measure_surroundings, shape, inputs=inputs, outputs=[self.force], device=self._device)
 
     def advance(self, x: wp.array, v: wp.array, contact: SelfContact, dt: float) -> None:
         """Begin a step of ``dt`` [s], after :meth:`measure`: add friction between loops, and move the hands.

@@ -13,7 +13,7 @@ import warp as wp
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.assets.wall_law_cfg import WallLawCfg
 from arcgym.sim.patient_arrays import patient_array
-from arcgym.sim.wall import gas_shell_kernels, shell_kernels
+from arcgym.sim.wall import shell_kernels
 from arcgym.sim.wall import tissue_shell_kernels as kernels
 from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.cell_strain import cell_partners, partner_edges
@@ -61,21 +61,21 @@ class TissueShell:
         geometries = [wall.elements.geometry for wall in walls if isinstance(wall.elements, ShellParameters)]
         self._shell = Shell(geometries, len(walls[0].points), patient, device)
         self.corners = self._shell.corners
-        self._with_gas = gas_shell_kernels.GasShellElements()
-        self._with_gas.shell = self._shell.data
         self.data = kernels.TissueShellElements()
         self.data.shell = self._shell.data
         self.data.gassy, self.data.relaxing = int(gas is not None), int(law.relaxation)
         if gas is not None:
-            self._with_gas.gas = self.data.gas = gas
+            self.data.gas = gas
         self.data.stiffening = float(STIFFENING) if law.stiffening is None else law.stiffening
         shares = [wall.share[wall.ring][self.corners].mean(axis=1) for wall in walls]
         self.data.share = patient_array(shares, float, device)
         shape = (len(self.corners), len(patient)) if law.relaxation else (0, 0)
-        self._quick, self._slow, self.data.relief = (wp.zeros(shape, dtype=wp.vec3, device=device) for _ in range(3))
+        self._memory = memory = kernels.Memory()
+        memory.quick, memory.slow, self.data.relief = (wp.zeros(shape, dtype=wp.vec3, device=device) for _ in range(3))
         self.data.cells = self._cells(law, walls, geometries, patient, device)
-        self._shares = wp.vec2(*law.relaxing_share)
-        self._ways = wp.vec2(*(1.0 - math.exp(-dt / time) for time in law.relaxing_time))
+        memory.shares = wp.vec2(*law.relaxing_share)
+        memory.ways = wp.vec2(*(1.0 - math.exp(-dt / time) for time in law.relaxing_time))
+        self._start: wp.array | None = None
 
     def _cells(
         self,
@@ -102,23 +102,21 @@ class TissueShell:
         """What the wall remembers of its tension [N/m], by name, as views of shape (W, F, 3)."""
         if self.data.relaxing == 0:
             return {}
-        arrays = {"quick": self._quick, "slow": self._slow}
+        arrays = {"quick": self._memory.quick, "slow": self._memory.slow}
         return {f"{RELAXATION}{name}": wp.to_torch(array).transpose(0, 1) for name, array in arrays.items()}
 
     def advance(self, x: wp.array, tissue: Tissue) -> None:
-        """Begin a step at positions ``x`` [m], shape (V, W): let the tension fade."""
-        if self.data.relaxing == 1:
-            outputs = [self._quick, self._slow]
-            inputs = [x, tissue, self.data, self._shares, self._ways]
-            device = self._shell.device
-            wp.launch(kernels.relax, self._quick.shape, inputs=inputs, outputs=outputs, device=device)
+        """Begin a step at positions ``x`` [m], shape (V, W): the next :meth:`measure` lets the tension fade there."""
+        self._start = x if self.data.relaxing == 1 else None
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:
-        """Measure the shell with its tissue, and add the gas to its corner forces."""
+        """Measure the shell with its tissue and its gas."""
         shell = self._shell.data
         device, hinges, triangles = self._shell.device, shell.angle_change.shape, shell.scaled_normal.shape
         launch_rows(shell_kernels.measure_hinges, hinges, [x], [shell], device)
         launch_rows(shell_kernels.measure_moments, hinges, [tissue], [shell], device)
-        wp.launch(kernels.measure_tissue, triangles, inputs=[x, tissue], outputs=[self.data], device=device)
-        if self.data.gassy == 1:
-            wp.launch(gas_shell_kernels.add_gas, triangles, inputs=[x, self._with_gas], device=device)
+        if self._start is None:
+            launch_rows(kernels.measure_tissue, triangles, [x, tissue], [self.data], device)
+            return
+        launch_rows(kernels.relax_and_measure, triangles, [self._start, x, tissue], [self.data, self._memory], device)
+        self._start = None

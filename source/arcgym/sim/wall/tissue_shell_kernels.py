@@ -22,7 +22,7 @@ from arcgym.sim.wall.band_kernels import Rings, band_fields
 from arcgym.sim.wall.band_matrix_kernels import BandMatrix, add_edge, add_next_edge, add_own_edge
 from arcgym.sim.wall.cell_strain_kernels import Cells, cell_excess
 from arcgym.sim.wall.gas_kernels import GasLoads
-from arcgym.sim.wall.gas_shell_kernels import gas_pressure, gas_ties, rest_ties
+from arcgym.sim.wall.gas_shell_kernels import gas_pressure, gas_ties, rest_ties, triangle_ties
 from arcgym.sim.wall.shell_kernels import (
     ShellElements,
     VertexTriangle,
@@ -74,7 +74,15 @@ def tension_at_once(
 
 @wp.func
 def measure_triangle(
-    shell: ShellElements, t: int, w: int, d1: wp.vec3, d2: wp.vec3, pull: wp.vec3, rigidity: float, edges: wp.vec3i
+    shell: ShellElements,
+    t: int,
+    w: int,
+    d1: wp.vec3,
+    d2: wp.vec3,
+    pull: wp.vec3,
+    rigidity: float,
+    edges: wp.vec3i,
+    pressure: float,
 ):
     """Write scaled normal and corner forces of a triangle with edges ``d1`` and ``d2``.
 
@@ -90,6 +98,7 @@ def measure_triangle(
         pull: Force over length of the springs along the edges that the membrane acts like [N/m].
         rigidity: Flexural rigidity [N m].
         edges: Hinges opposite to each corner.
+        pressure: Of the gas, a third of whose push each corner bears [Pa].
     """
     normal = wp.cross(d1, d2)
     scaled_normal = normal / wp.max(wp.length_sq(normal), 1.0e-20)
@@ -101,50 +110,50 @@ def measure_triangle(
     u2 = hinge_moment(shell, edges[2], w)
     one = (rest[2] * (u1 - u0) + rest[0] * (u1 - u2)) * bend - (pull[2] + pull[0]) * d1 + pull[0] * d2
     two = (rest[0] * (u2 - u1) + rest[1] * (u2 - u0)) * bend - (pull[1] + pull[0]) * d2 + pull[0] * d1
-    shell.corner_force[3 * t, w] = -one - two
-    shell.corner_force[3 * t + 1, w] = one
-    shell.corner_force[3 * t + 2, w] = two
+    third = (pressure / 6.0) * normal
+    shell.corner_force[3 * t, w] = third - one - two
+    shell.corner_force[3 * t + 1, w] = third + one
+    shell.corner_force[3 * t + 2, w] = third + two
 
 
-@wp.kernel
-def relax(
-    x: wp.array2d[wp.vec3],
-    tissue: Tissue,
-    elements: TissueShellElements,
-    shares: wp.vec2,
-    ways: wp.vec2,
-    quick: wp.array2d[wp.vec3],
-    slow: wp.array2d[wp.vec3],
-):
-    """Let the memory of each triangle's tension follow it. Launch (F, W).
+@wp.struct
+class Memory:
+    """What the triangles remember of their tension, and how it fades."""
+
+    shares: wp.vec2  # g_k
+    ways: wp.vec2  # 1 - exp(-dt / tau_k)
+    quick: wp.array2d[wp.vec3]  # first memory [N/m], shape (F, W)
+    slow: wp.array2d[wp.vec3]  # second memory [N/m], shape (F, W)
+
+
+@wp.func
+def relax(x: wp.array2d[wp.vec3], tissue: Tissue, elements: TissueShellElements, memory: Memory, t: int, w: int):
+    """Let the memory of the tension of triangle ``t`` of world ``w`` follow it, and write ``elements.relief``.
 
     Args:
         x: Positions at the start of a step [m], shape (V, W).
         tissue: Values of each world.
         elements: Elements; ``relief`` is written.
-        shares: g_k.
-        ways: 1 - exp(-dt / tau_k).
-        quick: First memory [N/m], shape (F, W); moved in place.
-        slow: Second memory [N/m], shape (F, W); moved in place.
+        memory: Moved in place.
+        t: Triangle.
+        w: World.
     """
-    t, w = wp.tid()
     corners = elements.shell.triangles[t]
     x0 = x[corners[0], w]
     tension = tension_at_once(elements, t, w, x[corners[1], w] - x0, x[corners[2], w] - x0, tissue.moduli[w])
     if elements.cells.enabled == 1:
         own = triangle_moduli(elements, t, w, tissue.moduli[w])
         tension -= cell_excess(elements.shell, elements.cells, x, t, w, own, elements.stiffening)
-    one = quick[t, w] + ways[0] * (tension - quick[t, w])
-    two = slow[t, w] + ways[1] * (tension - slow[t, w])
-    quick[t, w] = one
-    slow[t, w] = two
-    elements.relief[t, w] = shares[0] * one + shares[1] * two
+    one = memory.quick[t, w] + memory.ways[0] * (tension - memory.quick[t, w])
+    two = memory.slow[t, w] + memory.ways[1] * (tension - memory.slow[t, w])
+    memory.quick[t, w] = one
+    memory.slow[t, w] = two
+    elements.relief[t, w] = memory.shares[0] * one + memory.shares[1] * two
 
 
-@wp.kernel
-def measure_tissue(x: wp.array2d[wp.vec3], tissue: Tissue, elements: TissueShellElements):
-    """Write scaled normals and corner forces at ``x`` [m], shape (V, W), but for the gas'. Launch (F, W)."""
-    t, w = wp.tid()
+@wp.func
+def measure_at(x: wp.array2d[wp.vec3], tissue: Tissue, elements: TissueShellElements, t: int, w: int):
+    """Write scaled normal and corner forces of triangle ``t`` of world ``w`` at ``x`` [m], shape (V, W)."""
     corners = elements.shell.triangles[t]
     x0 = x[corners[0], w]
     d1 = x[corners[1], w] - x0
@@ -158,7 +167,48 @@ def measure_tissue(x: wp.array2d[wp.vec3], tissue: Tissue, elements: TissueShell
         excess = cell_excess(elements.shell, elements.cells, x, t, w, own, elements.stiffening)
         elements.cells.excess[t, w] = excess
         pull = pull - excess
-    measure_triangle(elements.shell, t, w, d1, d2, pull, moduli[2], elements.shell.edges[t])
+    pressure = float(0.0)
+    if elements.gassy == 1:
+        ties = triangle_ties(elements.gas, t, w)
+        pull = pull + wp.vec3(ties[1], ties[2], ties[0])
+        pressure = gas_pressure(elements.gas, t, w)
+    measure_triangle(elements.shell, t, w, d1, d2, pull, moduli[2], elements.shell.edges[t], pressure)
+
+
+@wp.kernel
+def measure_tissue(first: int, x: wp.array2d[wp.vec3], tissue: Tissue, elements: TissueShellElements):
+    """Write scaled normals and corner forces, the gas' among them, at ``x`` [m], shape (V, W).
+
+    Launch (F, W), or some of the rows from ``first`` on.
+    """
+    t, w = wp.tid()
+    t += first
+    measure_at(x, tissue, elements, t, w)
+
+
+@wp.kernel
+def relax_and_measure(
+    first: int,
+    start: wp.array2d[wp.vec3],
+    x: wp.array2d[wp.vec3],
+    tissue: Tissue,
+    elements: TissueShellElements,
+    memory: Memory,
+):
+    """Let tension fade where a step starts, then measure as ``measure_tissue`` does. Launch (F, W), or some rows.
+
+    Args:
+        first: First row of this launch.
+        start: Positions at the start of the step [m], shape (V, W).
+        x: Positions to measure at [m], shape (V, W).
+        tissue: Values of each world.
+        elements: Elements; written.
+        memory: Moved in place.
+    """
+    t, w = wp.tid()
+    t += first
+    relax(start, tissue, elements, memory, t, w)
+    measure_at(x, tissue, elements, t, w)
 
 
 @wp.func
@@ -210,36 +260,17 @@ def add_fan_hinges(
 
 
 @wp.func
-def add_gas_terms(
-    block: VertexBlock, shell: ShellElements, gas: GasLoads, x: wp.array2d[wp.vec3], i: int, w: int
-) -> VertexBlock:
-    """Add the gas around vertex ``i`` of world ``w``. The Hessian of the pressure is zero for a closed fan."""
-    out = block
-    if gas.tense == 1:
-        out.force += gas.hold[i, w]
-    here = x[i, w]
-    for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
-        triangle = shell.fan[k]
-        d1 = x[triangle.first, w] - here
-        d2 = x[triangle.second, w] - here
-        ties = gas_ties(gas, shell.fan_corner[k], w)
-        pressure = gas_pressure(gas, triangle.index, w)
-        out.force += (pressure / 6.0) * wp.cross(d1, d2) + ties[0] * d1 + ties[1] * d2
-        out.hessian += (ties[0] + ties[1]) * wp.identity(n=3, dtype=float)
-    return out
-
-
-@wp.func
 def add_tissue_elements(
     block: VertexBlock, elements: TissueShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3
 ) -> VertexBlock:
     """Add triangles, hinges and gas around vertex ``i`` of world ``w``, as :func:`.shell_kernels.add_elements`.
 
     What has faded, or is beyond the cell's, counts for the force alone: the Hessian is that of the triangle's tension
-    at once, which is larger.
+    at once, which is larger. The Hessian of the pressure is zero for a closed fan.
     """
     shell = elements.shell
     out = block
+    stiffer = float(0.0)
     here = x[i, w]
     for k in range(shell.fan_start[i], shell.fan_start[i + 1]):
         triangle = shell.fan[k]
@@ -257,9 +288,16 @@ def add_tissue_elements(
             excess = elements.cells.excess[triangle.index, w]
             corner = shell.fan_corner[k] - 3 * triangle.index
             out.force -= excess[(corner + 2) % 3] * d1 + excess[(corner + 1) % 3] * d2
+        if elements.gassy == 1:
+            ties = gas_ties(elements.gas, shell.fan_corner[k], w)
+            pressure = gas_pressure(elements.gas, triangle.index, w)
+            out.force += (pressure / 6.0) * wp.cross(d1, d2) + ties[0] * d1 + ties[1] * d2
+            stiffer += ties[0] + ties[1]
         out = add_fan_hinges(out, shell, triangle, own, x, here, d1, d2, w, moduli[2])
     if elements.gassy == 1:
-        out = add_gas_terms(out, shell, elements.gas, x, i, w)
+        out.hessian += stiffer * wp.identity(n=3, dtype=float)
+        if elements.gas.tense == 1:
+            out.force += elements.gas.hold[i, w]
     return out
 
 

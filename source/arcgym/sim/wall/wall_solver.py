@@ -16,7 +16,7 @@ from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
-from arcgym.sim.wall import coarse_kernels, wall_kernels
+from arcgym.sim.wall import coarse_kernels, wall_kernels, weight_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
@@ -122,7 +122,7 @@ class WallSolver:
         self.measured = self._measured_contacts(contact_slots)
         self._prepared = False
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
-        self.gas_rings = None if gas is None else GasRings(gas, self.vertex_count, self.ring_count)
+        self.gas_rings = None if gas is None else GasRings(gas, self.ring_count)
         self.self_contact = SelfContact(
             cfg, [wall.points for wall in walls], first.ring, modes[0].members, first.thickness, patient, device
         )
@@ -166,24 +166,23 @@ class WallSolver:
         """
         if not self.moves:
             if self.gas is not None:
-                self.gas.begin(x)
+                self.gas.measure(x)
                 self.gas.fit_rigid()
-                self.gas.end()
             return
         self.elements.advance(x, self.tissue)
         decay = math.exp(-self.cfg.drag * self.dt)
         inputs = [x, v, self.nodes, self.tissue, decay, self.cfg.largest_speed, self.dt]
         shape, outputs = (self.vertex_count, self.num_envs), [self.x_prev, self.inertial]
-        self._launch_rows(wall_kernels.predict, shape, inputs, outputs)
-        if self.weight is not None:
-            self.weight.add(self.nodes, self.tissue, self.dt, self.inertial)
+        if self.weight is None:
+            self._launch_rows(wall_kernels.predict, shape, inputs, outputs)
+        else:
+            self._launch_rows(weight_kernels.predict_weighing, shape, [*inputs, *self.weight.inputs], outputs)
         self.self_contact.measure(x)
         if self.surroundings is not None:
             self.surroundings.measure(x, self.tissue, self.dt)
             self.surroundings.advance(x, v, self.self_contact, self.dt)
         if self.gas is not None:
-            self.gas.hold(x)
-            self.gas.begin(self.inertial)
+            self.gas.measure(self.inertial)
         self._measure(self.inertial)
         self._prepared = True
 
@@ -214,11 +213,9 @@ class WallSolver:
                 self._measure(x)
             self._residual(x, self.inertial, contacts, self.force)
             if self.cfg.coarse_correction:
-                self._correct_rings(x, contacts)
+                self._correct_rings(x, contacts, repeat)
             for _ in range(self.cfg.iterations):
                 self._sweep(x, contacts, contact.carried is None)
-        if self.gas is not None:
-            self.gas.end()
         self._launch_rows(wall_kernels.finish, x.shape, [x, self.x_prev, self.dt], [v])
 
     def finish_contacts(
@@ -295,7 +292,7 @@ class WallSolver:
         inputs = [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x]
         self._launch_rows(self._sum_forces, x.shape, inputs, [force])
 
-    def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts) -> None:
+    def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts, repeat: int) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
         shape, records = (self.num_envs, contacts.records.threads), contacts.records
@@ -307,10 +304,12 @@ class WallSolver:
             in_parts(self.ring_count, lambda *rows: self._assemble(contacts, *rows))
             if self.surroundings is not None:
                 self.surroundings.add_rows(rings, tissue, system.diagonal)
-            if self.gas_rings is None:
-                system.solve()
-            else:
-                self.gas_rings.solve(self.elements.data.shell, rings, self.loads, tissue, system)
+            if self.gas_rings is not None:
+                ends = (repeat == 0, repeat == self.cfg.repeats - 1)
+                self.gas_rings.solve(self.elements.data.shell, rings, self.loads, tissue, system, *ends)
+                self.gas_rings.prolong(rings, system, self.cfg.largest_move, x)
+                return
+            system.solve()
         self._launch_rows(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
 
     def _assemble(self, contacts: wall_kernels.WallContacts, first: int, rows: int) -> None:

@@ -11,7 +11,7 @@ import warp as wp
 
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import wall_tension_kernels as kernels
-from arcgym.sim.wall.gas_kernels import GasLoads
+from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, Lumen
 from arcgym.sim.wall.ring_modes import RingModes
 from arcgym.sim.wall.wall_parameters import WallParameters
 
@@ -54,6 +54,18 @@ class WallTension:
         """Turn the loads with the rings at ``x`` [m], shape (V, W), vec3."""
         shape = (len(self._held.members), x.shape[1])
         wp.launch(kernels.turn_loads, shape, inputs=[x, self._held], outputs=[self._loads], device=self._device)
+
+    def measure(self, x: wp.array, lumen: Lumen, law: GasLaw, parts: wp.array) -> None:
+        """Measure the lumen at ``x`` [m], shape (V, W), vec3, too.
+
+        Args:
+            x: Wall positions.
+            lumen: Faces that close the lumen.
+            law: Settings of the gas.
+            parts: Parts of the lumen's volume [m^3], shape (R, W); written.
+        """
+        inputs, outputs = [x, lumen, law, self._held], [parts, self._loads]
+        wp.launch(kernels.measure_held_slices, parts.shape, inputs=inputs, outputs=outputs, device=self._device)
 
 
 def holding(

@@ -11,7 +11,7 @@ V wall vertices, R rings, P patients, W worlds.
 
 import warp as wp
 
-from arcgym.sim.wall.gas_kernels import GasLoads
+from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, Lumen, measure_slice
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -40,6 +40,17 @@ def ring_frame(x: wp.array2d[wp.vec3], held: HeldShape, r: int, w: int, patient:
     return wp.matrix_from_cols(p, q, wp.cross(p, q))
 
 
+@wp.func
+def turn_load(x: wp.array2d[wp.vec3], held: HeldShape, loads: GasLoads, r: int, w: int):
+    """Turn the loads of ring ``r`` of world ``w`` with it, at ``x`` [m]; ``loads.hold`` is written."""
+    patient = loads.patient[w]
+    frame = loads.share[w] * ring_frame(x, held, r, w, patient)
+    for k in range(held.members.shape[1]):
+        i = held.members[r, k]
+        if i >= 0:
+            loads.hold[i, w] = frame * held.load[i, patient]
+
+
 @wp.kernel
 def turn_loads(x: wp.array2d[wp.vec3], held: HeldShape, loads: GasLoads):
     """Turn the loads with the rings. Launch (R, W).
@@ -50,9 +61,28 @@ def turn_loads(x: wp.array2d[wp.vec3], held: HeldShape, loads: GasLoads):
         loads: What the gas does; ``hold`` is written.
     """
     r, w = wp.tid()
-    patient = loads.patient[w]
-    frame = loads.share[w] * ring_frame(x, held, r, w, patient)
-    for k in range(held.members.shape[1]):
-        i = held.members[r, k]
-        if i >= 0:
-            loads.hold[i, w] = frame * held.load[i, patient]
+    turn_load(x, held, loads, r, w)
+
+
+@wp.kernel
+def measure_held_slices(
+    x: wp.array2d[wp.vec3],
+    lumen: Lumen,
+    law: GasLaw,
+    held: HeldShape,
+    volume: wp.array2d[float],
+    loads: GasLoads,
+):
+    """Measure every ring's slice of the lumen, see ``measure_slice``, and turn the loads with it. Launch (R, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        lumen: Lumen of all patients.
+        law: Settings.
+        held: Loads of the imaged shapes.
+        volume: Parts of the lumen's volume [m^3], shape (R, W); written.
+        loads: What the gas does; ``prop`` and ``hold`` are written.
+    """
+    r, w = wp.tid()
+    measure_slice(x, lumen, law, volume, loads.prop, r, w)
+    turn_load(x, held, loads, r, w)

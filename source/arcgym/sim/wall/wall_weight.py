@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -41,6 +42,11 @@ class WallWeight:
         loads = [weighing(cfg, wall, arc) / wall.mass for wall, arc in zip(walls, ring_arcs, strict=True)]
         self._load = patient_array(loads, float, device)
 
+    @property
+    def inputs(self) -> list[Any]:
+        """What kernels take of it: masses over the vertices' own, gravity of now and of the image."""
+        return [self._load, self.gravity, self._imaged]
+
     def add(self, nodes: WallNodes, tissue: Tissue, dt: float, inertial: wp.array) -> None:
         """Let the weight move ``inertial`` [m], where inertia takes the wall in a step, shape (V, W), vec3.
 
@@ -50,7 +56,7 @@ class WallWeight:
             dt: Physics step [s].
             inertial: Positions; moved in place.
         """
-        inputs = [nodes, tissue, self._load, self.gravity, self._imaged, dt]
+        inputs = [nodes, tissue, dt, *self.inputs]
         wp.launch(weight_kernels.add_weight, inertial.shape, inputs=inputs, outputs=[inertial], device=self._device)
 
 
