@@ -19,17 +19,22 @@ def two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_all_threads_work_at_the_same_time() -> None:
-    meeting = threading.Barrier(3, timeout=10.0)
-    on_threads(3, lambda: meeting.wait() and None)
-    assert not meeting.broken
+    meeting, met = threading.Barrier(3, timeout=10.0), list[int]()
+
+    def work(thread: int) -> None:
+        meeting.wait()
+        met.append(thread)
+
+    on_threads(3, work)
+    assert sorted(met) == [0, 1, 2]
 
 
 def test_a_failure_in_another_thread_is_raised() -> None:
     meeting = threading.Barrier(2, timeout=10.0)
 
-    def work() -> None:
+    def work(thread: int) -> None:
         meeting.wait()
-        if threading.current_thread() is not threading.main_thread():
+        if thread == 1:
             raise ValueError("broken")
 
     with pytest.raises(ValueError, match="broken"):

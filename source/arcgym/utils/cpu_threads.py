@@ -79,14 +79,14 @@ class Pace:
         self._runs += 1
 
 
-def on_threads(threads: int, work: Callable[[], None]) -> None:
-    """Do ``work`` in this thread and in others at the same time, and wait for all that began.
+def on_threads(threads: int, work: Callable[[int], None]) -> None:
+    """Do ``work``, which takes the number of its thread, in this one (0) and others at once; wait for all that began.
 
     Others that did not begin before this one was done are called off: ``work`` has to be whole without them.
     """
-    others: list[Future[None]] = [_workers().submit(work) for _ in range(threads - 1)]
+    others: list[Future[None]] = [_workers().submit(work, k) for k in range(1, threads)]
     try:
-        work()
+        work(0)
     finally:
         for other in others:
             if not other.cancel():
@@ -97,7 +97,7 @@ def share_out(threads: int, parts: Sequence[Part], work: Callable[[Part], None])
     """Do ``work`` on all parts, whichever thread is free on the next."""
     left = list(reversed(parts))
 
-    def take() -> None:
+    def take(thread: int) -> None:
         while left:
             try:
                 part = left.pop()

@@ -20,8 +20,8 @@ PARTS = 2
 """Tasks that a launch of independent rows is divided into, for each thread."""
 BLOCK = 256
 """Threads of a block of a GPU, Warp's own default."""
-LINE = 16
-"""Numbers of a row of the counters: two cache lines."""
+LINE = 8
+"""Numbers of a cache line."""
 
 Rows = Callable[[int, int], None]
 """Launches kernels on some rows, given the first one and how many."""
@@ -68,8 +68,14 @@ class Stages:
         Raises:
             RuntimeError: If a graph could not be replayed.
         """
-        inputs = [self._calls, self._plan, self._graphs, self._rounds, times, self._progress]
-        on_threads(threads or self.threads, lambda: wp.launch(stage_kernels.share, 1, inputs=inputs, device="cpu"))
+        threads = threads or self.threads
+
+        def share(thread: int) -> None:
+            inputs = [self._calls, self._plan, self._graphs, thread, threads, self._rounds, times]
+            outputs = [self._taken, self._progress]
+            wp.launch(stage_kernels.share, 1, inputs=inputs, outputs=outputs, device="cpu")
+
+        on_threads(threads, share)
         self._rounds += times
         if self._counters[-1, 0]:
             raise RuntimeError("Warp could not replay a part of a physics step on the CPU; see its message above.")
@@ -128,6 +134,7 @@ class Stages:
         self._plan = wp.array(np.array(plan, np.int64), dtype=wp.int64, device="cpu")
         self._graphs = wp.array(np.array(states, np.int64), dtype=wp.int64, device="cpu")
         self._calls = wp.array(np.array([_replay(), _rest()], np.int64), dtype=wp.int64, device="cpu")
+        self._taken = wp.zeros(len(states), dtype=wp.int64, device="cpu")
         self._progress = wp.zeros((len(self._stages) + 1, LINE), dtype=wp.int64, device="cpu")
         self._counters = self._progress.numpy()
         wp.load_module(stage_kernels, device="cpu")
