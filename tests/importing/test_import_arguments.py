@@ -30,6 +30,7 @@ def mask(tmp_path: Path) -> Path:
     [
         ({"sectors": 3}, "sectors is 3. Pass 6 to 96"),
         ({"max_gap": float("nan")}, "max_gap is nan"),
+        ({"voxel": 1e-6}, r"voxel is 1e-06 m \(0.001 mm\). Pass 0.0003 to 0.01 m \(0.3 to 10 mm in commands\)"),
         ({"landmarks": {"foo": 0.003}}, "Unknown landmark 'foo'. Available: cecum_entry"),
         ({"landmarks": {"rectosigmiod": 0.15}}, "Did you mean 'rectosigmoid'"),
         ({"landmarks": {"rectosigmoid": -0.1}}, "at -0.1. Pass an arc length"),

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import SimpleITK as sitk
 import trimesh
+from label_volumes import course
 
 from arcgym.anatomy.importing import ColonImportError, ImportSettings, import_to_folder
 from arcgym.anatomy.importing.orientation import orient
@@ -195,3 +196,11 @@ def test_ends_that_look_alike() -> None:
     line = np.linspace([-0.2, 0.0, 0.0], [0.2, 0.0, 0.0], 50)
     with pytest.raises(ColonImportError, match="cannot be told apart.*--anus"):
         orient(line * [0, 1, 1] + [[0, k, 0] for k in np.linspace(-0.2, 0.2, 50)], "ras", ends_known=False)
+
+
+def test_file_whose_sides_are_exchanged() -> None:
+    """As it is, the tube's course is like a colon's (above 0.9); mirrored, it is not from either end."""
+    line = course()[0]
+    assert not orient(line, "ras", ends_known=False).mirrored
+    with pytest.raises(ColonImportError, match=r"of the mirror image 0\.9.*Left and right may be exchanged.*--anus"):
+        orient(line * [-1, 1, 1], "ras", ends_known=False)

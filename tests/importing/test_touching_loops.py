@@ -88,7 +88,7 @@ def report(**changes: Any) -> dict[str, Any]:
     """Return figures of a good import, with changes."""
     good = {
         "cleaning": {"cut": [], "dropped": []},
-        "orientation": {"likeness": 0.9},
+        "orientation": {"likeness": 0.9, "mirrored": False},
         "volume_ml": 2000.0,
         "lost_ml": 0.0,
         "caliber_mm": 40.0,
@@ -118,7 +118,15 @@ def test_good_import_leaves_no_doubt() -> None:
             "as wide as the colon .40 mm.*separate the loops",
         ),
         ({"cleaning": {"cut": [], "dropped": [{"volume_ml": 500.0, "place_mm": [4, 5, 6]}]}}, "left out.*--max-gap"),
-        ({"orientation": {"likeness": 0.5}}, "likeness 0.50.*--anus and --cecum"),
+        (
+            {"cleaning": {"cut": [branch(k, 30, 50.0) for k in (70, 90, 80)], "dropped": []}},
+            "is 90 mm long .*2 more are like it",
+        ),
+        (
+            {"orientation": {"likeness": 0.5, "mirrored": False}},
+            r"likeness 0.50, usually 0.6 and more\). Pass --anus and",
+        ),
+        ({"orientation": {"likeness": 0.5, "mirrored": True}}, "Left and right may be exchanged in the file.*--anus"),
     ],
 )
 def test_doubtful_import_is_refused(changes: dict[str, Any], match: str) -> None:

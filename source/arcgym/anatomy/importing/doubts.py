@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from arcgym.anatomy.importing.errors import ColonImportError
+from arcgym.anatomy.importing.orientation import MIRRORED
 
 LARGEST_CUT = 0.15
 """Largest share of the lumen that may be cut off as not being colon."""
@@ -42,13 +43,19 @@ def path_doubts(report: dict[str, Any]) -> list[str]:
             f"{share:.0%} of the lumen was cut off, the largest piece at {largest['place_mm']} mm: "
             "loops may touch there. Separate them in the mask, or pass --anus and --cecum"
         )
-    for piece in cut:
-        if piece["length_mm"] >= LEAST_LENGTH and piece["caliber_mm"] >= CALIBER_SHARE * report["caliber_mm"]:
-            doubts.append(
-                f"the {piece['kind']} that was cut off at {piece['place_mm']} mm is {piece['length_mm']} mm long and "
-                f"{piece['caliber_mm']:.0f} mm wide, as wide as the colon ({report['caliber_mm']:.0f} mm). If it is "
-                "colon, separate the loops in the mask or pass --anus and --cecum; if not, remove it from the mask"
-            )
+    wide = [
+        piece
+        for piece in cut
+        if piece["length_mm"] >= LEAST_LENGTH and piece["caliber_mm"] >= CALIBER_SHARE * report["caliber_mm"]
+    ]
+    if wide:
+        piece = max(wide, key=lambda piece: piece["length_mm"])
+        others = f" ({len(wide) - 1} more are like it)" if len(wide) > 1 else ""
+        doubts.append(
+            f"the {piece['kind']} that was cut off at {piece['place_mm']} mm is {piece['length_mm']} mm long and "
+            f"{piece['caliber_mm']:.0f} mm wide, as wide as the colon ({report['caliber_mm']:.0f} mm){others}. If it "
+            "is colon, separate the loops in the mask or pass --anus and --cecum; if not, remove it from the mask"
+        )
     for piece in cleaning["dropped"]:
         if piece["volume_ml"] > LARGEST_CUT * report["volume_ml"]:
             doubts.append(
@@ -58,7 +65,9 @@ def path_doubts(report: dict[str, Any]) -> list[str]:
     if orientation["likeness"] < LEAST_LIKENESS:
         doubts.append(
             f"the course is little like a colon's (likeness {orientation['likeness']:.2f}, usually {LEAST_LIKENESS:g} "
-            "and more). Pass --anus and --cecum, --frame for a surface, or --label"
+            "and more). "
+            + (f"{MIRRORED}; if not: pass" if orientation["mirrored"] else "Pass")
+            + " --anus and --cecum, --frame for a surface, or --label"
         )
     return doubts
 

@@ -42,6 +42,10 @@ _LEAST_LIKENESS = 0.25
 """Least likeness at which the ends can be told apart; our choice."""
 
 
+MIRRORED = "Left and right may be exchanged in the file: mirror it"
+"""What to do where the mirror image is more like a colon."""
+
+
 @dataclass(frozen=True)
 class Orientation:
     """How a course lies in its file."""
@@ -76,14 +80,23 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
     best = scores[name, backwards]
     other = max((score for (_, back), score in scores.items() if back != backwards), default=-1.0)
     if not ends_known and (best - other < _LEAST_MARGIN or best < _LEAST_LIKENESS):
-        a, b = (", ".join(f"{1e3 * value:.0f}" for value in path[k]) for k in (0, -1))
-        raise ColonImportError(
-            f"The ends at ({a}) mm and ({b}) mm cannot be told apart: likeness to a typical course {best:.2f} one way, "
-            f"{other:.2f} the other",
-            "Pass --anus X,Y,Z with the one that is the anus (and --frame for a surface).",
-        )
+        mirror = max(likeness(path * [-1, 1, 1], FRAMES[name], back) for name, back in scores)
+        raise _alike(path, best, other, mirror)
     mirror = likeness(path * [-1, 1, 1], FRAMES[name], backwards)
     return Orientation(name, backwards, best, best - other, mirror > best + _LEAST_MARGIN)
+
+
+def _alike(path: np.ndarray, best: float, other: float, mirror: float) -> ColonImportError:
+    """Return the error that the ends cannot be told apart, which a file whose sides are exchanged gives, too."""
+    a, b = (", ".join(f"{1e3 * value:.0f}" for value in path[k]) for k in (0, -1))
+    found = (
+        f"The ends at ({a}) mm and ({b}) mm cannot be told apart: likeness to a typical course {best:.2f} one way, "
+        f"{other:.2f} the other"
+    )
+    mend = "Pass --anus X,Y,Z with the one that is the anus (and --frame for a surface)."
+    if mirror < max(best + _LEAST_MARGIN, _LEAST_LIKENESS):
+        return ColonImportError(found, mend)
+    return ColonImportError(f"{found}; of the mirror image {mirror:.2f}", f"{MIRRORED}; if not: {mend}")
 
 
 def likeness(path: np.ndarray, rotation: np.ndarray, backwards: bool) -> float:

@@ -82,7 +82,7 @@ class ImportSettings:
         for name, (low, high) in _RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise ImportArgumentError(f"{name} is {value:g}", f"Pass {low:g} to {high:g} (lengths in meters).")
+                raise _out_of_range(name, value, low, high)
         _check_choice("units", self.units, ("auto", *UNITS))
         _check_choice("frame", self.frame, ("auto", *FRAMES))
         _check_choice("posture", self.posture, GRAVITY)
@@ -107,6 +107,14 @@ class ImportSettings:
             if isinstance(place, tuple) or not (math.isfinite(place) and place > 0.0):
                 expected = "Pass an arc length from the anal verge [m], above 0, or a position X,Y,Z [mm]."
                 raise ImportArgumentError(f"Landmark '{name}' is at {place}", expected)
+
+
+def _out_of_range(name: str, value: float, low: float, high: float) -> ImportArgumentError:
+    """Return the error of a count, or of a length in the units of code [m] and command [mm]."""
+    if isinstance(low, int):
+        return ImportArgumentError(f"{name} is {value:g}", f"Pass {low} to {high}.")
+    expected = f"Pass {low:g} to {high:g} m ({1e3 * low:g} to {1e3 * high:g} mm in commands)."
+    return ImportArgumentError(f"{name} is {value:g} m ({1e3 * value:g} mm)", expected)
 
 
 def _check_choice(name: str, value: str, known: Iterable[str]) -> None:
