@@ -133,6 +133,23 @@ def test_stopped_import_leaves_nothing(number: signal.Signals, tmp_path: Path) -
     assert list(tmp_path.iterdir()) == []
 
 
+def test_two_signals_at_once_are_one_line(tmp_path: Path) -> None:
+    """Ctrl-C reaches a data set and its import, to which the data set then sends SIGTERM."""
+    code = (
+        "import os, signal\n"
+        "from arcgym.cli.stopping import stopped_cleanly\n"
+        "both = {signal.SIGINT, signal.SIGTERM}\n"
+        "with stopped_cleanly('out was not made'):\n"
+        "    signal.pthread_sigmask(signal.SIG_BLOCK, both)\n"
+        "    for each in both:\n"
+        "        os.kill(os.getpid(), each)\n"
+        "    signal.pthread_sigmask(signal.SIG_UNBLOCK, both)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stderr == "stopped by SIGINT: out was not made\n"
+    assert done.returncode == 128 + signal.SIGINT
+
+
 def test_header_of_more_voxels_than_a_ct_has(tmp_path: Path) -> None:
     """Found before ITK takes 100 GB for them."""
     path = tmp_path / "a.mha"

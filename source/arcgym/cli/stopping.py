@@ -14,6 +14,10 @@ from typing import Any
 _SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
+def _ignored(number: int, frame: FrameType | None) -> None:
+    """Do nothing."""
+
+
 @contextmanager
 def stopped_cleanly(left: str) -> Iterator[None]:
     """Let SIGINT, SIGTERM and SIGHUP unwind what runs inside, so that temporary folders are removed.
@@ -27,7 +31,7 @@ def stopped_cleanly(left: str) -> Iterator[None]:
 
     def stop(number: int, frame: FrameType | None) -> None:
         for each in _SIGNALS:
-            signal.signal(each, signal.SIG_IGN)
+            signal.signal(each, _ignored)  # with SIG_IGN, Python complains of one that has come already
         print(f"stopped by {signal.Signals(number).name}: {left}", file=sys.stderr)
         raise SystemExit(128 + number)
 
