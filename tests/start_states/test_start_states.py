@@ -190,7 +190,7 @@ def test_states_beside_the_colon_come_first(tmp_path: Path, cache: Path, monkeyp
     path.rename(path.with_name("proximal_8.npz"))  # states of another scope
     other = InteractiveSceneCfg(num_envs=1, colon=tube.colon_cfg(), endoscope=tube.scope_cfg("proximal", 8))
     assert find.find_stored(InteractiveScene(other, SimulationCfg()), "sigmoid") is None
-    assert "are stale: another wall mesh or endoscope" in capsys.readouterr().err
+    assert "do not fit: another wall mesh or endoscope" in capsys.readouterr().err
 
 
 def test_states_made_ahead_are_not_made_twice(tiny: TinySim, cache: Path, capsys) -> None:
