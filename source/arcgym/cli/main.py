@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import atexit
+import errno
 import gc
 import importlib
 import sys
@@ -57,6 +58,9 @@ COMMANDS = {
 
 INTERRUPTED = 128 + 2
 """Exit status after Ctrl-C, as shells expect it."""
+
+DISK_TROUBLE = (errno.EACCES, errno.EDQUOT, errno.ENOSPC, errno.EROFS)
+"""Errors of a folder that may not be written or of a disk that is full: one line says all."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -112,6 +116,12 @@ def run_command(name: str, argv: Sequence[str] | None = None, prog: str | None =
     except KeyboardInterrupt:
         print(f"{prog}: stopped by SIGINT", file=sys.stderr)
         return INTERRUPTED
+    except OSError as error:
+        if error.errno not in DISK_TROUBLE:
+            raise
+        where = f": {error.filename}" if error.filename else ""
+        print(f"{prog}: error: {error.strerror}{where}", file=sys.stderr)
+        return 1
 
 
 def run_script(name: str) -> int:

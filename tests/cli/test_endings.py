@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
+import os
 
 import pytest
 
@@ -29,3 +31,26 @@ def test_ctrl_c_while_libraries_load_is_one_line(monkeypatch, capsys):
     monkeypatch.setattr("arcgym.cli.main.importlib.import_module", interrupted)
     assert main(["play"]) == 130
     assert capsys.readouterr().err == "arcgym play: stopped by SIGINT\n"
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES])
+def test_trouble_with_the_disk_is_one_line(number, monkeypatch, capsys):
+    def fail(args):
+        raise OSError(number, os.strerror(number), "/data/colon")
+
+    module = importlib.import_module(COMMANDS["make-colon"][0])
+    monkeypatch.setattr(module, "run", fail)
+    monkeypatch.setattr(module, "add_arguments", lambda parser: None)
+    assert main(["make-colon"]) == 1
+    assert capsys.readouterr().err == f"arcgym make-colon: error: {os.strerror(number)}: /data/colon\n"
+
+
+def test_other_errors_of_the_system_keep_their_traceback(monkeypatch):
+    def fail(args):
+        raise OSError(errno.EPIPE, os.strerror(errno.EPIPE))
+
+    module = importlib.import_module(COMMANDS["make-colon"][0])
+    monkeypatch.setattr(module, "run", fail)
+    monkeypatch.setattr(module, "add_arguments", lambda parser: None)
+    with pytest.raises(BrokenPipeError):
+        main(["make-colon"])
