@@ -41,7 +41,7 @@ def test_trouble_with_the_disk_is_one_line(number, monkeypatch, capsys):
     module = importlib.import_module(COMMANDS["make-colon"][0])
     monkeypatch.setattr(module, "run", fail)
     monkeypatch.setattr(module, "add_arguments", lambda parser: None)
-    assert main(["make-colon"]) == 1
+    assert main(["make-colon"]) == 74
     assert capsys.readouterr().err == f"arcgym make-colon: error: {os.strerror(number)}: /data/colon\n"
 
 
@@ -54,3 +54,15 @@ def test_other_errors_of_the_system_keep_their_traceback(monkeypatch):
     monkeypatch.setattr(module, "add_arguments", lambda parser: None)
     with pytest.raises(BrokenPipeError):
         main(["make-colon"])
+
+
+def test_file_that_hdf5_could_not_write_is_named(monkeypatch, capsys):
+    def fail(args):
+        text = "Can't write data (file write failed: time = now\n, filename = 'ds/a.hdf5', errno = 28)"
+        raise OSError(errno.ENOSPC, text)
+
+    module = importlib.import_module(COMMANDS["make-colon"][0])
+    monkeypatch.setattr(module, "run", fail)
+    monkeypatch.setattr(module, "add_arguments", lambda parser: None)
+    assert main(["make-colon"]) == 74
+    assert capsys.readouterr().err == "arcgym make-colon: error: No space left on device: ds/a.hdf5\n"

@@ -14,6 +14,7 @@ from arcgym.cli.task import load_run_cfgs
 from arcgym.envs.mdp import rgb
 from arcgym.managers import ObservationTermCfg
 from arcgym.rl.run_folder import write_params
+from arcgym.utils.errors import UsageError
 from arcgym.utils.registry import load_cfg_from_registry
 
 TASK = "ARC-Rectum-Capsule"
@@ -29,6 +30,15 @@ def test_the_agent_is_that_of_the_run(tmp_path: Path, agent: str) -> None:
     checkpoint.write_bytes(b"")
     _, found, path = load_run_cfgs(RunArguments(task=TASK, checkpoint=str(checkpoint)))
     assert type(found) is type(agent_cfg) and path == checkpoint
+
+
+def test_another_agent_than_that_of_the_run_is_refused(tmp_path: Path) -> None:
+    key = "rsl_rl_cfg_entry_point"
+    env_cfg, agent_cfg = (load_cfg_from_registry(TASK, each) for each in ("env_cfg_entry_point", key))
+    write_params(tmp_path, run={"task": TASK, "agent": key}, env=env_cfg, agent=agent_cfg)
+    (tmp_path / "model_0.pt").write_bytes(b"")
+    with pytest.raises(UsageError, match=f"--agent is 'sac', but {tmp_path} was trained with {key}; leave --agent out"):
+        load_run_cfgs(RunArguments(task=TASK, agent="sac", checkpoint=str(tmp_path / "model_0.pt")))
 
 
 def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -> None:

@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -275,6 +277,24 @@ def test_a_kill_loses_at_most_the_last_second(tmp_path) -> None:
         np.testing.assert_allclose(episode.data["state/position"], step * np.arange(1, 31), rtol=1e-5)
     assert world == 1
     assert next_path(tmp_path, "episode").name == "episode_000002.hdf5"
+
+
+def test_a_full_disk_leaves_what_was_written(recording, cfg, tmp_path, monkeypatch) -> None:
+    long_episode(cfg)
+    env = recording(env_ids=(0,))
+    run(env, 25, (0.01, 0.0))  # 20 steps are in the file
+
+    def full(self, size, axis=None):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as disk:
+        disk.setattr(h5py.Dataset, "resize", full)
+        with pytest.raises(OSError, match="No space left"):
+            run(env, 5, (0.01, 0.0))
+        env.close()
+    (partial,) = tmp_path.iterdir()
+    episode = Episode.load(partial)
+    assert episode.info["recovered"] and len(episode.data["actions"]) == 20
 
 
 @pytest.mark.parametrize("kept", [4, 10, 13, 22])

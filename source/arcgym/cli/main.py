@@ -9,6 +9,8 @@ import atexit
 import errno
 import gc
 import importlib
+import os
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -62,6 +64,9 @@ INTERRUPTED = 128 + 2
 DISK_TROUBLE = (errno.EACCES, errno.EDQUOT, errno.ENOSPC, errno.EROFS)
 """Errors of a folder that may not be written or of a disk that is full: one line says all."""
 
+DISK_FAILED = 74
+"""Exit status after one of them, ``EX_IOERR`` of sysexits.h."""
+
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run ``arcgym <subcommand> …`` and return its exit status.
@@ -77,7 +82,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if argv is None else argv)
     name = " ".join(words[:2]) if " ".join(words[:2]) in COMMANDS else "".join(words[:1])
     if name in COMMANDS:
-        return run_command(name, words[len(name.split()) :])
+        status = run_command(name, words[len(name.split()) :])
+        return status if argv is not None else _ended(status)
     if not words or words[0] in ("-h", "--help"):
         print(_overview())
         return 0
@@ -119,15 +125,30 @@ def run_command(name: str, argv: Sequence[str] | None = None, prog: str | None =
     except OSError as error:
         if error.errno not in DISK_TROUBLE:
             raise
-        where = f": {error.filename}" if error.filename else ""
-        print(f"{prog}: error: {error.strerror}{where}", file=sys.stderr)
-        return 1
+        print(f"{prog}: error: {os.strerror(error.errno)}{_where(error)}", file=sys.stderr)
+        return DISK_FAILED
 
 
 def run_script(name: str) -> int:
     """Run a subcommand as the script that the process was started with, such as ``train.py``."""
     _end_quickly()
-    return run_command(name, prog=Path(sys.argv[0]).name)
+    return _ended(run_command(name, prog=Path(sys.argv[0]).name))
+
+
+def _where(error: OSError) -> str:
+    """Return the file of an error behind a colon; HDF5 names it in its message."""
+    found = re.search(r"filename = '([^']+)'", str(error))
+    name = error.filename or (found and found[1])
+    return f": {name}" if name else ""
+
+
+def _ended(status: int) -> int:
+    """Return the exit status; after trouble with the disk end at once, for HDF5 crashes on what it could not write."""
+    if status == DISK_FAILED:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)
+    return status
 
 
 def _end_quickly() -> None:

@@ -80,7 +80,13 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     if saved is None:
         print(f"params: the registered ones; none of {checkpoint.parent / 'params'} are used")
     else:
-        restore(agent_cfg, saved.agent, "agent")
+        try:
+            restore(agent_cfg, saved.agent, "agent")
+        except UsageError as error:
+            if saved.agent_key in (None, agent_key(args.agent)):
+                raise
+            trained = f"{checkpoint.parent} was trained with {saved.agent_key}; leave --agent out, or name that."
+            raise UsageError(f"--agent is '{args.agent}', but {trained}") from error
         task, trained = args.task.removesuffix(PLAY), saved.task.removesuffix(PLAY)
         if task == trained:
             plain, _ = _registered(task, args.agent)

@@ -65,6 +65,7 @@ class RecorderManager(ManagerBase):
         """Further facts for ``info`` of the episodes that end from now on: plain values by name."""
         self.paths: list[Path] = []
         """Episodes written by this manager."""
+        self._disk_failed = False
 
     @property
     def num_exported(self) -> int:
@@ -128,8 +129,11 @@ class RecorderManager(ManagerBase):
             self._record_once(env_ids, lambda term, ids: term.record_post_reset(ids))
 
     def close(self) -> None:
-        """Write the episodes under way as incomplete ones. A step that failed half-way is not among theirs."""
-        if not self.active:
+        """Write the episodes under way as incomplete ones. A step that failed half-way is not among theirs.
+
+        Where the disk has failed they stay as after a kill: ending a file takes room, and half ended none can be read.
+        """
+        if not self.active or self._disk_failed:
             return
         if not self._buffer.is_open:
             under_way = [world for world in self._worlds if self.length(world)]
@@ -183,7 +187,11 @@ class RecorderManager(ManagerBase):
         )
         for world, steps, packed in zip(worlds, handed, chunks, strict=True):
             once = {} if world in self._writers else self._buffer.take_once(self._place[world])
-            self._writer(world).append(steps, once, packed)
+            try:
+                self._writer(world).append(steps, once, packed)
+            except OSError:
+                self._disk_failed = True
+                raise
 
     def _begins_chunk(self, world: int) -> bool:
         return world not in self._writers or self._writers[world].begins_chunk
