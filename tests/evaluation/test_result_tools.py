@@ -272,6 +272,15 @@ def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) ->
     assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]
 
 
+def test_trials_of_an_earlier_version_cannot_be_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = read_suites()["population"].conditions_path.with_stem("population_v2")
+    words = ["--agent", "zero", "--robot", "Magnetic", "--suite", "population", "--out", str(tmp_path / "a")]
+    with pytest.raises(SystemExit):
+        main(["evaluate", *words, "--conditions", str(file)])
+    assert "the same trials on the present ones are population_v3" in capsys.readouterr().err
+    assert not (tmp_path / "a").exists()
+
+
 def test_trials_of_an_earlier_version_cannot_be_handed_in(tmp_path: Path) -> None:
     of: dict[str, Any] = {"task": "ARC-LeftColon-Magnetic", "suite": "population"}
     of |= {"checkpoint_sha256": ["a", "b", "c"], "changes": {of["task"]: {}}}

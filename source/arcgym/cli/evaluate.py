@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(namespace: argparse.Namespace) -> None:
     """Run the trials, print the summary and write it."""
-    from arcgym.evaluation.suites import read_suites, split_task
+    from arcgym.evaluation.suites import read_suites, refuse_earlier, split_task
     from arcgym.evaluation.trials import read_conditions
 
     args = read_fields(EvaluateArguments, namespace)
@@ -70,6 +70,7 @@ def run(namespace: argparse.Namespace) -> None:
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
     _check_tasks(tasks)
     conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
+    refuse_earlier(conditions)
 
     from arcgym.evaluation.evaluate import evaluate
     from arcgym.evaluation.options import EvaluationOptions

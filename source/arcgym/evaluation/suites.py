@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.trials import Conditions, read_conditions
+from arcgym.utils.errors import UsageError
 
 FOLDER = Path(__file__).parents[2] / "arcgym_tasks" / "benchmark"
 """Folder with ``suites.yaml`` and the condition files, which are never changed: another version gets another name."""
@@ -68,6 +69,20 @@ def split_task(task: str) -> tuple[str, str | None]:
 def read_suites(path: Path = FOLDER / "suites.yaml") -> dict[str, Suite]:
     """Return the suites of a file by name."""
     return {name: _suite(values) for name, values in yaml.safe_load(path.read_text()).items()}
+
+
+def refuse_earlier(conditions: Conditions) -> None:
+    """Refuse trials of an earlier version of the population.
+
+    Raises:
+        UsageError: Some of their patients cannot be made any more; names the file of the present ones.
+    """
+    for suite in read_suites().values():
+        if suite.conditions_of(conditions.sha256).name in suite.earlier:
+            raise UsageError(
+                f"{conditions.name} is of an earlier version of the population, some of whose patients are others now;"
+                f" the same trials on the present ones are {suite.conditions}."
+            )
 
 
 def _suite(values: dict[str, Any]) -> Suite:
