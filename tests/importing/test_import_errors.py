@@ -221,3 +221,10 @@ def test_file_whose_sides_are_exchanged() -> None:
     assert not orient(line, "ras", ends_known=False).mirrored
     with pytest.raises(ColonImportError, match=r"of the mirror image 0\.9.*Left and right may be exchanged.*--anus"):
         orient(line * [-1, 1, 1], "ras", ends_known=False)
+
+
+def test_mirrored_surface_that_fits_other_axes_is_still_told() -> None:
+    """Turned by half a turn, a mirrored course has its sides right and its front at the back: likeness 0.6 to 0.75."""
+    line = course()[0]
+    assert not orient(line, "auto", ends_known=False).mirrored
+    assert orient(line * [-1, 1, 1], "auto", ends_known=False).mirrored

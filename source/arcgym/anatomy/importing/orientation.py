@@ -59,7 +59,8 @@ class Orientation:
     margin: float
     """By how much the other reading of the ends is less like it."""
     mirrored: bool
-    """Whether the mirror image is more like a typical course: the file's left and right may be exchanged."""
+    """Whether the mirror image, on any axes that are tried, is more like a typical course: left and right may be
+    exchanged in the file."""
 
 
 def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
@@ -79,10 +80,9 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
     name, backwards = max(scores, key=lambda key: scores[key])
     best = scores[name, backwards]
     other = max((score for (_, back), score in scores.items() if back != backwards), default=-1.0)
+    mirror = max(likeness(path * [-1, 1, 1], FRAMES[name], back) for name, back in scores)
     if not ends_known and (best - other < _LEAST_MARGIN or best < _LEAST_LIKENESS):
-        mirror = max(likeness(path * [-1, 1, 1], FRAMES[name], back) for name, back in scores)
         raise _alike(path, best, other, mirror)
-    mirror = likeness(path * [-1, 1, 1], FRAMES[name], backwards)
     return Orientation(name, backwards, best, best - other, mirror > best + _LEAST_MARGIN)
 
 
