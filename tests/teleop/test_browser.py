@@ -225,7 +225,9 @@ def test_a_second_tab_and_a_lost_connection_lose_nothing(tab, page) -> None:
     key(tab, "keydown", "Space")
     key(tab, "keydown", "KeyW")
     until(lambda: session.status.steps >= 4, FAR)
-    key(tab, "keyup", "KeyW")  # nothing moves while the second tab loads, however long: the episode goes on
+    key(tab, "keyup", "KeyW")
+    key(tab, "keydown", "Space")  # a tip that stood still while the second tab loads would end the episode as stuck
+    until(lambda: session.status.state == "paused", FAR)
     tab.switch_to.new_window("tab")
     tab.get(page.gate.url)
     until(lambda: state(tab).get("connected"), FAR)
@@ -233,6 +235,9 @@ def test_a_second_tab_and_a_lost_connection_lose_nothing(tab, page) -> None:
     tab.close()
     tab.switch_to.window(first)
     until(lambda: page.hand_server.tabs == 1, FAR)
+    assert session.status.state == "paused"
+    key(tab, "keydown", "Space")
+    until(lambda: session.status.state == "running", FAR)
     key(tab, "keydown", "KeyW")
     until(lambda: session.hand.value().any(), FAR)
     before = session.status.steps
