@@ -19,11 +19,11 @@ GROUPS = 5
 """Training seeds that the trials on many patients are shared by."""
 
 SEEDS_OF = {
-    "population_v3": "population_v2",
-    "robustness_v3": "robustness_v2",
-    "withdrawal_population_v2": "withdrawal_population_v1",
+    "population_v4": "population_v2",
+    "robustness_v4": "robustness_v2",
+    "withdrawal_population_v3": "withdrawal_population_v1",
 }
-"""Earlier file whose seeds a file has: trials on patients that stayed as they were are the same trials."""
+"""Earlier file whose seeds a file has: the same trials on the patients of another version."""
 
 
 def seed_of(name: str, trial: int) -> int:
@@ -43,19 +43,19 @@ def main() -> None:
     unseen = [f"population:{seed}" for seed in splits.seeds["test"]]
     version = f"(splits {splits.version}, generator {splits.generator})"
     files = {
-        "population_v3": (unseen, 1, f"A trial on each of the 200 patients of the test split {version}."),
+        "population_v4": (unseen, 1, f"A trial on each of the 200 patients of the test split {version}."),
         "ct_v1": ([f"ct_{number}/colon.usda" for number in (1, 2)], 10, "Ten trials on each of the two CT patients."),
         "cross_colon_v1": (
             [f"colon_{number}/colon.usda" for number in (3, 4, 5)],
             10,
             "Ten trials on each of the colons 3, 4 and 5, for policies that were trained on 1 and 2.",
         ),
-        "robustness_v3": (
+        "robustness_v4": (
             unseen[:10],
             2,
             f"Two trials on each of ten patients of the test split {version}, for each variant.",
         ),
-        "withdrawal_population_v2": (
+        "withdrawal_population_v3": (
             unseen[:20],
             1,
             f"A trial on each of the first 20 patients of the test split {version}: from the cecum back.",

@@ -29,7 +29,7 @@ while record := os.read(0, 32):
 
 
 def test_a_folder_is_of_one_version_and_one_grid() -> None:
-    assert store_folder().name == "generator_3_160x14"
+    assert store_folder().name == "generator_4_160x14"
 
 
 @pytest.fixture

@@ -69,7 +69,7 @@ def test_a_row_of_earlier_trials_gives_way_to_fewer_present_ones(tmp_path: Path)
     of = {"task": "ARC-LeftColon-Magnetic", "suite": "population"}
     old = floors(folder(tmp_path / "old", "expert", **of, conditions_name="population_v2"))
     new = floors(folder(tmp_path / "new", "expert", every=10, **of))
-    assert [one.conditions for one in (*old, *new)] == ["population_v2", "population_v3"]
+    assert [one.conditions for one in (*old, *new)] == ["population_v2", "population_v4"]
     assert updated(old, new) == new == updated(new, old)
     write_floors(tmp_path / "floors.csv", old)
     last = tables("--floors", str(tmp_path / "floors.csv"))[-1]

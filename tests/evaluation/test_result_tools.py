@@ -277,7 +277,7 @@ def test_trials_of_an_earlier_version_cannot_be_run(tmp_path: Path, capsys: pyte
     words = ["--agent", "zero", "--robot", "Magnetic", "--suite", "population", "--out", str(tmp_path / "a")]
     with pytest.raises(SystemExit):
         main(["evaluate", *words, "--conditions", str(file)])
-    assert "the same trials on the present ones are population_v3" in capsys.readouterr().err
+    assert "the same trials on the present ones are population_v4" in capsys.readouterr().err
     assert not (tmp_path / "a").exists()
 
 
@@ -286,7 +286,7 @@ def test_trials_of_an_earlier_version_cannot_be_handed_in(tmp_path: Path) -> Non
     of |= {"checkpoint_sha256": ["a", "b", "c"], "changes": {of["task"]: {}}}
     of |= {"inputs": {of["task"]: {"sees": ["policy"], "simulator_depth": False}}}
     old = write_result_folder(tmp_path / "old", 3, **of, conditions_name="population_v2")
-    message = "trials are of population_v2, an earlier version of population_v3: evaluate again"
+    message = "trials are of population_v2, an earlier version of population_v4: evaluate again"
     assert problems(old) == [message] and problems(old, whole=False) == []
     new = write_result_folder(tmp_path / "new", 3, **of)
     assert problems(new) == []

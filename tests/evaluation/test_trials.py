@@ -35,10 +35,13 @@ SHIPPED = {
     "paper_v1": "9daf4c1f73ff953c",
     "population_v2": "f9905f1ea7b45e90",
     "population_v3": "16b2cfef73a358ce",
+    "population_v4": "92c60d0bb93fbbb9",
     "robustness_v2": "5c7867ef5b36f05c",
     "robustness_v3": "9429e1232e5e1d14",
+    "robustness_v4": "99dbefcdf27c7e30",
     "withdrawal_population_v1": "1720de6d55c0da78",
     "withdrawal_population_v2": "7a919689f268b7a7",
+    "withdrawal_population_v3": "10ad3fe98a421b35",
 }
 """Begins of the hashes of the shipped files: a changed one gets another name, and a line here."""
 

@@ -90,7 +90,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
 
 
 def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
-    """Return a problem for trials of an earlier condition file, some of whose patients are others now."""
+    """Return a problem for trials of an earlier condition file, whose patients are others now."""
     if conditions.name == suite.conditions:
         return []
     return [f"trials are of {conditions.name}, an earlier version of {suite.conditions}: evaluate again"]

@@ -66,7 +66,7 @@ class Result:
 
     @property
     def conditions(self) -> str:
-        """Name of the condition file, such as ``population_v3``."""
+        """Name of the condition file, such as ``population_v4``."""
         return read_suites()[self.suite].conditions_of(self.run.get("conditions_sha256")).name
 
     @property

@@ -50,8 +50,8 @@ FIGURE = "Success in 30 trials of each task, with intervals, and the paper's own
 """What the picture shows."""
 
 EARLIER = (
-    "Trials of {names} are of an earlier version of the population, in which some patients were others"
-    " ([which](patients.md#make-check-and-look-at-others))."
+    "Trials of {names} are of an earlier version of the population, whose patients were others"
+    " ([how](patients.md#make-check-and-look-at-others))."
 )
 """Stands above tables in which some trials are no longer the suite's."""
 

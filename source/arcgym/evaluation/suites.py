@@ -75,12 +75,12 @@ def refuse_earlier(conditions: Conditions) -> None:
     """Refuse trials of an earlier version of the population.
 
     Raises:
-        UsageError: Some of their patients cannot be made any more; names the file of the present ones.
+        UsageError: Their patients cannot be made any more; names the file of the present ones.
     """
     for suite in read_suites().values():
         if suite.conditions_of(conditions.sha256).name in suite.earlier:
             raise UsageError(
-                f"{conditions.name} is of an earlier version of the population, some of whose patients are others now;"
+                f"{conditions.name} is of an earlier version of the population, whose patients cannot be made any more;"
                 f" the same trials on the present ones are {suite.conditions}."
             )
 

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from arcgym.anatomy.bends import WINDOW
+from arcgym.anatomy.generator.rounding import rounded
 from arcgym.anatomy.generator.spec import ColonSpec
 
 SHARPEST = 1.15
@@ -51,19 +52,31 @@ class BendTargets:
     index: np.ndarray
     """Points that each bend shapes, shape (K, n), int."""
     shape: np.ndarray
-    """Their wanted positions relative to their mean, up to a rotation [m], shape (K, n, 3)."""
+    """Their wanted positions in the bend's plane, relative to their mean [m], shape (K, n, 2)."""
 
     def pull(self, points: np.ndarray) -> np.ndarray:
         """Return a shift of every point towards the shape of its bend (shape matching, Mueller et al., TOG 2005)."""
         here = points[self.index]
         middle = here.mean(1, keepdims=True)
-        left, _, right = np.linalg.svd(np.einsum("kni,knj->kij", self.shape, here - middle))
-        left[:, :, 2] *= np.sign(np.linalg.det(left) * np.linalg.det(right))[:, None]
-        target = np.einsum("kni,kij->knj", self.shape, left @ right) + middle
+        along, across = (self.shape[..., k, None] for k in range(2))
+        first, second = _nearest_axes((along * (here - middle)).sum(1), (across * (here - middle)).sum(1))
+        target = along * first[:, None] + across * second[:, None] + middle
         shift, uses = np.zeros_like(points), np.zeros(len(points))
         np.add.at(shift, self.index, _STIFFNESS * (target - here))
         np.add.at(uses, self.index, 1.0)
         return shift / np.maximum(uses, 1.0)[:, None]
+
+
+def _nearest_axes(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the orthonormal pairs of vectors nearest to pairs of vectors, shape (K, 3) each.
+
+    The rows of (A A^T)^(-1/2) A, where a and b are the rows of A. By arithmetic and square roots alone, which round in
+    the same way everywhere, see :func:`arcgym.anatomy.generator.relaxation.relax`.
+    """
+    aa, bb, ab = ((x * y).sum(1, keepdims=True) for x, y in ((a, a), (b, b), (a, b)))
+    area = np.sqrt(np.maximum(aa * bb - ab * ab, 1e-30))
+    scale = area * np.sqrt(aa + bb + 2.0 * area)
+    return ((bb + area) * a - ab * b) / scale, ((aa + area) * b - ab * a) / scale
 
 
 def choose_bends(points: np.ndarray, spacing: float, radius: np.ndarray, spec: ColonSpec) -> list[int]:
@@ -106,7 +119,7 @@ def make_bends(
         size = float(_arc_radius(radius[place], spec)) * (_WIDER[0] + wide**2 * (_WIDER[1] - _WIDER[0]))
         angle = _ANGLES[0] + turn * (_ANGLES[1] - _ANGLES[0])
         shapes.append(_arc_with_legs(min(size, WIDEST), angle, reach, spacing))
-    return BendTargets(index, np.array(shapes).reshape(-1, 2 * reach + 1, 3))
+    return BendTargets(index, rounded(np.array(shapes).reshape(-1, 2 * reach + 1, 2)))
 
 
 def _arc_radius(radius: np.ndarray, spec: ColonSpec) -> np.ndarray:
@@ -122,9 +135,9 @@ def _turn(points: np.ndarray, half: int) -> np.ndarray:
 
 
 def _arc_with_legs(radius: float, turn: float, reach: int, spacing: float) -> np.ndarray:
-    """Return an arc with a straight leg at either end, about its mean [m], shape (2 reach + 1, 3)."""
+    """Return an arc with a straight leg at either end, in its plane, about its mean [m], shape (2 reach + 1, 2)."""
     step, fine = spacing / 20, np.arange(-20 * reach, 20 * reach + 1) * spacing / 20
     curvature = np.where(np.abs(fine) < 0.5 * turn * radius, 1.0 / radius, 0.0)
     angle = np.cumsum(gaussian_filter1d(curvature, 0.002 / step)) * step
-    points = np.cumsum(np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1), axis=0)[::20] * step
+    points = np.cumsum(np.stack([np.cos(angle), np.sin(angle)], 1), axis=0)[::20] * step
     return points - points.mean(0)

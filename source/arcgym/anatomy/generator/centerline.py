@@ -11,7 +11,8 @@ from arcgym.anatomy.bends import acute_bends
 from arcgym.anatomy.blending import smooth_step
 from arcgym.anatomy.curve import Curve
 from arcgym.anatomy.generator.conditions import effective_segment
-from arcgym.anatomy.generator.relaxation import relax
+from arcgym.anatomy.generator.kept_courses import kept_course
+from arcgym.anatomy.generator.relaxation import MOST_BENDS, relax
 from arcgym.anatomy.generator.routes import control_points, sample_route
 from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.polyline import arc_lengths
@@ -46,11 +47,14 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
 
     Args:
         spec: Specification of the colon.
-        rng: Source of randomness.
+        rng: Source of randomness; as much is drawn of it for a kept course.
         reference: The same colon in another posture: it keeps the acute bends, and the tied segments their places.
     """
     lengths = {name: spec.segments[name].length for name in SEGMENTS}
-    route = sample_route(control_points(spec, rng), lengths, SAMPLE_SPACING)
+    controls = control_points(spec, rng)
+    if spec.course is not None:
+        return _kept_curve(spec.course, spec.posture, rng)
+    route = sample_route(controls, lengths, SAMPLE_SPACING)
     counts = [round(lengths[name] / SAMPLE_SPACING) for name in SEGMENTS]
     edge = np.repeat([lengths[name] / count for name, count in zip(SEGMENTS, counts, strict=True)], counts)
     tied = np.repeat([name in RETROPERITONEAL for name in SEGMENTS], counts)
@@ -66,7 +70,8 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
     wanted, radius, state = edge.copy(), base_radius(spec, arc), rng.bit_generator.state
     for _ in range(_LENGTH_TRIALS):
         rng.bit_generator.state = state
-        points = relax(route, edge, radius, hold, spec, rng, places)
+        drawn = rng.uniform(size=(MOST_BENDS, 2))
+        points = relax(route, edge, radius, hold, spec, drawn, places)
         points = open_bends(add_waves(_smoothed(points), spec.waviness, rng, waving), spec.min_bend_radius)
         points *= wanted.sum() / arc_lengths(points)[-1]
         arc = arc_lengths(points)
@@ -74,6 +79,14 @@ def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve 
         edge = edge * np.repeat(np.array(list(lengths.values())) / np.diff(ends, prepend=0.0), counts)
     if spec.iliac_fossa is not None:
         ends[_SIGMOID] = _height_crossing(points[:, 2], arc, spec.iliac_fossa, ends[_SIGMOID : _SIGMOID + 2])
+    return Curve(points, ends)
+
+
+def _kept_curve(course: str, posture: str, rng: np.random.Generator) -> Curve:
+    """Return a kept course, after drawing what a new one would have drawn: the rest of the colon stays the same."""
+    points, ends = kept_course(course, posture)
+    rng.uniform(size=(MOST_BENDS, 2))
+    rng.normal(size=points.shape)
     return Curve(points, ends)
 
 

@@ -26,11 +26,8 @@ from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.wall_checks import check_wall
 
 _LOGGER = logging.getLogger(__name__)
-GENERATOR_VERSION = 3
-"""The same spec and version give the same stage. Version 3 widens lumens in which a stiff head has no room."""
-
-SAME_SINCE = 2
-"""Version since which colons that had room are the same to the bit: their stages name it, those of widened ones 3."""
+GENERATOR_VERSION = 4
+"""The same spec and version give the same stage, on every processor."""
 
 POSTURE_TOLERANCE = 0.03
 """Largest relative difference of arc lengths between postures."""
@@ -55,7 +52,7 @@ def make_colon(spec: ColonSpec, folder: Path) -> ColonStage:
         ValueError: A value of the spec is impossible.
     """
     rejected = []
-    for attempt in range(spec.max_attempts):
+    for attempt in range(spec.first_attempt, spec.first_attempt + spec.max_attempts):
         try:
             drawn = draw_colon(spec, attempt)
         except AnatomyError as error:
@@ -157,7 +154,7 @@ def _stage(spec: ColonSpec, drawn: DrawnColon, attempt: int, folder: Path) -> Co
             "licence": "BSD-3-Clause",
             "seed": spec.seed,
             "attempt": attempt,
-            "generator": GENERATOR_VERSION if drawn.widened else SAME_SINCE,
+            "generator": GENERATOR_VERSION,
         }
         | ({"widened_ml": round(1e6 * drawn.widened, 1)} if drawn.widened else {}),
         contact=fitted.contact,

@@ -42,7 +42,7 @@ def fit_with_room(
 ) -> tuple[FittedColon, float]:
     """Return a colon through which the head passes: the given one where it does, else one of a widened lumen.
 
-    What decides is the contact surface, as in ``arcgym validate``; a widened colon lets the head through its wall, too.
+    It has to pass in both of what a scope may touch: the contact surface and the wall's inner layer.
 
     Args:
         surface: The colon.
@@ -57,16 +57,15 @@ def fit_with_room(
         NoRoomError: The head does not pass in a widened lumen either; says where.
         ValueError: The widened lumen gives no wall.
     """
-    found = passage_of(fitted)
-    if found.least >= HEAD_RADIUS:
+    before, passages = lumen, _passages(fitted)
+    if _least(passages) >= HEAD_RADIUS:
         return fitted, 0.0
-    before, passages = lumen, [found, passage_in_wall(fitted)]
     for spared in SPARED:
         for found in passages:
             lumen = widened(lumen, surface, found, HEAD_RADIUS + spared)
         fitted = fit_surface(surface, lesions, lumen)
-        passages = [passage_of(fitted), passage_in_wall(fitted)]
-        if min(found.least for found in passages) >= HEAD_RADIUS:
+        passages = _passages(fitted)
+        if _least(passages) >= HEAD_RADIUS:
             added = (lumen.values > 0.0).sum() - (before.values > 0.0).sum()
             return fitted, float(added) * lumen.spacing**3
     found = min(passages, key=lambda one: one.least)
@@ -74,6 +73,14 @@ def fit_with_room(
         f"a stiff head has room for {1e3 * found.least:.1f} mm at {found.tightest:.3f} m, expected"
         f" {1e3 * HEAD_RADIUS:.1f} mm, however much the lumen is widened"
     )
+
+
+def _passages(fitted: FittedColon) -> list[Passage]:
+    return [passage_of(fitted), passage_in_wall(fitted)]
+
+
+def _least(passages: Sequence[Passage]) -> float:
+    return min(found.least for found in passages)
 
 
 def widened(lumen: FieldGrid, surface: Surface, found: Passage, radius: float) -> FieldGrid:

@@ -89,6 +89,8 @@ class LumenField:
         self._tangent /= np.linalg.norm(self._tangent, axis=1, keepdims=True)
         self._bend = np.gradient(self._tangent, _CURVE_STEP, axis=0)
         self._radius = surface.lumen_radius(self._s)
+        if surface.spec.closed_cecum:
+            self._radius *= surface.dome(self._s)
         self._tree = cKDTree(self._line)
         self._chunks = _Chunks(self._line, self._s, self._radius, septum)
 

@@ -23,6 +23,7 @@ def colon_1() -> ColonSpec:
             name="colon_1",
             patient="man, 65 years: slightly redundant sigmoid with sharp angulations, descending diverticula; supine",
             seed=3,
+            course="colon_1",
             segments=segments,
             sigmoid_shape="angulated",
             acute_bends=10,
@@ -35,6 +36,7 @@ def colon_2() -> ColonSpec:
     return replace(
         colon_3(),
         name="colon_2",
+        course="colon_2",
         patient="man, 51 years: redundant transverse colon, no polyps; prone (the patient of colon_3)",
         posture="prone",
     )
@@ -48,6 +50,8 @@ def colon_3() -> ColonSpec:
             name="colon_3",
             patient="man, 51 years: redundant transverse colon, no polyps; supine (the patient of colon_2)",
             seed=3,
+            first_attempt=1,
+            course="colon_3",
             segments=segments,
             sigmoid_shape="angulated",
             acute_bends=11,
@@ -76,6 +80,7 @@ def colon_4() -> ColonSpec:
             name="colon_4",
             patient="woman, 51 years: highly redundant sigmoid and transverse colon, many sharp bends; supine",
             seed=1,
+            course="colon_4",
             segments=lengths,
             sigmoid_shape="redundant",
             transverse_shape="redundant",
@@ -98,6 +103,7 @@ def colon_5() -> ColonSpec:
             patient="man, 60 years: 16 polyps, ascending and descending diverticula, redundant sigmoid, residual stool;"
             " supine",
             seed=0,
+            course="colon_5",
             segments=segments,
             sigmoid_shape="looped",
             acute_bends=11,
@@ -127,9 +133,10 @@ def _with_lengths(**lengths: float) -> dict[str, SegmentSpec]:
 
 
 def _committed(spec: ColonSpec) -> ColonSpec:
-    """Make files of less than 5 MB, as the repository holds them all, not of 7."""
+    """Make files of less than 5 MB, as the repository holds them all, not of 7; with the cecum that they have."""
     return replace(
         spec,
+        closed_cecum=False,
         visual_refinements=2,
         mucosa=replace(spec.mucosa, width=512),
     )

@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from arcgym.anatomy.generator.acute_bends import choose_bends, make_bends
+from arcgym.anatomy.generator.rounding import rounded
 from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.polyline import restore_lengths
 
@@ -28,11 +29,14 @@ _CANAL_POINTS = 5
 _LOOP_GAP = 0.0075
 """Gap that relaxation leaves between the walls of two loops [m]; waves of the course take up part of it."""
 
-_MOST_BENDS = 30
+MOST_BENDS = 30
 """Largest number of acute bends."""
 
 _STIFFER = 0.006
 """Share of every bend that is opened in each iteration."""
+
+_EDGE_STEP = 1e-9
+"""What lengths of edges are rounded to [m]: there are hundreds of them, and they add up."""
 
 _NEIGHBOR_AGE = 5
 """Iterations for which near points of other loops are kept in a list."""
@@ -47,7 +51,7 @@ def relax(
     radius: np.ndarray,
     hold: np.ndarray,
     spec: ColonSpec,
-    rng: np.random.Generator,
+    drawn: np.ndarray,
     bends: list[int] | None = None,
 ) -> np.ndarray:
     """Move the points until edges have their lengths, bends are as wanted and loops are apart.
@@ -55,21 +59,26 @@ def relax(
     Every constraint moves points directly (Mueller et al., JVCIR 2007); the pull back to the course is strong on
     retroperitoneal segments and weak on those that hang on a mesentery. Acute bends not given are chosen as they form.
 
+    Hundreds of rounds of points that push each other amplify a difference in the last digit to a millimetre. So that a
+    spec gives the same course on every processor, what they begin with is rounded, and they use nothing but
+    additions, multiplications, divisions and square roots, which IEEE 754 defines to the bit, in a fixed order.
+
     Args:
         route: Course [m], shape (n, 3).
         edge: Wanted distances of its points [m], shape (n - 1,).
         radius: Lumen radius [m], shape (n,).
         hold: Share of the way back to the course in each iteration, shape (n,).
         spec: Specification of the colon.
-        rng: Source of the bends' radii and angles.
+        drawn: Random numbers from 0 to 1 for the bends' radii and angles, shape (:data:`MOST_BENDS`, 2).
         bends: Points that become acute bends; None chooses those that turn most.
     """
+    route, radius, edge = rounded(route), rounded(radius), rounded(edge, _EDGE_STEP)
     points, arc = route.copy(), np.r_[0.0, np.cumsum(edge)]
     need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + max(_LOOP_GAP, spec.clearance)
     other_loop, listed = np.abs(arc[:, None] - arc[None]) > 1.9 * need, (need + _NEIGHBOR_REACH) ** 2
     sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
     canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
-    made, drawn = None, rng.uniform(size=(_MOST_BENDS, 2))
+    made = None
     for k in range(_ITERATIONS):
         if spec.acute_bends and k in _CHOOSING:
             spacing = float(edge.mean())

@@ -161,6 +161,13 @@ class ColonSpec:
     of different grids cannot be in one batch."""
     min_lumen_radius: float = 0.009
     """Least distance from the centreline to folds [m]; lets a 13 mm scope through everywhere."""
+    closed_cecum: bool = True
+    """Whether the dome closes the caecum's end all through. If not, a ball stays open round the end of the centreline,
+    9 to 24 mm deep, as in the five patients, on whose start states and results it would bear to close it."""
+    course: str | None = None
+    """A kept course, a key of :data:`arcgym.anatomy.generator.kept_courses.KEPT_COURSES`: those of the five patients,
+    which were relaxed by a version that rounded otherwise on every processor. None draws one, as the fields above ask.
+    """
     head_room: bool = True
     """Whether a lumen is widened where a scope's stiff head has no room at rest. If not, the scope has to push the wall
     apart, as in the patients of the robustness variants ``collapsed``."""
@@ -168,6 +175,8 @@ class ColonSpec:
     """Tissue of the wall."""
     visual_refinements: int = 2
     """How often triangles on lesions are split for the fine surface. 2 makes smaller files of many lesions."""
+    first_attempt: int = 0
+    """Number of the first draw from the seed, as a stage names the one it is of. Change it to skip rejected ones."""
     max_attempts: int = 40
     """How many draws from the seed are tried before the spec is given up; most are rejected by their course in 1 s."""
 

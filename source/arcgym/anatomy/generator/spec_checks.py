@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from arcgym.anatomy.generator.conditions import check_conditions
 from arcgym.anatomy.generator.courses import SIGMOID_SHAPES, TRANSVERSE_SHAPES
+from arcgym.anatomy.generator.kept_courses import KEPT_COURSES
 from arcgym.anatomy.segments import SEGMENTS
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ _RANGES = {
     "grid.visual": (1, 24),
     "min_lumen_radius": (0.004, 0.03),
     "visual_refinements": (0, 4),
+    "first_attempt": (0, 1000),
     "max_attempts": (1, 100),
     "mucosa.width": (64, 4096),
     "mucosa.paleness": (0.0, 1.0),
@@ -87,6 +89,8 @@ def check_spec(spec: ColonSpec) -> None:
     _check_choice("posture", spec.posture, POSTURES)
     check_conditions(spec)
     _check_choice("sigmoid_shape", spec.sigmoid_shape, SIGMOID_SHAPES)
+    if spec.course is not None:
+        _check_choice("course", spec.course, KEPT_COURSES)
     _check_choice("transverse_shape", spec.transverse_shape, TRANSVERSE_SHAPES)
     if not spec.name or "/" in spec.name:
         raise ValueError(

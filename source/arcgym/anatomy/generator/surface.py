@@ -72,6 +72,11 @@ class Surface:
         """Return the mean radius between folds at ``s`` [m], without the dome of the caecum."""
         return np.interp(s, self.curve.s, self.mean_radius)
 
+    def dome(self, s: np.ndarray) -> np.ndarray:
+        """Return the share of the radius that the dome of the caecum leaves, a quarter of an ellipse."""
+        close = np.clip((self.curve.length - s) / DOME_LENGTH, 0.0, 1.0)
+        return np.sqrt(close * (2.0 - close))
+
     def radius(self, s: np.ndarray, theta: np.ndarray, crease: np.ndarray | None = None) -> np.ndarray:
         """Return the distance from centreline to wall [m].
 
@@ -89,8 +94,7 @@ class Surface:
             folds = folds - valve_height(valve, s, theta)
         radius = mean + (folds if crease is None else (1.0 - crease.ravel()) * folds)
         least = np.minimum(self.spec.min_lumen_radius, mean)
-        close = np.clip((self.curve.length - s) / DOME_LENGTH, 0.0, 1.0)
-        return (np.maximum(radius, least) * np.sqrt(close * (2.0 - close))).reshape(shape)
+        return (np.maximum(radius, least) * self.dome(s)).reshape(shape)
 
     def sector(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return between which taeniae an angle lies (0 to 2), and the angle from the middle between them [rad]."""
