@@ -13,6 +13,7 @@ import pytest
 from tiny import write_tiny_colon
 
 from arcgym.anatomy.generator.patients import PATIENTS
+from arcgym.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -30,6 +31,19 @@ def test_one_good_and_one_missing_stage(tmp_path: Path) -> None:
     assert [(stage["path"], stage["ok"]) for stage in report] == [(str(good), True), (str(missing), False)]
     assert set(report[0]["checks"][0]) == {"name", "value", "bound", "ok"}
     assert "no such file" in report[1]["checks"][0]["name"]
+
+
+def test_a_folder_stands_for_the_stages_in_its_folders(tmp_path: Path, capsys) -> None:
+    for name in "ab":
+        (tmp_path / name).mkdir()
+        write_tiny_colon(tmp_path / name)
+    assert main(["validate", str(tmp_path), "--no-physics", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out.splitlines()[-1])["stages"]
+    assert [stage["path"] for stage in report] == [str(tmp_path / name / "colon.usda") for name in "ab"]
+    (tmp_path / "a" / "empty").mkdir()
+    with pytest.raises(SystemExit):
+        main(["validate", str(tmp_path / "a" / "empty")])
+    assert "no stages in" in capsys.readouterr().err
 
 
 @pytest.mark.slow

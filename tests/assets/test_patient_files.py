@@ -4,13 +4,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from arcgym.assets import patient_files
-from arcgym.assets.patient_files import find_stages, named_colon, register_population
+from arcgym.assets.patient_files import find_stages, named_colon
+from arcgym.utils import populations
+from arcgym.utils.populations import register_population
 
 
 @pytest.fixture
@@ -34,7 +37,7 @@ def population(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[str, int 
         asked.append((split, count))
         return [Path(f"{split}_{k}.usda") for k in range(3)][:count]
 
-    monkeypatch.setattr(patient_files, "_POPULATIONS", {})
+    monkeypatch.setattr(populations, "POPULATIONS", {})
     register_population("people", resolve)
     yield asked
 
@@ -94,7 +97,7 @@ def test_single_patients_of_a_population_are_made_together(folder: Path, monkeyp
         asked.append(split)
         return [Path(f"{seed}.usda") for seed in split.split(",")]
 
-    monkeypatch.setattr(patient_files, "_POPULATIONS", {"people": resolve})
+    monkeypatch.setattr(populations, "POPULATIONS", {"people": resolve})
     stage = folder / "b/colon.usdc"
     assert find_stages(["people:7", "people:9", str(stage), "people:8"]) == [
         Path("7.usda"),
@@ -110,6 +113,19 @@ def test_a_name_is_registered_once() -> None:
     for name in ("people", "c"):
         with pytest.raises(ValueError, match=f"cannot be called '{name}'"):
             register_population(name, "module:function")
+
+
+def test_a_split_that_a_resolver_looks_up_in_vain_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(populations, "POPULATIONS", {})
+    register_population("mine", lambda split, count: {"train": []}[split])
+    with pytest.raises(ValueError, match="Population 'mine' has no split 'tset'"):
+        find_stages("mine:tset")
+
+
+def test_registering_a_population_loads_no_torch() -> None:
+    """A package that does so when tasks are listed keeps the list fast."""
+    code = "import sys, arcgym.utils.populations; sys.exit('torch' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 0
 
 
 def test_two_hundred_patients_by_seed_are_no_file_name(population: list[tuple[str, int | None]]) -> None:

@@ -90,6 +90,7 @@ def nothing_is_built(tmp_path, monkeypatch):
         (["record", *TASK, "--agent", "exprt"], "--agent is 'exprt'. Did you mean 'expert'"),
         (["replay", "."], ". is a folder, expected a file ending in .hdf5."),
         (["preview", "colon_9", "page.png"], "no such file. Existing stages in"),
+        (["preview", "colons/a/colon.usda", "page.png"], "ct_2; nor is it in the working folder, "),
         (["snapshots", *TASK, "--device", "tpu"], "--device is 'tpu', expected cpu, cuda or cuda:<n>"),
         (["teleop", *TASK, "--patient", "colon_11"], "--patient: There is no colon 'colon_11'"),
         ([*ZERO, "--steps", "0"], "--steps: 0 is too small, expected 1 or more"),

@@ -47,7 +47,8 @@ def a_metric(page: ModuleType) -> None:
 
 
 def an_event(page: ModuleType) -> None:
-    assert page.env.scene["camera"]._looks.light_gain.numpy().tolist() == [0.5, 0.5]
+    first, second = page.env.scene["camera"]._looks.light_gain.numpy().tolist()
+    assert 0.4 <= first < 0.6 and 0.4 <= second < 0.6 and first != second
 
 
 def a_curriculum(page: ModuleType) -> None:
@@ -95,6 +96,14 @@ def a_picture(page: ModuleType) -> None:
     assert page.env.render().shape == (4 * 84, 4 * 84, 3)
 
 
+def a_task(page: ModuleType) -> None:
+    from arcgym.utils.registry import cfg_keys, load_cfg_from_registry
+
+    agent = load_cfg_from_registry("My-Rectum-Play", "rsl_rl_careful_cfg_entry_point")
+    assert isinstance(agent.algorithm, page.CarefulPpoCfg) and agent.experiment_name == "my_rectum_careful"
+    assert "rsl_rl_sac_cfg_entry_point" in cfg_keys("My-Rectum")
+
+
 WALK: dict[str, Callable[[ModuleType], None]] = {
     "A reward": a_reward,
     "An observation": an_observation,
@@ -109,6 +118,7 @@ WALK: dict[str, Callable[[ModuleType], None]] = {
     "A drive": a_drive,
     "An action": an_action,
     "A colon": a_colon,
+    "A task": a_task,
     "A picture": a_picture,
     "An algorithm": an_algorithm,  # the last: it steps the environment on
 }

@@ -237,6 +237,11 @@ def test_the_expert_withdraws_and_sees_mucosa(tmp_path: Path, tiny_colon_path: P
     assert 0.4 < row["coverage"] <= 1.0 and row["polyps"] == 0.0
 
 
+def test_trials_of_ones_own_are_no_suites(tmp_path: Path, conditions: Path) -> None:
+    evaluate(tmp_path / "run", conditions)
+    assert read_run(tmp_path / "run")["suite"] == "five_v1"
+
+
 def test_variants_are_tasks_of_their_own(tmp_path: Path, conditions: Path) -> None:
     """A random agent does not look: its trials are the same with a blurred picture, and others with more friction."""
     words = ["--tasks", "ARC-Rectum-Capsule,ARC-Rectum-Capsule:blur_2,ARC-Rectum-Capsule:sticky_3"]

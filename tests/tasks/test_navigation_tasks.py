@@ -12,13 +12,14 @@ import sys
 import gymnasium
 import pytest
 
+from arcgym.cli.main import main
 from arcgym.envs import mdp
 from arcgym.rl.params import restore
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.configclass import configclass, to_dict, validate
 from arcgym.utils.hydra import apply_overrides
-from arcgym.utils.registry import list_tasks, load_cfg_from_registry
-from arcgym_tasks.navigation import register_robot
+from arcgym.utils.registry import cfg_keys, list_tasks, load_cfg_from_registry
+from arcgym_tasks.navigation import register_navigation_task, register_robot
 from arcgym_tasks.navigation.config.proximal import ProximalEnvCfg
 from arcgym_tasks.navigation.robustness import NONE, VARIANTS
 
@@ -129,6 +130,26 @@ def test_one_call_registers_a_robot_of_ones_own() -> None:
     finally:
         for task in tasks:
             gymnasium.registry.pop(task)
+
+
+def test_a_task_of_ones_own_has_every_agent_each_with_a_folder() -> None:
+    tasks = register_navigation_task(
+        "My-Task", "arcgym_tasks.navigation.config.capsule:CapsuleEnvCfg", segment="rectum"
+    )
+    try:
+        assert tasks == ["My-Task", "My-Task-Play"] and cfg_keys("My-Task") == cfg_keys("ARC-Rectum-Capsule")
+        cfg = load_cfg_from_registry("My-Task-Play", "env_cfg_entry_point")
+        assert (cfg.segment, cfg.scene.num_envs) == ("rectum", 4)
+        agents = [load_cfg_from_registry("My-Task", f"rsl_rl_{key}cfg_entry_point") for key in ("", "sac_")]
+        assert [agent.experiment_name for agent in agents] == ["my_task", "my_task_sac"]
+    finally:
+        for task in tasks:
+            gymnasium.registry.pop(task)
+
+
+def test_the_list_of_configurations_cuts_no_name(capsys) -> None:
+    assert main(["list", "Rectum-Capsule", "--cfgs"]) == 0
+    assert "arcgym_tasks.navigation.agents.rsl_rl_cfg:NavigationPPORunnerCfg(" in capsys.readouterr().out
 
 
 def test_registering_a_module_that_is_not_there_costs_nothing_until_it_is_used() -> None:

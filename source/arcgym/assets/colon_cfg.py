@@ -27,7 +27,7 @@ class ColonCfg:
 
     Several patients in one batch: a list of stages, a folder of folders with a ``colon.usda`` each, such as the
     importer's output, or ``population:train``, a split of a population
-    (:func:`arcgym.assets.patient_files.register_population`), ``population:20000`` for one of its patients by seed. All
+    (:func:`arcgym.utils.populations.register_population`), ``population:20000`` for one of its patients by seed. All
     need walls of the same grid. World ``w`` begins with patient ``w`` modulo their number."""
     num_patients: int | None = None
     """How many patients to take, from the first; ``None`` takes all. Set it for a split that has more than are wanted:

@@ -4,36 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from arcgym.utils.paths import assets_dir, resolve_asset
-from arcgym.utils.string import did_you_mean, resolve_callable
-
-Resolver = Callable[[str, int | None], Sequence[Path]]
-"""Returns the stages of the first so many patients of a split, of all for None, and makes those that are missing."""
+from arcgym.utils.populations import population_stages
+from arcgym.utils.string import did_you_mean
 
 STAGE_NAMES = ("colon.usda", "colon.usdc", "colon.usd", "colon.usdz")
 """Names of stage files in the folders of patients, the first that is there."""
-
-_POPULATIONS: dict[str, str | Resolver] = {"population": "arcgym.anatomy.generator.stored_patients:population_stages"}
-
-
-def register_population(name: str, resolver: str | Resolver) -> None:
-    """Let ``name:split`` stand for stages, in ``env.scene.colon.usd_path``.
-
-    Args:
-        name: Name before the colon, of at least two letters.
-        resolver: Function of a split's name and a number of patients, see :data:`Resolver`, or its name
-            ``"module:function"``, which is imported when stages are asked for. It raises :class:`ValueError` for a
-            split that it does not have.
-
-    Raises:
-        ValueError: If the name is taken or too short.
-    """
-    if name in _POPULATIONS or len(name) < 2:
-        raise ValueError(f"A population cannot be called {name!r}: it is taken or shorter than two letters.")
-    _POPULATIONS[name] = resolver
 
 
 def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list[Path]:
@@ -97,7 +76,7 @@ def _joined(entries: list[str]) -> list[str]:
 def _stages_of(entry: str, count: int | None) -> Sequence[Path]:
     population, colon, split = entry.partition(":")
     if colon and len(population) > 1 and not _exists(entry):
-        return _of_population(population, split, count)
+        return population_stages(population, split, count)
     path = resolve_asset(entry)
     return _of_folder(path) if path.is_dir() else [path]
 
@@ -108,13 +87,6 @@ def _exists(path: str) -> bool:
         return Path(path).exists()
     except OSError:
         return False
-
-
-def _of_population(name: str, split: str, count: int | None) -> Sequence[Path]:
-    if name not in _POPULATIONS:
-        raise ValueError(f"There is no population {name!r} ({name}:{split}). {did_you_mean(name, _POPULATIONS)}")
-    resolver = _POPULATIONS[name]
-    return (resolve_callable(resolver) if isinstance(resolver, str) else resolver)(split, count)
 
 
 def _of_folder(folder: Path) -> Sequence[Path]:

@@ -30,6 +30,12 @@ from arcgym.evaluation.trials import Conditions
 
 TAKES_OVERRIDES = True
 
+PREFIX = "ARC-"
+"""How the names of tasks in suites begin; they end with the robot."""
+
+USUAL_SUITE = "paper"
+"""Suite where none is named. With a condition file alone the record has its name instead: the trials are no suite's."""
+
 REFERENCE_AGENTS = ("zero", "random", "expert")
 """Agents that need no checkpoint."""
 
@@ -40,7 +46,7 @@ class EvaluateArguments:
 
     agent: str = argument("checkpoint, or several separated by commas, or zero, random, expert")
     out: str = argument("folder of the results")
-    suite: str = argument("suite of tasks (default: paper)", "paper")
+    suite: str | None = argument("suite of tasks (default: paper)", None)
     tasks: str | None = argument("tasks of the suite, separated by commas (default: all of the robot)", None)
     robot: str | None = argument("robot (default: the one that the checkpoint was trained with)", None)
     conditions: str | None = argument("condition file (default: the suite's)", None)
@@ -65,7 +71,7 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.evaluation.trials import read_conditions
 
     args = read_fields(EvaluateArguments, namespace)
-    suite = _choose(args.suite, read_suites(), "suite")
+    suite = _choose(args.suite or USUAL_SUITE, read_suites(), "suite")
     agents = tuple(args.agent.split(","))
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
     _check_tasks(tasks)
@@ -76,9 +82,8 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.evaluation.options import EvaluationOptions
 
     overrides = (*suite.overrides, *args.overrides)
-    options = EvaluationOptions(
-        agents, args.suite, overrides, args.num_envs, args.num_patients, args.device, args.share
-    )
+    name = args.suite or (conditions.name if args.conditions else USUAL_SUITE)
+    options = EvaluationOptions(agents, name, overrides, args.num_envs, args.num_patients, args.device, args.share)
 
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
         return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
@@ -146,7 +151,10 @@ def _robot_of(agent: str) -> str:
     params = read_params(_checkpoint(agent).parent)
     if params is None:
         raise UsageError(f"{agent} has no params/ beside it, which names its task: give --robot or --tasks.")
-    return params.task.removesuffix("-Play").split("-")[-1]
+    task = params.task.removesuffix("-Play")
+    if not task.startswith(PREFIX):
+        raise UsageError(f"{agent} was trained in {task}, which no suite has: give --tasks {task}, or --robot.")
+    return task.split("-")[-1]
 
 
 def _checkpoint(agent: str) -> Path:

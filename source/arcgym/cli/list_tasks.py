@@ -6,6 +6,10 @@
 from __future__ import annotations
 
 import argparse
+import sys
+
+WIDE = 1000
+"""Width of the table where no terminal cuts it, as in a file [characters]."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,14 +22,15 @@ def run(args: argparse.Namespace) -> None:
     """Print a table of the tasks whose name contains the keyword."""
     import gymnasium as gym
     from rich.console import Console
-    from rich.table import Table
+    from rich.table import Column, Table
 
     from arcgym.utils.registry import list_tasks
 
     keys = ("env_cfg_entry_point", "rsl_rl_cfg_entry_point") if args.cfgs else ()
-    table = Table("Task", *(["Environment configuration", "Agent configuration"] if args.cfgs else []))
+    heads = ("Task", *(("Environment configuration", "Agent configuration") if args.cfgs else ()))
+    table = Table(*(Column(head, overflow="fold") for head in heads))
     names = [name for name in list_tasks(prefix="") if args.keyword.lower() in name.lower()]
     for name in names:
         table.add_row(name, *(str(gym.registry[name].kwargs.get(key, "-")) for key in keys))
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else WIDE).print(table)
     print(f"{len(names)} tasks")

@@ -19,5 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(namespace: argparse.Namespace) -> None:
     """Write the page and say where it is."""
     from arcgym.evaluation.page import write_page
+    from arcgym.rl.agent_checks import check_installed
 
+    check_installed("matplotlib", "the page", "study")
     print(f"page: {write_page(Path(namespace.folder))}")

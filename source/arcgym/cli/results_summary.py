@@ -32,8 +32,11 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.evaluation.results import find_results
     from arcgym.evaluation.results_keep import keep
     from arcgym.evaluation.results_page import read_sections, results_page
+    from arcgym.rl.agent_checks import check_installed
     from arcgym.rl.run_folder import write_whole
 
+    if namespace.figure:
+        check_installed("matplotlib", "--figure", "study")
     results, left_out = find_results([Path(folder) for folder in namespace.folders])
     for path, reasons in left_out.items():
         more = f"; and {len(reasons) - SHOWN} more" if len(reasons) > SHOWN else ""

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from arcgym.cli.arguments import positive
 from arcgym.cli.expert_reach import ROBOTS, expert_reach
+from arcgym.utils.errors import UsageError
 from arcgym.utils.paths import resolve_stage
 
 if TYPE_CHECKING:
@@ -28,7 +29,9 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the stages and how far to check them."""
-    parser.add_argument("stage", type=Path, nargs="+", help="stage files (colon.usda), or names (colon_1)")
+    parser.add_argument(
+        "stage", type=Path, nargs="+", help="stage files, names (colon_1), folders, splits (population:test)"
+    )
     parser.add_argument("--json", action="store_true", help="print all figures as JSON in the last line")
     parser.add_argument(
         "--experts", nargs="*", choices=ROBOTS, metavar="ROBOT", help=f"drive experts up: {', '.join(ROBOTS)} (all)"
@@ -42,10 +45,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Check the stages and return 1 if any check fails."""
     robots = args.experts or (ROBOTS if args.experts is not None else ())
-    reports = [check_stage(resolve_stage(path), not args.no_physics, robots, args.expert_time) for path in args.stage]
+    paths = [path for name in args.stage for path in stages_of(name)]
+    reports = [check_stage(path, not args.no_physics, robots, args.expert_time) for path in paths]
     if args.json:
         print(json.dumps({"stages": reports}, allow_nan=False))
     return 0 if all(report["ok"] for report in reports) else 1
+
+
+def stages_of(name: Path) -> list[Path]:
+    """Return the stages that a word means: a file, one that comes along, those of a folder or of a population.
+
+    Raises:
+        UsageError: A folder has no stages, or there is no such population or split.
+    """
+    path = resolve_stage(name)
+    if path.is_file() or not (path.is_dir() or ":" in str(name)):
+        return [path]
+    from arcgym.assets.patient_files import find_stages
+
+    try:
+        return find_stages(str(path) if path.is_dir() else str(name))
+    except ValueError as error:
+        raise UsageError(str(error)) from error
 
 
 def check_stage(path: Path, physics: bool, robots: Sequence[str] = (), expert_time: float = 120.0) -> dict[str, Any]:

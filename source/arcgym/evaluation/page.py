@@ -21,7 +21,7 @@ from arcgym.evaluation.video_choice import chosen_rows, video_path
 
 STYLE = """body{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}
 table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.25em .6em;text-align:right}
-td:first-child,th:first-child,.run td{text-align:left}td{white-space:nowrap}.run td{white-space:normal;
+td:first-child,th:first-child,.run td,.run th{text-align:left}td{white-space:nowrap}.run td{white-space:normal;
 overflow-wrap:anywhere}.run td:first-child{overflow-wrap:normal}img{max-width:100%}.scroll{overflow-x:auto}
 .films{display:flex;flex-wrap:wrap}figure{margin:.5em;width:20em}video{width:100%}"""
 
@@ -109,8 +109,15 @@ def _agent(run: dict[str, Any]) -> str:
 
 def _plain(value: Any) -> str:
     if isinstance(value, dict):
-        return ", ".join(f"{name} {text}" for name, text in value.items())
-    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+        nested = any(isinstance(of, dict) for of in value.values())
+        return ("; " if nested else ", ").join(_pair(name, of) for name, of in value.items()) or "none"
+    if isinstance(value, list):
+        return ", ".join(map(_plain, value)) or "none"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _pair(name: str, value: Any) -> str:
+    return f"{name}{':' if isinstance(value, dict) else ''} {_plain(value)}"
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]], kind: str = "scroll") -> str:
@@ -164,7 +171,8 @@ def _distribution_figure(rows: Sequence[dict[str, Any]]) -> Any:
     for axes, name in zip(np.atleast_1d(figure.subplots(1, len(names), sharey=True)), names, strict=True):
         for task in tasks:
             values = np.sort([row[name] for row in rows if row["task"] == task])
-            axes.step(values, 100.0 * np.arange(1, len(values) + 1) / len(values), where="post", label=task, **style)
+            shares = 100.0 * np.arange(len(values) + 1) / len(values)
+            axes.step(values[[0, *range(len(values))]], shares, where="post", label=task, **style)
         axes.set(xlabel=LABELS.get(name, name), ylim=(0, 105))
         axes.locator_params(axis="x", nbins=4)
     figure.axes[0].set_ylabel("trials at or below [%]")

@@ -56,7 +56,7 @@ def cache_dir() -> Path:
 
 
 def resolve_asset(path: str | Path) -> Path:
-    """Return `path` itself where it exists or is absolute, else the path inside :func:`assets_dir`."""
+    """Return `path` itself where it exists, from the working folder, or is absolute, else inside :func:`assets_dir`."""
     given = Path(path).expanduser()
     return given if given.is_absolute() or given.exists() else assets_dir() / given
 

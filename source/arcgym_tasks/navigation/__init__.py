@@ -6,6 +6,6 @@
 from __future__ import annotations
 
 from arcgym_tasks.navigation import config  # noqa: F401
-from arcgym_tasks.navigation.registration import register_robot
+from arcgym_tasks.navigation.registration import register_navigation_task, register_robot
 
-__all__ = ["register_robot"]
+__all__ = ["register_navigation_task", "register_robot"]

@@ -75,16 +75,41 @@ def register_robot(
     tasks = []
     ways = {**{name.capitalize(): {"segment": name} for name in segments}, **journeys}
     for name, fields in ways.items():
-        task = f"ARC-{name}-{robot}"
-        entries: dict[str, Any] = {
-            key: CfgEntry(cfg, (("experiment_name", _experiment(task, key)),))
-            for key, cfg in {**AGENTS, **(agents or {})}.items()
-        }
-        for variant, play in (("", False), ("-Play", True)):
-            entry: Any = CfgEntry(env_cfg, tuple(fields.items()), play)
-            register_task(task + variant, env_cfg_entry_point=entry, **entries)
-            tasks.append(task + variant)
+        tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **fields)
     return tasks
+
+
+def register_navigation_task(
+    task: str,
+    env_cfg: str | Callable[[], Any],
+    *,
+    agents: Mapping[str, str | Callable[[], Any]] | None = None,
+    **fields: Any,
+) -> list[str]:
+    """Register a task and its variant ``-Play``, with every agent, each of which logs to a folder of its own.
+
+    Args:
+        task: Name, such as ``My-Rectum``.
+        env_cfg: Subclass of :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg`, or its name
+            ``"module:Class"``.
+        agents: Agent configurations by registry key, added to
+            :data:`arcgym_tasks.navigation.agents.AGENTS` or in their place.
+        fields: Fields of the configuration that the task sets, such as ``segment="rectum"``.
+
+    Returns:
+        Names of the two.
+
+    Raises:
+        ValueError: If a task is registered already.
+    """
+    entries: dict[str, Any] = {
+        key: CfgEntry(cfg, (("experiment_name", _experiment(task, key)),))
+        for key, cfg in {**AGENTS, **(agents or {})}.items()
+    }
+    for variant, play in (("", False), ("-Play", True)):
+        entry: Any = CfgEntry(env_cfg, tuple(fields.items()), play)
+        register_task(task + variant, env_cfg_entry_point=entry, **entries)
+    return [task, f"{task}-Play"]
 
 
 def _experiment(task: str, key: str) -> str:

@@ -140,12 +140,14 @@ class _Reader:
 
 def _list_stages(path: Path) -> str:
     """List the stages closest above the missing file, else those that come with ARCGym."""
+    elsewhere = f"; nor is it in the working folder, {Path.cwd()}" if path.is_relative_to(assets_dir()) else ""
     for folder in list(path.parents)[:2]:
         stages = sorted([*folder.glob("colon.usda"), *folder.glob("*/colon.usda")])[:10]
         if stages:
-            return f"Existing stages in {folder}: {', '.join(str(stage.relative_to(folder)) for stage in stages)}"
+            names = ", ".join(str(stage.relative_to(folder)) for stage in stages)
+            return f"Existing stages in {folder}: {names}{elsewhere}"
     shipped = sorted(stage.parent.name for stage in assets_dir().glob("*/colon.usda"))
-    return f"Stages that come with ARCGym: {', '.join(shipped)}"
+    return f"Stages that come with ARCGym: {', '.join(shipped)}{elsewhere}"
 
 
 def _read_wall(reader: _Reader) -> WallMesh:
