@@ -83,6 +83,13 @@ def test_all_that_may_make_a_difference_beside_the_agents_is_told(tmp_path: Path
     assert notes(first, first) == []
 
 
+def test_the_table_says_which_is_subtracted(tmp_path: Path, capsys) -> None:
+    few = slice(0, 3)
+    first, second = result(tmp_path / "a", trials=few), result(tmp_path / "b", trials=few)
+    assert main(["results", "compare", str(first), str(second)]) == 0
+    assert capsys.readouterr().out.startswith(f"{second} minus {first}, the same trials:\n\n| task |")
+
+
 def test_other_trials_cannot_be_compared(tmp_path: Path) -> None:
     other = result(tmp_path / "b", run={**RUN, "conditions_sha256": "other"})
     with pytest.raises(UsageError, match="conditions_sha256"):
@@ -346,6 +353,17 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert "nameless: trial 0 of ARC-Rectum-Magnetic succeeded with a progress of 0.5" in out
     assert "lacks by, sees, trained_on, transitions, gpu_hours and has the unknown cost" in out
     assert page.read_text() == text
+
+
+def test_a_leaderboard_needs_no_page_but_a_page_needs_marks(tmp_path: Path, capsys) -> None:
+    (result(tmp_path / "all" / "good") / "entry.yaml").write_text(ENTRY)
+    words, page = ["results", "leaderboard", str(tmp_path / "all"), "--page"], tmp_path / "page.md"
+    assert main([*words, str(page)]) == main([*words, str(page)]) == 0
+    assert page.read_text().startswith("# Leaderboard") and page.read_text().count("## paper") == 1
+    page.write_text("# Mine\n")
+    with pytest.raises(SystemExit):
+        main([*words, str(page)])
+    assert "page.md has no place for the tables; expected the lines '<!-- entries -->'" in capsys.readouterr().err
 
 
 def test_an_entry_that_saw_more_than_it_says_is_refused(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.evaluation.compare import compare, notes, to_markdown
 
     first, second = Path(namespace.first), Path(namespace.second)
-    print(to_markdown(compare(first, second)))
+    table = to_markdown(compare(first, second))
+    print(f"{second} minus {first}, the same trials:\n\n{table}")
     for line in notes(first, second):
         print(line)

@@ -18,7 +18,7 @@ from pathlib import Path
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions")
-    parser.add_argument("--page", help="page to write the tables into, between its two marks")
+    parser.add_argument("--page", help="page to write the tables into, between its two marks; made if not there")
 
 
 def run(namespace: argparse.Namespace) -> int:

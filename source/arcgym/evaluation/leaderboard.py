@@ -141,8 +141,14 @@ def entries_table(folders: Sequence[Path]) -> str:
 
 
 def write_leaderboard(page: Path, folders: Sequence[Path]) -> None:
-    """Write the tables into a page, between its two marks."""
-    text = page.read_text()
+    """Write the tables into a page, between its two marks; a page that is not there is made.
+
+    Raises:
+        UsageError: The page has no marks.
+    """
+    text = page.read_text() if page.exists() else f"# Leaderboard\n\n{BEGIN}\n{END}\n"
+    if BEGIN not in text or END not in text:
+        raise UsageError(f"{page} has no place for the tables; expected the lines '{BEGIN}' and '{END}' in it.")
     page.write_text(f"{text[: text.index(BEGIN) + len(BEGIN)]}\n{entries_table(folders)}{text[text.index(END) :]}")
 
 
