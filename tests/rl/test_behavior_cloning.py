@@ -12,6 +12,7 @@ from small_agents import actor_cfg, runner_cfg
 from arcgym.managers import Episode, save_episode
 from arcgym.rl import OnPolicyRunner
 from arcgym.rl.agent_cfgs.imitation import RslRlBehaviorCloningAlgorithmCfg, RslRlBehaviorCloningRunnerCfg
+from arcgym.rl.algorithms.behavior_cloning import deviations
 from arcgym.rl.behavior_cloning_runner import BehaviorCloningRunner
 from arcgym.rl.demonstrations import read_demonstrations
 from arcgym.rl.expert_demonstrations import ask_expert
@@ -83,6 +84,31 @@ def test_loss_is_the_mean_square_to_the_clipped_action(tmp_path):
     alg.actor.mlp[-1].bias.data.zero_()
     obs = SteerToDot(1).get_observations()
     assert float(alg.step_on(obs, torch.tensor([[3.0, -0.5]]))) == pytest.approx(0.625)
+
+
+def test_loss_in_deviations_counts_a_small_action_as_much_as_a_large_one(tmp_path):
+    """A policy that answers zero; recorded are (1, 0.1) and (-1, -0.1), deviations 1 and 0.1: each action's loss is 1.
+
+    For (0.5, 0.2) it is (0.25 + 4) / 2. In raw actions the first would be (1 + 0.01) / 2.
+    """
+    shown = np.array([[1.0, 0.1], [-1.0, -0.1]], dtype=np.float32)
+    write_episode(tmp_path, 0, actions=shown, **{"obs/policy": SteerToDot(2).observe()["policy"].numpy()})
+    obs = SteerToDot(1).get_observations()
+    for action, expected in (([1.0, 0.1], 1.0), ([0.5, 0.2], 2.125)):
+        alg = make_runner(tmp_path, log_dir=str(tmp_path / "run"), action_units="deviation").alg
+        alg.actor.mlp[-1].weight.data.zero_()
+        alg.actor.mlp[-1].bias.data.zero_()
+        assert float(alg.step_on(obs, torch.tensor([action]))) == pytest.approx(expected)
+
+
+def test_an_action_that_is_never_used_has_the_least_unit():
+    actions = torch.tensor([[0.0, 3.0], [0.0, -1.0]])
+    torch.testing.assert_close(deviations(actions), torch.tensor([0.02, 1.0]))
+
+
+def test_unknown_units_are_named():
+    with pytest.raises(ValueError, match="action_units is .std.*deviation, raw"):
+        RslRlBehaviorCloningAlgorithmCfg(action_units="std").validate_config()
 
 
 @one_thread()

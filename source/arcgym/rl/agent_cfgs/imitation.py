@@ -10,7 +10,7 @@ from typing import Any
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
 from arcgym.rl.runner_cfg import GaussianDistributionCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
-from arcgym.utils.validation import require_at_least, require_non_negative, require_positive
+from arcgym.utils.validation import require, require_at_least, require_non_negative, require_positive
 
 
 @configclass
@@ -50,6 +50,12 @@ class RslRlBehaviorCloningAlgorithmCfg:
     max_grad_norm: float = 1.0
     """Gradient clipping by norm."""
 
+    action_units: str = "raw"
+    """What a difference of actions is counted in. ``raw``: as it is. ``deviation``: each action in its own standard
+    deviation over the demonstrations, so that slow motions count as much as fast turns (a withdrawal goes back with a
+    tenth of its range of actions and turns with nine); see
+    :class:`arcgym.rl.algorithms.behavior_cloning.BehaviorCloning`."""
+
     def validate_config(self) -> None:
         """Check bounds.
 
@@ -57,6 +63,7 @@ class RslRlBehaviorCloningAlgorithmCfg:
             ValueError: If a value is out of its bounds.
         """
         require_at_least(self, 1, "expert_steps", "batch_size", "steps_per_update")
+        require(self, "action_units", ("raw", "deviation"))
         require_positive(self, "learning_rate", "max_grad_norm")
         require_non_negative(self, "expert_noise")
 

@@ -17,9 +17,17 @@ from torch import nn
 from arcgym.rl.demonstrations import Demonstrations, read_demonstrations
 from arcgym.utils.errors import UsageError
 
+LEAST_DEVIATION = 0.02
+"""Least unit of an action: one that the demonstrations hardly use is not asked for to a thousandth of its range."""
+
 
 class BehaviorCloning:
     """Fits the mean action of a policy to demonstrations by their mean squared difference.
+
+    With ``action_units=raw`` the loss is the mean over steps and actions of ``(p - a)**2``, ``p`` the policy's mean
+    action and ``a`` the recorded one. With ``action_units=deviation`` it is that of ``((p - a) / s)**2``, ``s`` the
+    standard deviation of that action over all recorded steps, 0.02 at least. An action that varies over a tenth of its
+    range then counts as much as one that varies over all of it.
 
     The shape is that of rsl_rl's PPO, so that the same runner drives it: the policy acts in the environment between
     updates, which shows how good it is and teaches it nothing. Recorded actions are raw ones; those beyond [-1, 1]
@@ -41,6 +49,7 @@ class BehaviorCloning:
         batch_size: int = 256,
         steps_per_update: int = 100,
         max_grad_norm: float = 1.0,
+        action_units: str = "raw",
         device: str = "cpu",
         multi_gpu_cfg: dict | None = None,
         grad_reduce_bucket_mb: float = 25,
@@ -60,6 +69,7 @@ class BehaviorCloning:
             batch_size: Recorded steps of one gradient step.
             steps_per_update: Gradient steps of one iteration.
             max_grad_norm: Gradient clipping by norm.
+            action_units: What a difference of actions is counted in: ``raw`` or ``deviation``.
             device: Device of the network.
             multi_gpu_cfg: Rank and number of processes, from the runner.
             grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
@@ -74,6 +84,8 @@ class BehaviorCloning:
         self.expert_steps, self.expert_noise, self.expert_settings = expert_steps, expert_noise, expert_settings or {}
         self._demonstrations: Demonstrations | None = None
         self.batch_size, self.steps_per_update, self.max_grad_norm = batch_size, steps_per_update, max_grad_norm
+        self.action_units = action_units
+        self._unit: torch.Tensor | float = 1.0
         self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
         self.gpu_world_size = multi_gpu_cfg["world_size"] if multi_gpu_cfg else 1
         self.actor = actor.to(device)
@@ -114,6 +126,8 @@ class BehaviorCloning:
         if have != expected:
             raise UsageError(f"The demonstrations in '{self.folder}' have {have} actions, expected {expected}.")
         self._demonstrations = demonstrations
+        if self.action_units == "deviation":
+            self._unit = deviations(demonstrations.actions)
 
     def act(self, obs: TensorDict) -> torch.Tensor:
         """Return the mean actions, shape (N, A)."""
@@ -141,7 +155,7 @@ class BehaviorCloning:
 
     def step_on(self, obs: TensorDict, actions: torch.Tensor) -> torch.Tensor:
         """Make one gradient step and return the loss."""
-        loss = (self.actor(obs) - actions.clamp(-1.0, 1.0)).square().mean()
+        loss = ((self.actor(obs) - actions.clamp(-1.0, 1.0)) / self._unit).square().mean()
         self.optimizer.zero_grad()
         loss.backward()
         if self.is_multi_gpu:
@@ -183,3 +197,12 @@ class BehaviorCloning:
         """Send the first process's policy to all."""
         for tensor in self.actor.state_dict().values():
             torch.distributed.broadcast(tensor, src=0)
+
+
+def deviations(actions: torch.Tensor) -> torch.Tensor:
+    """Return the standard deviation of each action within [-1, 1], shape (A,), :data:`LEAST_DEVIATION` at least.
+
+    Args:
+        actions: Raw actions of all steps, shape (steps, A).
+    """
+    return actions.clamp(-1.0, 1.0).std(dim=0, correction=0).clamp(min=LEAST_DEVIATION)
