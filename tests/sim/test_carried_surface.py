@@ -147,3 +147,17 @@ def test_every_patient_has_folds_of_its_own(tmp_path: Path) -> None:
         assert torch.equal(both.colon.data.nodal_pos_w[world], alone.colon.data.nodal_pos_w[0])
         assert torch.equal(both.endoscope.data.link_force_w[world], alone.endoscope.data.link_force_w[0])
     assert both.endoscope.data.link_force_norm[1] > 2.0 * both.endoscope.data.link_force_norm[0]
+
+
+def test_what_is_far_from_the_links_stays_behind_and_changes_no_contact(sim: Simulation) -> None:
+    place(sim, x=0.0095)
+    carried, records = sim.contact.carried, sim.contact.records
+    assert carried is not None
+    near = carried.near.numpy()[:, 0]
+    found = [one.numpy().copy() for one in (records.start, records.face, records.distance, records.normal)]
+    assert near[7:9].all() and not near[:4].any() and not near[13:].any()
+    sim.contact.measure_surface(sim.nodal_pos)
+    sim.contact._find(sim.state.body_q)
+    sim.contact._record(sim.nodal_pos, sim.contact.points, sim.state.body_q)
+    for one, before in zip((records.start, records.face, records.distance, records.normal), found, strict=True):
+        np.testing.assert_array_equal(one.numpy(), before)

@@ -36,6 +36,7 @@ def sample_contacts(sim: Any, worlds: Iterable[int] = (0,)) -> list[ContactSampl
         worlds: The worlds.
     """
     sim.contact.detect(sim.nodal_pos, sim.state.body_q)
+    sim.contact.measure_surface(sim.nodal_pos)  # of a fine surface, the search moves on what is near links alone
     faces = sim.contact.surface.faces.numpy()
     samples = []
     for world in worlds:

@@ -1,16 +1,103 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Points of a fine surface that the wall carries. W worlds, V wall vertices, M points, P patients."""
+"""Points of a fine surface that the wall carries, where links are. W worlds, V wall vertices, M points, P patients.
+
+R rings of the wall, L links a world; ring r of the fine surface is what is carried by the wall's rings r and r + 1.
+"""
 
 import warp as wp
 
+from arcgym.sim.contact.contact_kernels import ContactLaw, LinkShapes
+from arcgym.sim.contact.contact_search_kernels import link_axis
+from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, bound_ring, sphere_reached
 from arcgym.utils import warp_setup  # noqa: F401
+
+MARGIN = wp.constant(1.01)
+"""Factor on the radius of a sphere around a ring: for rounding, and for carriers beyond it, of up to a thousandth."""
+FURTHER_RINGS = wp.constant(2)
+"""Rings beyond those near a link whose points are carried, too: of the faces across a border, whose normals count."""
+
+
+@wp.kernel
+def mark_near_rings(
+    x: wp.array2d[wp.vec3],
+    surface: LumenSurface,
+    room: wp.array2d[float],
+    patient: wp.array[int],
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    law: ContactLaw,
+    ring_distance: wp.array2d[float],
+    near: wp.array2d[int],
+):
+    """Mark the rings of the fine surface that a link may touch. Launch (R, W).
+
+    A point is a mean of wall vertices and an offset from there: it lies in a sphere around the two rings that carry it,
+    larger by the longest offset.
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        surface: Inner faces of one world.
+        room: Longest offset of a point of each ring [m], shape (R, P).
+        patient: Patient of each world, shape (W,).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        law: Contact law.
+        ring_distance: Distance from the center of the link's ring, FAR for links outside the anus [m], shape (W, L).
+        near: 1 where a link may touch the ring, else 0, shape (R, W); written.
+    """
+    r, w = wp.tid()
+    above = wp.min(r + 1, surface.rings.shape[0] - 1)
+    columns = surface.rings.shape[1]
+    middle = wp.vec3(0.0)
+    for k in range(columns):
+        middle += x[surface.rings[r, k], w] + x[surface.rings[above, k], w]
+    middle = middle / float(2 * columns)
+    square = float(0.0)
+    for k in range(columns):
+        square = wp.max(square, wp.length_sq(x[surface.rings[r, k], w] - middle))
+        square = wp.max(square, wp.length_sq(x[surface.rings[above, k], w] - middle))
+    sphere = wp.vec4(middle[0], middle[1], middle[2], MARGIN * (wp.sqrt(square) + room[r, patient[w]]))
+    count = links.radius.shape[0]
+    found = int(0)
+    link = int(0)
+    while link < count and found == 0:
+        if ring_distance[w, link] < FAR:
+            row = w * count + link
+            center = wp.transform_get_translation(body_q[row])
+            limit = links.radius[link] + law.wall_radius + law.search_gap
+            if sphere_reached(sphere, center, link_axis(body_q, row, links.half_length[link]), limit):
+                found = 1
+        link += 1
+    near[r, w] = found
+
+
+@wp.kernel
+def bound_near_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, near: wp.array2d[int], bounds: Bounds):
+    """Enclose the faces of each ring, patch by patch; those of rings that are not ``near`` are FAR. Launch (R, W)."""
+    r, w = wp.tid()
+    if near[r, w] == 1:
+        bound_ring(x, surface, bounds, r, w)
+    else:
+        bounds.ring[r, w] = wp.vec4(FAR, FAR, FAR, 0.0)
+
+
+@wp.kernel
+def mark_carried_rings(near: wp.array2d[int], moved: wp.array2d[int]):
+    """Write 1 to ``moved`` where a ring is ``near`` a link or a few rings from one that is, else 0. Launch (R, W)."""
+    r, w = wp.tid()
+    found = int(0)
+    for k in range(wp.max(r - FURTHER_RINGS, 0), wp.min(r + FURTHER_RINGS + 1, near.shape[0])):
+        found = wp.max(found, near[k, w])
+    moved[r, w] = found
 
 
 @wp.kernel
 def carry_points(
     x: wp.array2d[wp.vec3],
+    moved: wp.array2d[int],
+    ring: wp.array[int],
     index: wp.array[wp.vec4i],
     weight: wp.array[wp.vec4],
     offset: wp.array2d[wp.vec3],
@@ -19,11 +106,13 @@ def carry_points(
 ):
     """Move the points with the cells of the wall that carry them. Launch (M, W).
 
-    The offset from the mean of the cell's corners is turned with the cell: by the frame of its mean direction along the
-    colon and its normal.
+    Those far from the links stay where they were. The offset from the mean of the cell's corners is turned with the
+    cell: by the frame of its mean direction along the colon and its normal.
 
     Args:
         x: Wall positions [m], shape (V, W).
+        moved: 1 where the points of a ring are moved, else 0, shape (R, W).
+        ring: Ring of each point's cell, shape (M,).
         index: Corners of each point's cell: on the lower ring, on the upper, both again in the next sector, shape (M,).
         weight: Their weights, shape (M,).
         offset: Offset of each point in the frame of its cell [m], shape (M, P).
@@ -31,6 +120,8 @@ def carry_points(
         points: Positions [m], shape (M, W); written.
     """
     m, w = wp.tid()
+    if moved[ring[m], w] == 0:
+        return
     i = index[m]
     u = weight[m]
     a = x[i[0], w]

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import warp as wp
@@ -50,18 +51,31 @@ class CarriedSurface:
                 )
         device = str(patient.device)
         self.topology, self.carriers, self.weights = carried_topology(first, wall)
-        self._patient = patient
+        self.patient = patient
         offsets = [local_offsets(s, points) for s, points in zip(surfaces, rest, strict=True)]
         self._offset = patient_array(offsets, wp.vec3, device)
+        self.room = patient_array([longest_offsets(one, self.topology) for one in offsets], float, device)
+        """Longest offset of a point of each ring [m], shape (R, P)."""
+        self.near = wp.ones((len(wall.rings), len(patient)), dtype=int, device=device)
+        """1 where a link may touch a ring, shape (R, W), as of the last update."""
+        self._ring = wp.array(first.skin_indices.min(axis=1) // wall.rings.shape[1], dtype=int, device=device)
         self._index = wp.array(first.skin_indices, dtype=wp.vec4i, device=device)
         self._weight = wp.array(first.skin_weights, dtype=wp.vec4, device=device)
+        self._moved = wp.ones_like(self.near)
         self.points = wp.zeros((len(first.points), len(patient)), dtype=wp.vec3, device=device)
         """Positions [m], shape (M, W), as of the last update."""
 
     def update(self, x: wp.array) -> wp.array:
         """Return the points for wall positions ``x`` [m], shape (V, W)."""
-        inputs = [x, self._index, self._weight, self._offset, self._patient]
-        wp.launch(kernels.carry_points, self.points.shape, inputs, [self.points], device=self.points.device)
+        self.near.fill_(1)
+        return self.update_near(x)
+
+    def update_near(self, x: wp.array) -> wp.array:
+        """Return the points with those of the rings that are :attr:`near`, and around them, moved on."""
+        device = self.points.device
+        wp.launch(kernels.mark_carried_rings, self.near.shape, [self.near], [self._moved], device=device)
+        inputs = [x, self._moved, self._ring, self._index, self._weight, self._offset, self.patient]
+        wp.launch(kernels.carry_points, self.points.shape, inputs, [self.points], device=device)
         return self.points
 
 
@@ -106,6 +120,12 @@ def carried_topology(surface: ContactSurface, wall: LumenTopology) -> tuple[Lume
     vertices = patch_vertices(faces, patch_start)
     topology = LumenTopology(wall.rings, faces, face_neighbors(faces), ring_start, patch_start, ring_patch, vertices)
     return topology, carriers.astype(np.int32), weights.astype(np.float32)
+
+
+def longest_offsets(offset: np.ndarray, topology: LumenTopology) -> np.ndarray:
+    """Return the longest ``offset``, shape (M, 3), of the points of each ring's faces [m], shape (R,)."""
+    longest = np.linalg.norm(offset, axis=1)[topology.faces].max(axis=1)
+    return np.array([longest[a:b].max(initial=0.0) for a, b in pairwise(topology.ring_start)])
 
 
 def local_offsets(surface: ContactSurface, rest: np.ndarray) -> np.ndarray:

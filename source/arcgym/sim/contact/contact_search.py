@@ -8,10 +8,10 @@ import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sim.contact import carried_kernels, lumen_kernels
 from arcgym.sim.contact import contact_list_kernels as list_kernels
 from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
-from arcgym.sim.contact import lumen_kernels
 from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
@@ -207,8 +207,9 @@ class ContactSearch:
         """
         if not self.still:
             self.update_centers(x)
-            self.measure_surface(x)
         self.track(body_q)
+        if not self.still:
+            self._measure_near(x, body_q)
         self._find(body_q)
         self._record(x, self.points, body_q)
 
@@ -220,6 +221,18 @@ class ContactSearch:
         self.points = x if self.carried is None else self.carried.update(x)
         shape, inputs = (self.ring_count, self.num_envs), [self.points, self.surface]
         self._launch(lumen_kernels.bound_faces, shape, inputs, [self.bounds])
+
+    def _measure_near(self, x: wp.array, body_q: wp.array) -> None:
+        """Find where the faces are that a link may touch: all of a wall's, those near the links of a fine surface."""
+        if self.carried is None:
+            self.measure_surface(x)
+            return
+        fine, shape = self.carried, (self.ring_count, self.num_envs)
+        of_links = [body_q, self.links, self.law, self.ring_distance]
+        inputs = [x, self.surface, fine.room, fine.patient, *of_links]
+        self._launch(carried_kernels.mark_near_rings, shape, inputs, [fine.near])
+        self.points = fine.update_near(x)
+        self._launch(carried_kernels.bound_near_faces, shape, [self.points, self.surface, fine.near], [self.bounds])
 
     def _find(self, body_q: wp.array) -> None:
         """Find the patches near each link."""

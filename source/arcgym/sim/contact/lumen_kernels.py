@@ -118,10 +118,9 @@ def track_rings(
         ring_distance[w, link] = FAR
 
 
-@wp.kernel
-def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
-    """Enclose the faces of each ring, patch by patch. Launch (R, W)."""
-    r, w = wp.tid()
+@wp.func
+def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, r: int, w: int):
+    """Enclose the faces of ring ``r`` of world ``w``, patch by patch."""
     first = surface.ring_patch[r]
     last = surface.ring_patch[r + 1]
     middle = wp.vec3(0.0)
@@ -142,6 +141,13 @@ def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
         sphere = bounds.patch[p, w]
         radius = wp.max(radius, wp.length(wp.vec3(sphere[0], sphere[1], sphere[2]) - middle) + sphere[3])
     bounds.ring[r, w] = wp.vec4(middle[0], middle[1], middle[2], radius)
+
+
+@wp.kernel
+def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
+    """Enclose the faces of each ring, patch by patch. Launch (R, W)."""
+    r, w = wp.tid()
+    bound_ring(x, surface, bounds, r, w)
 
 
 @wp.func
