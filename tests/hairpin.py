@@ -31,22 +31,23 @@ LOWER, UPPER = (4, 5, 6), (14, 15, 16)
 class HairpinSim(TinySim):
     """Simulations in a tube that runs up along Z, turns towards +Y and comes down again."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, width: float = WIDTH) -> None:
+        """``width`` is the distance of the limbs [m]."""
         self.folder = folder
         stage = tiny_colon_stage(
-            length=2.0 * LIMB + 0.5 * math.pi * WIDTH, radius=RADIUS, rings=21, texture_folder=folder
+            length=2.0 * LIMB + 0.5 * math.pi * width, radius=RADIUS, rings=21, texture_folder=folder
         )
-        wall = replace(stage.wall, points=hairpin(stage.wall.points))
+        wall = replace(stage.wall, points=hairpin(stage.wall.points, width))
         self.colon_path = write_colon(replace(stage, wall=wall), folder / "colon.usda")
 
 
-def hairpin(points: np.ndarray) -> np.ndarray:
-    """Bend points beside the Z axis, shape (V, 3)."""
+def hairpin(points: np.ndarray, width: float = WIDTH) -> np.ndarray:
+    """Bend points beside the Z axis, shape (V, 3), to limbs ``width`` [m] apart."""
     x, y, s = points.T
-    turn = np.clip((s - LIMB) / (0.5 * WIDTH), 0.0, math.pi)
-    ahead = np.minimum(s - LIMB, 0.0) + np.maximum(s - LIMB - 0.5 * math.pi * WIDTH, 0.0)
-    across = 0.5 * WIDTH * (1.0 - np.cos(turn)) + y * np.cos(turn)
-    along = LIMB + 0.5 * WIDTH * np.sin(turn) - y * np.sin(turn) + ahead * np.cos(turn)
+    turn = np.clip((s - LIMB) / (0.5 * width), 0.0, math.pi)
+    ahead = np.minimum(s - LIMB, 0.0) + np.maximum(s - LIMB - 0.5 * math.pi * width, 0.0)
+    across = 0.5 * width * (1.0 - np.cos(turn)) + y * np.cos(turn)
+    along = LIMB + 0.5 * width * np.sin(turn) - y * np.sin(turn) + ahead * np.cos(turn)
     return np.stack([x, across, along], axis=1).astype(np.float32)
 
 

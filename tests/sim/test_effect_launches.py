@@ -33,7 +33,7 @@ def tube(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
 
 
 def living(tube: TinySim) -> Simulation:
-    return tube(links=3, colon=LIVING, weight=WeightCfg(enabled=True), loops=LoopFrictionCfg(enabled=True))
+    return tube(links=3, colon=LIVING, weight=WeightCfg(enabled=True), loops=LoopFrictionCfg(enabled=True, bends=True))
 
 
 def launched(sim: Simulation, monkeypatch: pytest.MonkeyPatch) -> Counter[str]:

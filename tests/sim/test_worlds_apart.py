@@ -35,7 +35,7 @@ def three(tiny: TinySim, effects: bool, **cfg: Any) -> Simulation:
         colon=colon,
         scope=scope,
         weight=WeightCfg(enabled=True),
-        loops=LoopFrictionCfg(enabled=True),
+        loops=LoopFrictionCfg(enabled=True, bends=True),
         **cfg,
     )
 

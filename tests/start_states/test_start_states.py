@@ -18,7 +18,7 @@ from arcgym.assets import GasCfg
 from arcgym.experts import ExpertBase, PullExpert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
-from arcgym.sim import SimulationCfg
+from arcgym.sim import LoopFrictionCfg, SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet
 from arcgym.start_states import StartStateError, find, store
 from arcgym.start_states.ahead import make_ahead
@@ -108,6 +108,7 @@ def test_all_of_the_steps_damping_is_no_part_of_the_key(tiny: TinySim) -> None:
     scene = build(tiny)
     before = key_of(scene)
     assert "step_damping" not in settings_of(scene.sim.cfg)["contact"]
+    assert "bends" not in settings_of(SimulationCfg(loops=LoopFrictionCfg(enabled=True)))["loops"]
     scene.sim.cfg.contact.step_damping = 0.5
     assert key_of(scene).changed({**vars(before)}) == ["solver"]
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Configuration of friction where loops of the colon touch."""
+"""Configuration of what the colon's outside does where it touches itself, besides that loops push each other away."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from arcgym.utils.validation import Range, require
 
 @configclass
 class LoopFrictionCfg:
-    """Friction of the colon's outside on itself, with ``WallSolverCfg.self_contact``. See docs/physics.md, Loops."""
+    """Friction of the colon's outside on itself, and bends that do not fold through themselves, both with
+    ``WallSolverCfg.self_contact``. See docs/physics.md, Loops that rub."""
 
     enabled: bool = False
     """Whether loops that touch rub on each other. Off, they slide freely: the outside of the bowel is wet and
@@ -24,11 +25,14 @@ class LoopFrictionCfg:
     """Stiffness with which two rings that touch hold each other until they slide [N/m]. A choice: pressed by 1 N they
     slide after 0.5 mm. Stiffer, and rings that touch weigh more: by twice this times the squared time step, 0.9 g
     beside some 2 g."""
+    bends: bool = False
+    """Whether the limbs of one bend push on each other, too, where they lie side by side and would pass through each
+    other, as hard as loops do. Switch it on where soft walls are drawn to hairpins. They do not rub."""
 
     @property
     def active(self) -> bool:
-        """Whether it is on."""
-        return self.enabled
+        """Whether anything of it is on."""
+        return self.enabled or self.bends
 
     def validate_config(self) -> None:
         """Check bounds.

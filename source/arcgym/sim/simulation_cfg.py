@@ -165,7 +165,7 @@ class SimulationCfg:
     weight: WeightCfg = WeightCfg()
     """Weight of scope, wall and contents along the patient's posture; off by default."""
     loops: LoopFrictionCfg = LoopFrictionCfg()
-    """Friction where loops of the colon touch; off by default."""
+    """Friction where loops of the colon touch, and bends that do not fold through themselves; off by default."""
     contact: ContactCfg = ContactCfg()
     """Contact law and search."""
     wall: WallSolverCfg = WallSolverCfg()
@@ -190,11 +190,14 @@ class SimulationCfg:
             raise FieldError(
                 self, "gravity", f"is {self.gravity}, expected zeros with weight.enabled=true, whose posture says it."
             )
-        if self.loops.enabled and not self.wall.self_contact:
+        if self.loops.active and not self.wall.self_contact:
+            name = "enabled" if self.loops.enabled else "bends"
+            without = {
+                "enabled": "loops that pass through each other do not rub",
+                "bends": "without it nothing touches",
+            }
             raise FieldError(
-                self,
-                "loops.enabled",
-                "is true, which needs sim.wall.self_contact=true: loops that pass through each other do not rub.",
+                self, f"loops.{name}", f"is true, which needs sim.wall.self_contact=true: {without[name]}."
             )
         if not re.fullmatch(r"cpu|cuda(:\d+)?", self.device):
             raise FieldError(self, "device", f"is {self.device!r}, expected 'cpu', 'cuda' or 'cuda:<number>'.")

@@ -73,13 +73,14 @@ def _law(sim: Simulation) -> WallLawCfg | None:
 
 def _surroundings(sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes]) -> Surroundings | None:
     cfg, device = sim.colon.cfg, sim.device
-    if not (cfg.abdomen.enabled or cfg.mesentery.enabled or sim.cfg.loops.enabled):
+    if not (cfg.abdomen.enabled or cfg.mesentery.enabled or sim.cfg.loops.active):
         return None
     members = wp.array(modes[0].members, dtype=int, device=device)
     abdomen = _abdomen(sim, walls, members) if cfg.abdomen.enabled else None
     mesentery = _mesentery(sim, members) if cfg.mesentery.enabled else None
     friction = _friction(sim) if sim.cfg.loops.enabled else None
-    return Surroundings(walls[0].ring, members, sim.num_envs, device, abdomen, mesentery, friction)
+    bends = _bends(sim)
+    return Surroundings(walls[0].ring, members, sim.num_envs, device, abdomen, mesentery, friction, bends)
 
 
 def _abdomen(sim: Simulation, walls: Sequence[WallParameters], members: wp.array) -> Abdomen:
@@ -98,3 +99,9 @@ def _mesentery(sim: Simulation, members: wp.array) -> Mesentery:
 def _friction(sim: Simulation) -> LoopFriction:
     sim.require_two_level("has loops that pass through each other", "set env.sim.loops.enabled=false")
     return LoopFriction(sim.cfg.loops, sim.colon.num_rings, sim.num_envs, sim.device)
+
+
+def _bends(sim: Simulation) -> bool:
+    if sim.cfg.loops.bends:
+        sim.require_two_level("has bends whose walls pass through each other", "set env.sim.loops.bends=false")
+    return sim.cfg.loops.bends

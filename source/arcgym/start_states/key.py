@@ -28,8 +28,8 @@ EFFECTS = ("wall_law", "weight", "grading", "abdomen", "mesentery", "loops")
 """Fields that change no state while they are not ``active``."""
 OF_DRIVES = ("play", "lag")
 """Fields of drives that change no state while they are zero."""
-OF_CONTACT = {"step_damping": 1.0}
-"""Fields of the contact that change no state while they have this value."""
+OF_PARTS: dict[str, dict[str, float]] = {"contact": {"step_damping": 1.0}, "loops": {"bends": False}}
+"""Fields of contact and loops that change no state while they have this value."""
 
 
 @dataclass(frozen=True)
@@ -94,10 +94,11 @@ def settings_of(cfg: Any) -> dict[str, Any]:
         for name in OF_DRIVES:
             if drive.get(name) == 0.0:
                 del drive[name]
-    contact = kept.get("contact", {})
-    for name, value in OF_CONTACT.items():
-        if contact.get(name) == value:
-            del contact[name]
+    for part, fields in OF_PARTS.items():
+        own = kept.get(part, {})
+        for name, value in fields.items():
+            if own.get(name) == value:
+                del own[name]
     return kept
 
 

@@ -73,8 +73,9 @@ class SelfContact:
         self.force.plane = wp.zeros((len(ring), num_envs), dtype=wp.vec4, device=device)
         self.force.stiffness = wp.zeros((len(ring), num_envs), dtype=float, device=device)
         self.force.in_contact = wp.zeros((count, num_envs), dtype=int, device=device)
+        self._watched = False
         if self.active:
-            self._measure_rest(points)
+            self._measure_rest(points, self.rings)
 
     def _spheres(self, num_envs: int) -> kernels.RingSpheres:
         spheres = kernels.RingSpheres()
@@ -82,15 +83,30 @@ class SelfContact:
         spheres.near = wp.zeros((self.count, num_envs), dtype=int, device=self.device)
         return spheres
 
-    def _measure_rest(self, points: Sequence[np.ndarray]) -> None:
+    def rings_of_any_pair(self, points: Sequence[np.ndarray]) -> kernels.WallRings:
+        """Return the rings with gaps that hold for every pair, and measure the spheres in every step from here on.
+
+        Args:
+            points: Rest positions of each patient's wall [m], shape (V, 3).
+        """
+        self._watched = True
+        rings = kernels.WallRings()
+        for name in kernels.WallRings.__annotations__:
+            setattr(rings, name, getattr(self.rings, name))
+        rings.min_gap = wp.zeros_like(self.rings.min_gap)
+        self._measure_rest(points, rings)
+        return rings
+
+    def _measure_rest(self, points: Sequence[np.ndarray], rings: kernels.WallRings) -> None:
+        """Lower the gaps of ``rings`` to those at rest."""
         x, spheres = patient_array(points, wp.vec3, self.device), self._spheres(len(points))
         shape = (self.count, len(points))
-        wp.launch(kernels.measure_spheres, shape, inputs=[x, self.rings], outputs=[spheres], device=self.device)
+        wp.launch(kernels.measure_spheres, shape, inputs=[x, rings], outputs=[spheres], device=self.device)
         wp.launch(
             kernels.allow_rest_overlaps,
             (self.count, *shape),
             inputs=[x, spheres],
-            outputs=[self.rings],
+            outputs=[rings],
             device=self.device,
         )
 
@@ -100,9 +116,10 @@ class SelfContact:
         Args:
             x: Wall positions [m], shape (V, W), vec3.
         """
-        if self.active:
-            shape, rings, spheres = self.force.in_contact.shape, self.rings, self.spheres
+        shape, rings, spheres = self.force.in_contact.shape, self.rings, self.spheres
+        if self.active or self._watched:
             wp.launch(kernels.measure_spheres, shape, inputs=[x, rings], outputs=[spheres], device=self.device)
+        if self.active:
             wp.launch(kernels.find_near_rings, shape, inputs=[rings], outputs=[spheres], device=self.device)
             wp.launch(
                 kernels.measure_self_contact,

@@ -4,10 +4,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import torch
 import warp as wp
 
+from arcgym.sim.contact.bend_contact import limbs_that_touch
 from arcgym.sim.contact.loop_friction import LoopFriction
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.wall import outer_force_kernels as kernels
@@ -32,6 +35,7 @@ class Surroundings:
         abdomen: Abdomen | None = None,
         mesentery: Mesentery | None = None,
         friction: LoopFriction | None = None,
+        bends: bool = False,
     ):
         """Allocate.
 
@@ -43,9 +47,10 @@ class Surroundings:
             abdomen: The abdomen, if there is one.
             mesentery: The mesenteries, if they are sheets.
             friction: Friction between loops, if there is any.
+            bends: Whether the limbs of one bend push on each other.
         """
         self.abdomen, self.mesentery, self.friction = abdomen, mesentery, friction
-        self._members, self._device = members, device
+        self._members, self._device, self._bends = members, device, bends
         self.force = kernels.OuterForce()
         """Their force on every vertex."""
         self.force.ring = wp.array(ring, dtype=int, device=device)
@@ -58,6 +63,16 @@ class Surroundings:
             around.pressing, around.shape, around.hand, around.load = 1, abdomen.shape, abdomen.hand, abdomen.load
         if mesentery is not None:
             around.pulling, around.sheets = 1, mesentery.sheets
+
+    def bind(self, contact: SelfContact, points: Sequence[np.ndarray]) -> None:
+        """Take the contact of the wall with itself, which measures its rings before :meth:`measure`.
+
+        Args:
+            contact: The contact.
+            points: Rest positions of each patient's wall [m], shape (V, 3).
+        """
+        if self._bends:
+            self._around.folding, self._around.bends = 1, limbs_that_touch(contact, points)
 
     @property
     def memory(self) -> dict[str, torch.Tensor]:

@@ -5,6 +5,7 @@
 
 import warp as wp
 
+from arcgym.sim.contact.bend_contact_kernels import Bends, push_limbs
 from arcgym.sim.wall.abdomen_kernels import AbdomenShape, Hand, press_wall
 from arcgym.sim.wall.mesentery_kernels import Sheets, pull_ring
 from arcgym.sim.wall.outer_force_kernels import OuterForce, clear_outer_force
@@ -22,11 +23,13 @@ class Around:
     load: wp.array2d[wp.vec3]  # of each ring on hand and abdomen, see ``press_wall``, shape (R, W)
     pulling: int  # whether there are mesenteries
     sheets: Sheets
+    folding: int  # whether limbs of one bend push on each other
+    bends: Bends
 
 
 @wp.kernel
 def measure_surroundings(x: wp.array2d[wp.vec3], around: Around, scale: wp.array[float], dt: float, outer: OuterForce):
-    """Forget the last step's forces on each ring, and measure those of abdomen and mesentery. Launch (R, W).
+    """Forget the last step's forces on each ring, and measure those of abdomen, mesentery and bends. Launch (R, W).
 
     Args:
         x: Wall positions [m], shape (V, W).
@@ -41,3 +44,5 @@ def measure_surroundings(x: wp.array2d[wp.vec3], around: Around, scale: wp.array
         press_wall(x, around.shape, around.hand, dt, outer, around.load, r, w)
     if around.pulling == 1:
         pull_ring(x, around.sheets, scale, outer, r, w)
+    if around.folding == 1:
+        push_limbs(x, around.bends, outer, r, w)

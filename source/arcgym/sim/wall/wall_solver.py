@@ -126,6 +126,8 @@ class WallSolver:
         self.self_contact = SelfContact(
             cfg, [wall.points for wall in walls], first.ring, modes[0].members, first.thickness, patient, device
         )
+        if surroundings is not None:
+            surroundings.bind(self.self_contact, [wall.points for wall in walls])
 
     def _measured_contacts(self, slots: int) -> wall_kernels.MeasuredContacts:
         measured = wall_kernels.MeasuredContacts()
