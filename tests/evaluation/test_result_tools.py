@@ -10,49 +10,17 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from paper_results import RUN, TASKS, changed, result
 from result_folders import write_result_folder
 
 from arcgym.cli.main import main
 from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
 from arcgym.evaluation.compare import compare, notes
-from arcgym.evaluation.leaderboard import entries_table, submissions
 from arcgym.evaluation.merge import merge
-from arcgym.evaluation.result_folder import ResultFolder, result_folders
+from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.trials import read_conditions
 from arcgym.utils.errors import UsageError
-
-CONDITIONS = read_conditions(read_suites()["paper"].conditions_path)
-RUN = {
-    "agent": "checkpoint",
-    "checkpoint_sha256": ["abc", "def", "fed"],
-    "suite": "paper",
-    "conditions_sha256": CONDITIONS.sha256,
-    "overrides": [],
-}
-TASKS = read_suites()["paper"].tasks("Magnetic")
-RUN |= {"changes": {task: {} for task in TASKS}}
-RUN |= {"inputs": {task: {"sees": ["policy"], "simulator_depth": False} for task in TASKS}}
-
-
-def changed(task: str, **fields) -> dict:
-    """A run with other settings in a task."""
-    return {**RUN, "changes": RUN["changes"] | {task: {name.replace("__", "."): pair for name, pair in fields.items()}}}
-
-
-def result(
-    path: Path, seconds: float = 5.0, run: dict = RUN, trials: slice = slice(None), every: dict | None = None, **changes
-) -> Path:
-    """A folder in which every trial succeeds; ``every`` is changed in all rows, ``changes`` in the first."""
-    folder = ResultFolder(path, run)
-    for task in TASKS:
-        for trial in CONDITIONS.trials[trials]:
-            row = {"task": task, "agent": "a", **vars(trial), "success": 1, "end": "success", "reward": 1.0}
-            row |= {"seconds": seconds + trial.trial, "progress": 1.0, "centered_rate": 1.0, "p95_tip_force": 0.0}
-            row |= {"mean_tip_force": 0.0, "max_tip_force": 0.0, "peak_tip_force": 0.0}
-            row |= every or {}
-            folder.add(row | (changes if not folder.rows else {}))
-    return path
 
 
 def test_difference_is_of_the_same_trials(tmp_path: Path) -> None:
@@ -327,99 +295,6 @@ def test_trials_of_an_earlier_version_cannot_be_handed_in(tmp_path: Path) -> Non
     assert problems(old) == [message] and problems(old, whole=False) == []
     new = write_result_folder(tmp_path / "new", 3, **of)
     assert problems(new) == []
-
-
-ENTRY = "name: Mine\nby: A. Author\nsees: policy\ntrained_on: colon 1\ntransitions: 2.0e+6\ngpu_hours: 1.5\n"
-
-
-def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason(tmp_path: Path, capsys) -> None:
-    for name, more in (("good", ""), ("again", "reproduced: B. Other 2026-12\n")):
-        (result(tmp_path / "all" / name) / "entry.yaml").write_text(ENTRY + more)
-    page = tmp_path / "page.md"
-    page.write_text("# Page\n<!-- entries -->\nold\n<!-- end of entries -->\nend\n")
-    assert main(["results", "leaderboard", str(tmp_path / "all"), "--page", str(page)]) == 0
-    text = page.read_text()
-    assert "old" not in text and text.endswith("<!-- end of entries -->\nend\n")
-    line = next(line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`"))
-    assert line.startswith(f"| `{TASKS[0]}` | Mine | A. Author | 100 (89–100) | 1.00 (1.00–1.00) |")
-    assert "| 2e+06 | 1.5 | abc, def, fed | ? | reproduced: B. Other 2026-12 |" in text
-    assert "| abc, def, fed | ? | self-reported |" in text
-    (result(tmp_path / "all" / "wrong", seed=5) / "entry.yaml").write_text(ENTRY)
-    result(tmp_path / "all" / "nameless", progress=0.5)
-    (tmp_path / "all" / "nameless" / "entry.yaml").write_text("name: Mine\ncost: 3\n")
-    assert main(["results", "leaderboard", str(tmp_path / "all"), "--page", str(page)]) == 1
-    out = capsys.readouterr().out
-    assert "wrong: trial 0 of ARC-Rectum-Magnetic has another patient, seed or group" in out
-    assert "nameless: trial 0 of ARC-Rectum-Magnetic succeeded with a progress of 0.5" in out
-    assert "lacks by, sees, trained_on, transitions, gpu_hours and has the unknown cost" in out
-    assert page.read_text() == text
-
-
-def test_a_leaderboard_needs_no_page_but_a_page_needs_marks(tmp_path: Path, capsys) -> None:
-    (result(tmp_path / "all" / "good") / "entry.yaml").write_text(ENTRY)
-    words, page = ["results", "leaderboard", str(tmp_path / "all"), "--page"], tmp_path / "page.md"
-    assert main([*words, str(page)]) == main([*words, str(page)]) == 0
-    assert page.read_text().startswith("# Leaderboard") and page.read_text().count("## paper") == 1
-    page.write_text("# Mine\n")
-    with pytest.raises(SystemExit):
-        main([*words, str(page)])
-    assert "page.md has no place for the tables; expected the lines '<!-- entries -->'" in capsys.readouterr().err
-
-
-def test_an_entry_that_saw_more_than_it_says_is_refused(tmp_path: Path) -> None:
-    inputs = RUN["inputs"] | {TASKS[0]: {"sees": ["policy", "force"], "simulator_depth": False}}
-    path = result(tmp_path / "all" / "mine", run={**RUN, "inputs": inputs})
-    (path / "entry.yaml").write_text(ENTRY)
-    assert submissions(tmp_path / "all") == ([], {path: ["says that it sees policy, and saw force, policy"]})
-    (path / "entry.yaml").write_text(ENTRY.replace("sees: policy", "sees: policy, force"))
-    assert submissions(tmp_path / "all") == ([path], {})
-
-
-@pytest.mark.parametrize(
-    ("before", "after", "reason"),
-    [
-        ("2.0e+6", "2e6", None),  # a text in YAML
-        ("2.0e+6", "many", "has transitions = 'many', expected a number"),
-        ("1.5", "-1", "has gpu_hours = -1, expected a number that is not negative"),
-        ("colon 1", "[colon 1, colon 2]", "has trained_on = ['colon 1', 'colon 2'], expected a line of text"),
-        ("name: Mine", "name: a|b", None),
-    ],
-)
-def test_what_an_entry_says_has_its_kind(tmp_path: Path, before: str, after: str, reason: str | None) -> None:
-    path = result(tmp_path / "all" / "mine")
-    (path / "entry.yaml").write_text(ENTRY.replace(before, after))
-    good, refused = submissions(tmp_path / "all")
-    if reason is None:
-        lines = [line for line in entries_table(good).splitlines() if line.startswith("| `")]
-        assert len(lines) == len(TASKS) and all("| 2e+06 | 1.5 |" in line and line.count("|") == 15 for line in lines)
-    else:
-        assert not good and reason in refused[path][0]
-
-
-def test_a_folder_that_is_not_there_empties_no_page(tmp_path: Path, capsys) -> None:
-    page = tmp_path / "page.md"
-    page.write_text("<!-- entries -->\nold\n<!-- end of entries -->\n")
-    for words in (["leaderboard", "--page", str(page)], ["summary", "--out", str(page)]):
-        with pytest.raises(SystemExit):
-            main(["results", words[0], str(tmp_path / "nothing"), *words[1:]])
-        assert f"There is no folder {tmp_path / 'nothing'}" in capsys.readouterr().err
-    assert "old" in page.read_text()
-
-
-def test_the_floor_is_no_entry(tmp_path: Path) -> None:
-    """The expert sees the centreline, whatever the entry says."""
-    path = result(tmp_path / "all" / "mine", run={**RUN, "agent": "expert", "checkpoint_sha256": []})
-    (path / "entry.yaml").write_text(ENTRY)
-    reason = "is of the agent 'expert', which is the floor: an entry has checkpoints"
-    assert submissions(tmp_path / "all") == ([], {path: [reason]})
-
-
-def test_shares_of_processes_are_no_results_of_their_own(tmp_path: Path) -> None:
-    path = result(tmp_path / "all" / "mine")
-    (path / "entry.yaml").write_text(ENTRY)
-    result(path / "parts" / "1_of_2", trials=slice(0, None, 2))
-    assert submissions(tmp_path / "all") == ([path], {})
-    assert result_folders(tmp_path) == [path] and result_folders(path) == [path]
 
 
 @pytest.mark.parametrize(
