@@ -32,7 +32,8 @@ from arcgym.rl.run_folder import write_params
 from arcgym.utils.errors import UsageError
 
 OF_THE_MAKER = ("usd_path", "num_patients")
-"""Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own."""
+"""Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own, and its own
+event that draws them."""
 
 NAMES = 2
 """Last names of a path that are kept: folder and file, by which results tell patients apart."""
@@ -74,6 +75,7 @@ def ship(checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str
     (folder / ABOUT).write_text(json.dumps(_about(checkpoint, folder, saved, trained_on), indent=1) + "\n")
     for name in OF_THE_MAKER:
         saved.env.get("scene", {}).get("colon", {}).pop(name, None)
+    saved.env.get("events", {}).pop("patient", None)
     env, agent = without_folders(saved.env), without_folders(saved.agent)
     write_params(folder, run={"task": saved.task, "agent": saved.agent_key}, env=env, agent=agent)
     _write_curve(checkpoint.parent, curve, folder / CURVE)

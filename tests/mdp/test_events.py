@@ -178,6 +178,36 @@ def test_every_patient_is_drawn_about_as_often(env) -> None:
     assert bool((counts > 150).all()) and int(counts.sum()) == 600
 
 
+def test_patients_in_which_episodes_fail_come_more_often(env) -> None:
+    worlds, colon = torch.arange(2), env.scene["colon"]
+    colon.patients = colon.patients * 3
+    cfg = EventTermCfg(func=mdp.randomize_patient_by_failures, mode="reset")
+    draw = mdp.randomize_patient_by_failures(cfg, env)
+    ends = SimpleNamespace(dones=torch.zeros(2, dtype=torch.bool), success=torch.zeros(2, dtype=torch.bool))
+    env.termination_manager = ends
+    counts = torch.zeros(3)
+    for episode in range(700):
+        env.random.begin(worlds)
+        draw(env, worlds)
+        patient, env_ids = colon.commands["patient"]
+        assert env_ids.tolist() == [0, 1]
+        colon.data.patient[:] = patient
+        ends.dones, ends.success = torch.tensor([True, True]), patient != 1
+        counts += patient.bincount(minlength=3) * (episode >= 100)
+    assert draw.failures[1] > 0.99 and bool((draw.failures[[0, 2]] < 0.01).all())
+    assert counts[1] / counts.sum() == pytest.approx(0.75, abs=0.05)  # 1.2 of 1.2 + 0.2 + 0.2
+
+
+def test_worlds_that_are_reset_from_outside_are_no_failures(env) -> None:
+    env.scene["colon"].patients *= 2
+    draw = mdp.randomize_patient_by_failures(EventTermCfg(func=mdp.randomize_patient_by_failures, mode="reset"), env)
+    none = torch.zeros(2, dtype=torch.bool)
+    env.termination_manager = SimpleNamespace(dones=none, success=none)
+    draw.failures = torch.tensor([0.3, 0.6])
+    draw(env, torch.arange(2))
+    assert draw.failures.tolist() == pytest.approx([0.3, 0.6])
+
+
 def test_start_states_of_every_patient_are_loaded(env, monkeypatch: pytest.MonkeyPatch) -> None:
     env.scene["colon"].patients *= 2
     one = SimpleNamespace(only=lambda names: SimpleNamespace(names=names, index=names.index))

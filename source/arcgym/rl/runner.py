@@ -26,6 +26,7 @@ from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
 from arcgym.rl.learning_rate import linear_rate, set_learning_rate
 from arcgym.rl.patient_writer import PatientWriter
 from arcgym.rl.run_clock import BudgetSpent, RunClock
+from arcgym.rl.widened import widened
 from arcgym.utils.errors import UsageError
 
 
@@ -145,7 +146,9 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
     def _start_from(self, path: str) -> None:
         """Take the policy, and nothing else, from another run's checkpoint."""
         try:
-            self.alg.load(read_checkpoint(path, self.device), {"actor": True}, strict=True)
+            contents = read_checkpoint(path, self.device)
+            actor = widened(contents["actor_state_dict"], self.alg.get_policy().state_dict())
+            self.alg.load({**contents, "actor_state_dict": actor}, {"actor": True}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error
         print(f"policy: starts from {path}")

@@ -20,7 +20,8 @@ from arcgym.start_states.find import ensure_all, find_stored
 from arcgym.utils.validation import FRACTION, NON_NEGATIVE, POSITIVE, expects
 
 if TYPE_CHECKING:
-    from arcgym.envs import ManagerBasedEnv
+    from arcgym.envs import ManagerBasedEnv, ManagerBasedRLEnv
+    from arcgym.managers import TerminationManager
 
 __all__ = [
     "change_posture",
@@ -30,6 +31,7 @@ __all__ = [
     "randomize_friction",
     "randomize_light",
     "randomize_patient",
+    "randomize_patient_by_failures",
     "randomize_preparation",
     "randomize_rigidity",
     "randomize_texture",
@@ -103,6 +105,46 @@ def randomize_patient(env: ManagerBasedEnv, env_ids: torch.Tensor) -> None:
     if len(colon.patients) > 1:
         patient = env.random.integers("patient", 0, len(colon.patients), env_ids=env_ids)
         colon.write_patient_to_sim(patient, env_ids)
+
+
+@expects(evenly=POSITIVE, memory=FRACTION)
+class randomize_patient_by_failures(ManagerTermBase):
+    """Give each world one of the colon's patients, more often those in which episodes fail.
+
+    In place of :func:`randomize_patient`, and like it before the reset. For training alone: what a world gets depends
+    on what happened in the others.
+    """
+
+    def __init__(self, cfg: EventTermCfg, env: ManagerBasedEnv) -> None:
+        """Begin with patients that are all equally likely."""
+        super().__init__(cfg, env)
+        self.failures = torch.ones(len(env.scene["colon"].patients), device=env.device)
+        """Share of the episodes in each patient that did not end in success, a running mean, shape (P,)."""
+
+    def __call__(self, env: ManagerBasedRLEnv, env_ids: torch.Tensor, evenly: float = 0.2, memory: float = 0.9) -> None:
+        """Count the episodes that have ended, and write the patients of those that begin.
+
+        Args:
+            evenly: What is added to a patient's share of failures to give its weight: with 0.2 a patient that always
+                fails is drawn six times as often as one that never does.
+            memory: Weight of what was before when an episode ends, in (0, 1).
+        """
+        colon = env.scene["colon"]
+        if len(colon.patients) > 1:
+            self._count(colon.data.patient[env_ids].long(), env.termination_manager, env_ids, memory)
+            bounds = (evenly + self.failures).cumsum(0)
+            draw = env.random.uniform("patient", env_ids=env_ids) * bounds[-1]
+            patient = torch.searchsorted(bounds, draw, right=True).clamp(max=len(bounds) - 1)
+            colon.write_patient_to_sim(patient, env_ids)
+
+    def _count(self, patient: torch.Tensor, ends: TerminationManager, env_ids: torch.Tensor, memory: float) -> None:
+        """Take the episodes that have just ended into the running means; worlds reset from outside do not count."""
+        ended = ends.dones[env_ids].float()
+        failed = ended * (~ends.success[env_ids]).float()
+        zeros = torch.zeros_like(self.failures)
+        number, failures = zeros.index_add(0, patient, ended), zeros.index_add(0, patient, failed)
+        kept = memory**number
+        self.failures = kept * self.failures + (1.0 - kept) * failures / number.clamp(min=1.0)
 
 
 @expects(std=NON_NEGATIVE)
