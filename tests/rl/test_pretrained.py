@@ -50,6 +50,8 @@ def test_a_robot_without_a_policy_is_told_which_have_one(shipped: Path) -> None:
         UsageError, match="for ARC-Sigmoid-Mine, .* of 'mine'; there are some for: leftcolon-magnetic. Train .*-Mine'"
     ):
         pretrained_checkpoint("ARC-Sigmoid-Mine-Play")
+    with pytest.raises(UsageError, match="Train one with 'arcgym train --task ARC-Sigmoid-Mine-v1 --agent sac'"):
+        pretrained_checkpoint("ARC-Sigmoid-Mine-Play-v1", "sac")
 
 
 def test_it_plays_where_nothing_was_trained_and_where_it_is_asked_for(shipped: Path) -> None:

@@ -68,3 +68,9 @@ def test_listing_tasks_imports_neither_torch_nor_newton() -> None:
     code += "print([name for name in ('torch', 'newton', 'warp') if name in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True)
     assert result.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("plain, play", [("A-B", "A-B-Play"), ("A-B-v0", "A-B-Play-v0"), ("Play-v2", "Play-Play-v2")])
+def test_the_variant_for_watching_is_known_before_a_version_too(plain: str, play: str) -> None:
+    assert registry.play_task(plain) == registry.play_task(play) == play
+    assert registry.plain_task(play) == registry.plain_task(plain) == plain

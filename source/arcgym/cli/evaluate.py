@@ -145,13 +145,14 @@ def _robot_of(agent: str) -> str:
     """Return the robot that a checkpoint was trained with."""
     from arcgym.rl.params import read_params
     from arcgym.utils.errors import UsageError
+    from arcgym.utils.registry import plain_task
 
     if agent in REFERENCE_AGENTS:
         raise UsageError(f"--agent {agent} needs --robot, such as Magnetic, or --tasks.")
     params = read_params(_checkpoint(agent).parent)
     if params is None:
         raise UsageError(f"{agent} has no params/ beside it, which names its task: give --robot or --tasks.")
-    task = params.task.removesuffix("-Play")
+    task = plain_task(params.task)
     if not task.startswith(PREFIX):
         raise UsageError(f"{agent} was trained in {task}, which no suite has: give --tasks {task}, or --robot.")
     return task.split("-")[-1]

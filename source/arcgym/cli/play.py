@@ -18,8 +18,8 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass, replace
 
-from arcgym.cli.arguments import FilmedRunArguments, add_fields, argument, positive, read_fields
-from arcgym.cli.task import PLAY, load_cfgs, load_run_cfgs
+from arcgym.cli.arguments import DEFAULT_AGENT, FilmedRunArguments, add_fields, argument, positive, read_fields
+from arcgym.cli.task import load_cfgs, load_run_cfgs
 from arcgym.utils.errors import UsageError
 
 TAKES_OVERRIDES = True
@@ -50,11 +50,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(namespace: argparse.Namespace) -> None:
     """Play, and print the figures and where the files are."""
-    from arcgym.utils.registry import list_tasks
+    from arcgym.utils.registry import list_tasks, play_task
 
     args = read_fields(PlayArguments, namespace)
-    if f"{args.task}{PLAY}" in list_tasks(prefix=""):
-        args = replace(args, task=f"{args.task}{PLAY}")
+    if play_task(args.task) in list_tasks(prefix=""):
+        args = replace(args, task=play_task(args.task))
     checkpoint = None
     if args.policy == "trained":
         args = _with_pretrained(args)
@@ -87,15 +87,16 @@ def _with_pretrained(args: PlayArguments) -> PlayArguments:
     from arcgym.rl.run_folder import has_checkpoints
 
     chosen = args.checkpoint or args.load_run
+    agent = None if args.agent == DEFAULT_AGENT else args.agent
     if args.use_pretrained_checkpoint:
         if chosen:
             raise UsageError(f"--use_pretrained_checkpoint and '{chosen}' are two checkpoints: leave one of them out.")
-        return replace(args, checkpoint=str(pretrained_checkpoint(args.task)))
+        return replace(args, checkpoint=str(pretrained_checkpoint(args.task, agent)))
     _, agent_cfg = load_cfgs(args)
     if chosen or agent_cfg.load_checkpoint != "latest" or has_checkpoints(agent_cfg.experiment_name):
         return args
     try:
-        path = pretrained_checkpoint(args.task)
+        path = pretrained_checkpoint(args.task, agent)
     except UsageError as error:
         if args.experiment_name:
             return args

@@ -28,9 +28,6 @@ AGENT_FIELDS = (
 )
 """Arguments that are fields of the agent's configuration."""
 
-PLAY = "-Play"
-"""End of the names of tasks that are made for watching."""
-
 
 def load_cfgs(args: TaskArguments) -> tuple[Any, Any]:
     """Return the task's environment and agent configurations with overrides and arguments written into them.
@@ -71,6 +68,7 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
     from arcgym.rl.params import NOT_RESTORED, differences, read_params, restore
     from arcgym.rl.run_folder import find_checkpoint
     from arcgym.utils.coerce import to_plain
+    from arcgym.utils.registry import plain_task
 
     args = with_trained_agent(args)
     _, asked = load_cfgs(args)
@@ -87,7 +85,7 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
                 raise
             trained = f"{checkpoint.parent} was trained with {saved.agent_key}; leave --agent out, or name that."
             raise UsageError(f"--agent is '{args.agent}', but {trained}") from error
-        task, trained = args.task.removesuffix(PLAY), saved.task.removesuffix(PLAY)
+        task, trained = plain_task(args.task), plain_task(saved.task)
         if task == trained:
             plain, _ = _registered(task, args.agent)
             restore(env_cfg, saved.env, "env", keep=list(differences(to_plain(plain), to_plain(env_cfg))))

@@ -86,14 +86,15 @@ def make_drivers(args: Any) -> tuple[dict[str, Any], dict[str, Any] | None]:
     drivers: dict[str, Any] = {name: UNTRAINED[name] for name in SCRIPTED if name in UNTRAINED}
     if not (args.driver == "policy" or args.checkpoint or args.load_run):
         return drivers, None
-    from arcgym.cli.task import PLAY, load_run_cfgs
+    from arcgym.cli.task import load_run_cfgs
     from arcgym.rl.params import read_params
     from arcgym.rl.playing import load_policy
+    from arcgym.utils.registry import plain_task
 
     _, agent_cfg, checkpoint = load_run_cfgs(args)
     drivers["policy"] = lambda env: load_policy(env, agent_cfg, checkpoint)
     saved = None if args.no_params else read_params(checkpoint.parent)
-    fits = saved is not None and saved.task.removesuffix(PLAY) == args.task.removesuffix(PLAY)
+    fits = saved is not None and plain_task(saved.task) == plain_task(args.task)
     return drivers, saved.env if saved is not None and fits else None
 
 

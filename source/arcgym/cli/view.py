@@ -131,13 +131,14 @@ def _view_run(folder: Path, args: ViewArguments) -> None:
     from arcgym.cli.teleop import TeleopArguments, serve
     from arcgym.rl.params import read_params
     from arcgym.rl.run_folder import newest_checkpoint
+    from arcgym.utils.registry import plain_task
 
     params = read_params(folder)
     if params is None:
         raise UsageError(f"{folder} is no folder of a run: it has no params.")
     checkpoint = args.checkpoint or str(newest_checkpoint(folder))
     asked = TeleopArguments(
-        task=params.task.removesuffix("-Play"), checkpoint=checkpoint, driver="policy", device=args.device,
+        task=plain_task(params.task), checkpoint=checkpoint, driver="policy", device=args.device,
         host=args.host, port=args.port, size=args.size, overrides=args.overrides, out="logs/view",
     )  # fmt: skip
     serve(asked, steers=False)

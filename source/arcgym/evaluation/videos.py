@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from arcgym.evaluation.result_folder import ResultFolder, Row
 from arcgym.evaluation.run_trials import run_trials
 from arcgym.evaluation.trials import Conditions
 from arcgym.evaluation.video_choice import chosen_rows, video_path
+from arcgym.utils.progress import counted
 from arcgym.viewers import VideoRecorder
 
 QUALITY = 4.0
@@ -49,8 +51,17 @@ def _film(row: Row, trial: Any, path: Path, load_cfgs: LoadCfgs, options: Evalua
     cfgs = load_cfgs(row["task"], checkpoint_of(agent))
     with opened(row["task"], agent, [trial], cfgs, options) as (env, make_policy):
         world = env.unwrapped
-        with VideoRecorder(partial, round(1.0 / world.step_dt), quality=QUALITY) as video:
-            run_trials(env, make_policy, [trial], again.append, on_step=lambda: video.write(world.render_world(0)))
+        with (
+            VideoRecorder(partial, round(1.0 / world.step_dt), quality=QUALITY) as video,
+            counted(f"frames of trial {trial.trial}", round(row["seconds"] / world.step_dt)) as show,
+        ):
+            frames = itertools.count(1)
+
+            def write_frame() -> None:
+                video.write(world.render_world(0))
+                show(next(frames))
+
+            run_trials(env, make_policy, [trial], again.append, on_step=write_frame)
     partial.replace(path)
     other = [name for name, value in again[0].items() if row.get(name) != value]
     if other:

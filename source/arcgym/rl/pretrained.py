@@ -15,6 +15,7 @@ from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
 from arcgym.rl.small_weights import SCALES, shrink
 from arcgym.utils.errors import UsageError
 from arcgym.utils.paths import assets_dir
+from arcgym.utils.registry import plain_task
 
 FILE = "model.pt"
 """Name of the checkpoint in a policy's folder."""
@@ -33,7 +34,7 @@ def policies_dir() -> Path:
 
 def folder_of(task: str) -> str:
     """Return the name of a task's folder: ``sigmoid-magnetic`` for ``ARC-Sigmoid-Magnetic-Play``."""
-    return task.removesuffix("-Play").removeprefix("ARC-").lower()
+    return plain_task(task).removeprefix("ARC-").lower()
 
 
 def robot_of(task: str) -> str:
@@ -41,8 +42,12 @@ def robot_of(task: str) -> str:
     return folder_of(task).rpartition("-")[2]
 
 
-def pretrained_checkpoint(task: str) -> Path:
+def pretrained_checkpoint(task: str, agent: str | None = None) -> Path:
     """Return the checkpoint of the policy that is shipped for a task: its own, or that of a journey of its robot.
+
+    Args:
+        task: Name of the task.
+        agent: Agent that was asked for, for the hint how to train one; None is the task's first.
 
     Raises:
         UsageError: There is none, with the tasks that have one.
@@ -52,11 +57,11 @@ def pretrained_checkpoint(task: str) -> Path:
         path = policies_dir() / name / FILE
         if path.is_file():
             return path
-    plain = task.removesuffix("-Play")
+    plain, further = plain_task(task), f" --agent {agent}" if agent else ""
     there = sorted(found.parent.name for found in policies_dir().glob(f"*/{FILE}"))
     raise UsageError(
         f"No policy is shipped for {plain}, and none for a journey of '{robot_of(task)}'; there are some for: "
-        f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {plain}'."
+        f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {plain}{further}'."
     )
 
 

@@ -20,14 +20,12 @@ from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.paths import assets_dir
-from arcgym.utils.registry import list_tasks, load_cfg_from_registry
+from arcgym.utils.registry import list_tasks, load_cfg_from_registry, plain_task, play_task
 
 KEPT_METRICS = ("success", "progress", "looping_ratio", "inserted_length", "max_tip_force", "max_base_force")
 """Metrics of a reduced session: those that need no picture."""
 NEVER = 1.0e9
 """Period after which the policy's camera draws in a reduced session [s]."""
-PLAY = "-Play"
-"""End of the names of tasks in which nothing is randomized."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,7 +83,7 @@ class MarksRecorder(RecorderTerm):
 
 def tasks() -> list[str]:
     """Return the tasks that can be chosen."""
-    return [name for name in list_tasks() if not name.endswith(PLAY)]
+    return [name for name in list_tasks() if plain_task(name) == name]
 
 
 def patients() -> list[str]:
@@ -100,7 +98,7 @@ def make_cfg(choice: Choice, out: Path) -> tuple[str, Any]:
     Raises:
         UsageError: If the task is unknown, or an override is wrong.
     """
-    name = f"{choice.task}{PLAY}" if f"{choice.task}{PLAY}" in list_tasks(prefix="") else choice.task
+    name = play_task(choice.task) if play_task(choice.task) in list_tasks(prefix="") else choice.task
     try:
         cfg = load_cfg_from_registry(name, "env_cfg_entry_point")
         if choice.settings is not None:

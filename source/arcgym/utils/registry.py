@@ -15,6 +15,7 @@ import copy
 import functools
 import importlib
 import importlib.metadata
+import re
 from typing import Any
 
 import gymnasium
@@ -33,7 +34,21 @@ CFG_SUFFIX = "_cfg_entry_point"
 VECTOR_ENTRY_POINT = "arcgym.envs.numpy_vector_env:make_vec"
 """Function that builds the environments of ``gymnasium.make_vec`` from the entry point of their class."""
 
+PLAY = "-Play"
+"""In the names of tasks that are made for watching: at the end, or before a version, ``My-Task-Play-v0``."""
+
 _loaded: set[str] = set()
+
+
+def plain_task(task: str) -> str:
+    """Return the task that a variant for watching is of: ``My-Task-v0`` for ``My-Task-Play-v0``; others as they are."""
+    return re.sub(rf"{PLAY}(?=$|-v\d+$)", "", task)
+
+
+def play_task(task: str) -> str:
+    """Return the name that the variant of a task for watching has: ``My-Task-Play-v0`` for ``My-Task-v0``."""
+    name, version = re.fullmatch(r"(.*?)(-v\d+)?", plain_task(task)).groups("")  # type: ignore[union-attr]
+    return f"{name}{PLAY}{version}"
 
 
 def register_task(
