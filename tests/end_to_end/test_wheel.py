@@ -35,6 +35,13 @@ def test_no_file_is_left_out_of_the_wheel(wheel_python, source, installed, patte
     assert wanted <= {path.relative_to(packages / installed) for path in (packages / installed).glob(pattern)}
 
 
+def test_the_wheel_is_named_by_the_code_of_the_checkout(wheel_python):
+    from arcgym.envs.provenance import code_hash
+
+    code = "from arcgym.envs.provenance import versions; print(versions()['arcgym code'])"
+    assert wheel_python.check(code).strip() == code_hash()
+
+
 def test_list_names_the_tasks(wheel_python):
     result = wheel_python.arcgym("list", "sigmoid")
     assert result.returncode == 0, result.stderr

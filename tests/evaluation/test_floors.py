@@ -88,7 +88,7 @@ def test_a_row_gives_way_to_none_without_its_figures(tmp_path: Path) -> None:
     [
         ({}, 11, "has 3 trials, neither all nor each n-th of them"),
         ({"overrides": ["env.start=rest"]}, 1, "change the task"),
-        ({"versions": {}}, 1, "the commit is not known"),
+        ({"versions": {}}, 1, "neither commit nor code is known"),
     ],
 )
 def test_what_is_no_floor_of_the_suite_is_left_out_with_the_reason(

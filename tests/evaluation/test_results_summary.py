@@ -135,7 +135,7 @@ def test_rules_on_actions_are_marked(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("run", "every", "reason"),
     [
-        ({"versions": {"newton": "1.8.0"}}, 1, "the commit is not known"),
+        ({"versions": {"newton": "1.8.0"}}, 1, "neither commit nor code is known"),
         ({"versions": {"arcgym commit": "abc with changes"}}, 1, "its code has changes that the commit has not"),
         ({"training": []}, 1, "trained with is not known"),
         ({"conditions_sha256": "other"}, 1, "the hash of the condition file differs"),
@@ -148,6 +148,13 @@ def test_what_is_not_known_or_another_task_is_left_out(
 ) -> None:
     text = page([write_result_folder(tmp_path / "ours", 2, every=every, **run)], tmp_path)
     assert reason in capsys.readouterr().out and "PPO, shipped reward | – | – | – | – |" in text
+
+
+def test_an_installation_without_a_commit_is_named_by_its_code(tmp_path: Path) -> None:
+    text = page(
+        [write_result_folder(tmp_path / "ours", 30, versions={"arcgym": "0.1.0", "arcgym code": "c0de"})], tmp_path
+    )
+    assert "| version 0.1.0, code c0de |" in text
 
 
 def test_settings_of_an_effect_that_is_off_change_nothing(tmp_path: Path) -> None:

@@ -27,6 +27,8 @@ PACKAGES = ("newton", "warp-lang", "torch", "numpy", "mujoco-warp")
 """Packages whose versions a result may depend on."""
 COMMIT, CHANGED = "arcgym commit", " with changes"
 """Name of ARCGym's commit among the versions, and its ending where the code is not that of the commit."""
+CODE = "arcgym code"
+"""Name of the hash of ARCGym's code among the versions, where there is no commit to name."""
 NOT_PHYSICS = ("recorders", "viewer", "log_dir")
 """Fields of a configuration that change nothing that happens."""
 
@@ -103,12 +105,13 @@ def versions() -> dict[str, str]:
 def _commit() -> dict[str, str]:
     """Return the commit of ARCGym's own checkout, marked where files differ from it.
 
-    A copy without a checkout, such as one on a cluster, has what the variable ``ARCGYM_COMMIT`` says, or nothing.
+    A copy without a checkout, such as one on a cluster, has what the variable ``ARCGYM_COMMIT`` says, else, as a wheel,
+    the hash of its code.
     """
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         said = os.environ.get("ARCGYM_COMMIT", "")
-        return {COMMIT: said} if said else {}
+        return {COMMIT: said} if said else {CODE: code_hash()}
     try:
         commit, changed = (
             subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10).stdout.strip()
@@ -117,6 +120,16 @@ def _commit() -> dict[str, str]:
     except (OSError, subprocess.SubprocessError):
         return {}
     return {COMMIT: commit + (CHANGED if changed else "")} if commit else {}
+
+
+def code_hash() -> str:
+    """Return the hash of all Python files of ARCGym and its tasks, 12 digits: the same in wheel and checkout."""
+    source = Path(__file__).resolve().parents[2]
+    digest = hashlib.sha256()
+    for path in sorted(path for name in ("arcgym", "arcgym_tasks") for path in (source / name).rglob("*.py")):
+        content = path.read_bytes()
+        digest.update(f"{path.relative_to(source).as_posix()} {len(content)}\n".encode() + content)
+    return digest.hexdigest()[:12]
 
 
 def stage_hash(path: str | Path) -> str:

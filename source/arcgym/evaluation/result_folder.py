@@ -47,8 +47,9 @@ HASH = 12
 UNTRAINED = ("zero", "random", "expert")
 """Agents that have no checkpoint: the floor."""
 
-COMMIT, CHANGED = "arcgym commit", " with changes"
-"""Name of ARCGym's commit among the versions, and its ending where the code was not that of the commit."""
+COMMIT, CHANGED, CODE = "arcgym commit", " with changes", "arcgym code"
+"""Name of ARCGym's commit among the versions, its ending where the code was not that of the commit, and the name of the
+hash of the code of an installation, which has no commit."""
 
 Row = dict[str, Any]
 """One trial's results by column."""

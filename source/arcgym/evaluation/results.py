@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.check import problems
-from arcgym.evaluation.result_folder import CHANGED, COMMIT, Row, read_run, read_trial_rows, result_folders
+from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
 
 LARGEST_SHARE = 10
@@ -81,8 +81,9 @@ class Result:
 
     @property
     def commit(self) -> str:
-        """Commit of the code that ran them."""
-        return str(self.run["versions"][COMMIT])
+        """Commit of the code that ran them, or version and hash of the code of an installation without one."""
+        versions = self.run["versions"]
+        return str(versions.get(COMMIT) or f"version {versions.get('arcgym')}, code {versions.get(CODE)}")
 
     @property
     def transitions(self) -> float:
@@ -144,8 +145,9 @@ def best(results: Sequence[Result]) -> Result | None:
 
 def _unknown(run: dict[str, Any]) -> list[str]:
     """Return what a run does not say of itself."""
-    commit = run.get("versions", {}).get(COMMIT)
-    found = [] if commit else ["the commit is not known"]
+    versions = run.get("versions", {})
+    commit = versions.get(COMMIT)
+    found = [] if commit or versions.get(CODE) else ["neither commit nor code is known"]
     found += ["its code has changes that the commit has not"] if commit and commit.endswith(CHANGED) else []
     if run.get("agent") == "checkpoint" and not run.get("training"):
         found.append("what its checkpoint was trained with is not known")
