@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import inspect
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from typing import Any, ClassVar
 
 import torch
@@ -105,6 +106,20 @@ class ExpertBase(ABC):
         return given.reshape(-1).expand(self.scene.num_envs).clone()
 
 
+def setting_names(made: Callable[..., ExpertBase]) -> list[str]:
+    """Return the names of an expert's settings; of a class that hands on ``**settings`` its bases' too."""
+    names: list[str] = []
+    for one in inspect.getmro(made) if inspect.isclass(made) else [made]:
+        function = vars(one).get("__init__") if inspect.isclass(one) else one
+        if function is None:
+            continue
+        parameters = list(inspect.signature(function).parameters.values())[2 if inspect.isclass(one) else 1 :]
+        names += [parameter.name for parameter in parameters if parameter.kind is not parameter.VAR_KEYWORD]
+        if all(parameter.kind is not parameter.VAR_KEYWORD for parameter in parameters):
+            break
+    return names
+
+
 def make_expert(scene: InteractiveScene, **settings: Any) -> ExpertBase:
     """Return the expert that the scene's ``EndoscopeCfg.expert`` names.
 
@@ -122,7 +137,7 @@ def make_expert(scene: InteractiveScene, **settings: Any) -> ExpertBase:
             "'arcgym.experts.pull_expert:PullExpert', or start from rest with env.start=rest."
         )
     made: Any = resolve_callable(expert) if isinstance(expert, str) else expert
-    known = list(inspect.signature(made).parameters)[1:]
+    known = setting_names(made)
     for name in settings:
         if name not in known:
             raise ValueError(f"{made.__name__} has no setting '{name}'. {did_you_mean(name, known)}")
