@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from tiny import tiny_colon_stage
 
+from arcgym.anatomy.validation import mesh_checks
 from arcgym.anatomy.validation.checks import failed
 from arcgym.anatomy.validation.mesh_checks import (
     boundary_faces,
@@ -43,6 +44,19 @@ def test_capping_closes_what_a_missing_face_opened() -> None:
 def test_two_tetrahedra(shift: tuple[float, float, float], crosses: bool) -> None:
     points = np.concatenate([CORNERS, CORNERS + shift])
     assert (count_crossings(points, np.concatenate([FACES, FACES + 4])) > 0) == crosses
+
+
+def test_crossings_are_those_of_all_pairs() -> None:
+    stage, rng = tiny_colon_stage(), np.random.default_rng(0)
+    points, faces = stage.wall.points, boundary_faces(stage.wall.tets)
+    points = points + rng.normal(0.0, 0.004, points.shape)
+    edges, _ = edge_uses(faces)
+    edge, face = (index.ravel() for index in np.indices((len(edges), len(faces))))
+    apart = (edges[edge][:, :, None] != faces[face][:, None]).all((1, 2))
+    edge, face = edge[apart], face[apart]
+    crossing = mesh_checks._crosses(points.astype(float), edges[edge], faces[face])
+    expected = np.concatenate([edges[edge[crossing]], faces[face[crossing]]], axis=1)
+    assert len(expected) > 10 and np.array_equal(mesh_checks.find_crossings(points, faces), expected)
 
 
 def test_sound_tube_passes_every_check() -> None:

@@ -6,9 +6,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import warp as wp
 from tiny import tiny_colon_stage
 
+from arcgym.anatomy.measures import inner_faces
 from arcgym.anatomy.validation import passage
+from arcgym.anatomy.validation.distance_kernels import signed_distances
 from arcgym.anatomy.validation.passage import HEAD_LENGTH, HEAD_RADIUS, find_passage, head_passage
 
 HALF = 0.5 * HEAD_LENGTH - HEAD_RADIUS
@@ -81,3 +84,19 @@ def test_the_search_ends_where_what_is_asked_for_is_there() -> None:
     assert short.least >= 0.004 and len(asked) == 1
     assert find_passage(clearance, line, bend * angle, HEAD_RADIUS, HEAD_LENGTH).least > short.least
     assert len(asked) > 100
+
+
+def test_least_distance_is_that_of_all_points() -> None:
+    """In a bent tube and outside of it, also near its open ends; the shortcut finds the same to the bit."""
+    stage = tiny_colon_stage(length=0.3, radius=0.012, bend=1.5)
+    line, points, faces = stage.centerline.points, stage.wall.points, inner_faces(stage.wall.tets, stage.wall.layer)
+    surface = passage._WallDistance(points.astype(float), faces, line[[0, -1]])
+    rng = np.random.default_rng(0)
+    start = line[rng.integers(len(line), size=(400, 1, 1))] + rng.normal(0.0, 0.003, (400, 3, 1, 3))
+    groups = (start + rng.normal(0.0, 0.002, (400, 3, 1, 3)) * np.arange(7)[:, None]).astype(np.float32)
+    places = wp.array(groups.reshape(-1, 3), dtype=wp.vec3, device="cpu")
+    out = wp.zeros(len(places), dtype=float, device="cpu")
+    wp.launch(signed_distances, len(out), inputs=[surface._mesh.id, places], outputs=[out], device="cpu")
+    expected = out.numpy().reshape(400, -1).min(1)
+    assert (expected > 0.0).any() and (expected < 0.0).any()
+    assert np.array_equal(surface.least(groups), expected.astype(float))

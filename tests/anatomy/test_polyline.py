@@ -28,9 +28,15 @@ def test_smoothing_keeps_ends_and_straight_lines() -> None:
 
 def test_both_ends_of_a_short_edge_move() -> None:
     """An edge of 1 that has to be 2 long: each end moves by a half."""
-    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    restore_lengths(points, np.array([2.0]))
-    assert points[:, 0].tolist() == [-0.5, 1.5]
+    points = np.array([[0.0, 1.0], [0.0, 0.0], [0.0, 0.0]])
+    restore_lengths(points, np.array([2.0]), np.zeros((3, 0)), rounds=1)
+    assert points[0].tolist() == [-0.5, 1.5]
+
+
+def test_fixed_points_move_the_others() -> None:
+    points = np.array([[0.0, 1.0, 2.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    restore_lengths(points, np.array([1.0, 1.0]), np.array([[0.5], [0.0], [0.0]]), rounds=60)
+    assert np.abs(np.linalg.norm(np.diff(points), axis=0) - 1.0).max() < 0.05
 
 
 def test_smooth_step_is_a_half_in_the_middle() -> None:

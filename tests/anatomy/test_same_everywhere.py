@@ -46,9 +46,9 @@ def test_a_bend_in_its_shape_is_not_pulled_however_it_lies() -> None:
     turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
     points = np.concatenate([[[9.0, 9.0, 9.0]], shape[0] @ turn[:2] + [0.3, 0.2, 0.1]])
     pull = BendTargets(np.array([[1, 2, 3]]), shape).pull
-    assert np.allclose(pull(points), 0.0, atol=1e-14)
+    assert np.allclose(pull(points.T), 0.0, atol=1e-14)
     points[2] += [0.1, 0.0, 0.0]
-    assert np.abs(pull(points)[1:]).max() > 0.01 and not pull(points)[0].any()
+    assert np.abs(pull(points.T)[:, 1:]).max() > 0.01 and not pull(points.T)[:, 0].any()
 
 
 def test_a_bend_turns_as_the_polar_decomposition_says() -> None:
@@ -59,7 +59,7 @@ def test_a_bend_turns_as_the_polar_decomposition_says() -> None:
     here = points - points.mean(0)
     left, _, right = np.linalg.svd(shape.T @ here, full_matrices=False)
     expected = 0.4 * (shape @ left @ right - here)
-    assert np.allclose(BendTargets(np.arange(9)[None], shape[None]).pull(points), expected)
+    assert np.allclose(BendTargets(np.arange(9)[None], shape[None]).pull(points.T).T, expected)
 
 
 def test_kept_courses_are_those_of_the_five_patients() -> None:

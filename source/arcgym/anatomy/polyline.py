@@ -39,17 +39,32 @@ def _blur(values: np.ndarray, sigma: float, pad: int) -> np.ndarray:
     return gaussian_filter1d(padded, sigma, axis=0)[pad:-pad]
 
 
-def restore_lengths(points: np.ndarray, edge: np.ndarray) -> None:
+def restore_lengths(points: np.ndarray, edge: np.ndarray, fixed: np.ndarray, rounds: int) -> None:
     """Move both ends of every edge until it has its length, even edges first, then odd ones, in place.
 
+    Points are held in two arrays meanwhile, one for even and one for odd ones: this is called thousands of times.
+
     Args:
-        points: Positions, shape (n, 3).
-        edge: Length of each edge, shape (n - 1,).
+        points: Positions [m], shape (3, n).
+        edge: Length of each edge [m], shape (n - 1,).
+        fixed: Where the first points are put before each round [m], shape (3, f).
+        rounds: How often it is done.
     """
-    for first in (0, 1):
-        a, b = points[first:-1:2], points[first + 1 :: 2]
-        offset = b - a
-        length = np.sqrt((offset * offset).sum(1, keepdims=True))
-        half = 0.5 * offset * (1.0 - edge[first::2, None] / np.maximum(length, 1e-9))
-        a += half
-        b -= half
+    sides = [np.ascontiguousarray(points[:, k::2]) for k in (0, 1)]
+    even, odd = edge[0::2], edge[1::2]
+    pairs = [
+        (sides[0][:, : len(even)], sides[1][:, : len(even)], even),
+        (sides[1][:, : len(odd)], sides[0][:, 1 : 1 + len(odd)], odd),
+    ]
+    for _ in range(rounds):
+        for k, side in enumerate(sides):
+            side[:, : fixed[:, k::2].shape[1]] = fixed[:, k::2]
+        for a, b, wanted in pairs:
+            half = b - a
+            length = np.sqrt((half * half).sum(0))
+            half *= 0.5
+            half *= 1.0 - wanted / np.maximum(length, 1e-9)
+            a += half
+            b -= half
+    for k, side in enumerate(sides):
+        points[:, k::2] = side

@@ -55,16 +55,20 @@ class BendTargets:
     """Their wanted positions in the bend's plane, relative to their mean [m], shape (K, n, 2)."""
 
     def pull(self, points: np.ndarray) -> np.ndarray:
-        """Return a shift of every point towards the shape of its bend (shape matching, Mueller et al., TOG 2005)."""
-        here = points[self.index]
+        """Return a shift of every point towards the shape of its bend (shape matching, Mueller et al., TOG 2005).
+
+        Points and shift have shape (3, n).
+        """
+        count = points.shape[1]
+        here = points.T[self.index]
         middle = here.mean(1, keepdims=True)
         along, across = (self.shape[..., k, None] for k in range(2))
         first, second = _nearest_axes((along * (here - middle)).sum(1), (across * (here - middle)).sum(1))
         target = along * first[:, None] + across * second[:, None] + middle
-        shift, uses = np.zeros_like(points), np.zeros(len(points))
-        np.add.at(shift, self.index, _STIFFNESS * (target - here))
-        np.add.at(uses, self.index, 1.0)
-        return shift / np.maximum(uses, 1.0)[:, None]
+        way = (_STIFFNESS * (target - here)).reshape(-1, 3)
+        index = self.index.ravel()
+        shift = np.stack([np.bincount(index, way[:, k], count) for k in range(3)])
+        return shift / np.maximum(np.bincount(index, minlength=count), 1)
 
 
 def _nearest_axes(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from arcgym.anatomy.generator.acute_bends import choose_bends, make_bends
@@ -44,6 +46,12 @@ _NEIGHBOR_AGE = 5
 _NEIGHBOR_REACH = 0.02
 """How much nearer points may come in between [m]."""
 
+_DRIFT = 0.01
+"""Way that points may go until pairs that may be neighbors are looked for among all again [m]."""
+
+_LENGTH_ROUNDS = 6
+"""How often edges get their lengths in each iteration."""
+
 
 def relax(
     route: np.ndarray,
@@ -72,83 +80,113 @@ def relax(
         drawn: Random numbers from 0 to 1 for the bends' radii and angles, shape (:data:`MOST_BENDS`, 2).
         bends: Points that become acute bends; None chooses those that turn most.
     """
-    route, radius, edge = rounded(route), rounded(radius), rounded(edge, _EDGE_STEP)
+    route, radius, edge = rounded(route).T.copy(), rounded(radius), rounded(edge, _EDGE_STEP)
     points, arc = route.copy(), np.r_[0.0, np.cumsum(edge)]
     need = HAUSTRAL_MARGIN * (radius[:, None] + radius[None]) + 2 * spec.wall_thickness + max(_LOOP_GAP, spec.clearance)
-    other_loop, listed = np.abs(arc[:, None] - arc[None]) > 1.9 * need, (need + _NEIGHBOR_REACH) ** 2
+    loops = _Loops(need, np.abs(arc[:, None] - arc[None]) > 1.9 * need)
     sharpest = np.minimum(MAX_CURVATURE_RADIUS / radius, 1.0 / spec.min_bend_radius)
-    canal = np.stack([0 * arc, 0 * arc, arc], 1)[:_CANAL_POINTS]
+    unbend = [_unbend_of(edge, sharpest, reach) for reach in (1, 2, 4)]
+    canal = np.stack([0 * arc, 0 * arc, arc])[:, :_CANAL_POINTS]
     made = None
     for k in range(_ITERATIONS):
         if spec.acute_bends and k in _CHOOSING:
-            spacing = float(edge.mean())
-            places = choose_bends(points, spacing, radius, spec) if bends is None else bends
+            spacing, course = float(edge.mean()), points.T.copy()
+            places = choose_bends(course, spacing, radius, spec) if bends is None else bends
             made = make_bends(places, spacing, radius, spec, drawn)
         if k % _NEIGHBOR_AGE == 0:
-            a, b = np.nonzero(other_loop & (_square_distances(points) < listed))
-            gap = need[a, b]
-        points += _push_apart(points, a, b, gap)
-        points += hold[:, None] * (route - points)
+            loops.list_neighbors(points)
+        points += loops.push_apart(points)
+        points += hold * (route - points)
         if made:
             points += made.pull(points)
-        points += _unbend(points, edge, sharpest)
-        for _ in range(6):
-            points[:_CANAL_POINTS] = canal
-            restore_lengths(points, edge)
-    points[:_CANAL_POINTS] = canal
-    return points
+        points += _unbent(points, unbend)
+        restore_lengths(points, edge, canal, _LENGTH_ROUNDS)
+    points[:, :_CANAL_POINTS] = canal
+    return points.T.copy()
+
+
+class _Loops:
+    """Points of different loops, which push each other apart where they are too near."""
+
+    def __init__(self, need: np.ndarray, other: np.ndarray) -> None:
+        """Prepare lists.
+
+        Args:
+            need: Wanted distance of each pair of points [m], shape (n, n).
+            other: Whether they belong to different loops, shape (n, n).
+        """
+        self._need, self._other, self._listed = need, other, (need + _NEIGHBOR_REACH) ** 2
+        self._seen: np.ndarray | None = None
+
+    def list_neighbors(self, points: np.ndarray) -> None:
+        """List the pairs that may come too near in the next iterations, of points (3, n)."""
+        if self._seen is None or ((points - self._seen) ** 2).sum(0).max() > (0.99 * _DRIFT) ** 2:
+            far = (self._need + (_NEIGHBOR_REACH + 2.0 * _DRIFT)) ** 2
+            self._pairs = np.nonzero(self._other & (_square_distances(points) < far))
+            self._limits, self._gaps, self._seen = self._listed[self._pairs], self._need[self._pairs], points.copy()
+        a, b = self._pairs
+        near = ((points[:, a] - points[:, b]) ** 2).sum(0) < self._limits
+        self._a, self._b, self._gap = a[near], b[near], self._gaps[near]
+
+    def push_apart(self, points: np.ndarray) -> np.ndarray:
+        """Return the shift of each point away from those of other loops that are too near, shape (3, n)."""
+        a, count = self._a, points.shape[1]
+        offset = points[:, a] - points[:, self._b]
+        square = (offset**2).sum(0)
+        close = np.flatnonzero(square < self._gap**2)
+        a, offset = a[close], offset[:, close]
+        distance = np.sqrt(square[close]) + 1e-9
+        overlap = self._gap[close] - distance
+        total = np.bincount(a, overlap, count) + 1e-12
+        push = (overlap**2 / (total[a] * distance)) * offset
+        return 0.3 * np.stack([np.bincount(a, along, count) for along in push])
 
 
 def _square_distances(points: np.ndarray) -> np.ndarray:
-    """Return squared distances [m^2], shape (n, n); a matrix product is slow on busy cores."""
-    total, square = np.zeros((2, len(points), len(points)))
-    for x in points.T:
+    """Return squared distances [m^2], shape (n, n), of points (3, n); a matrix product is slow on busy cores."""
+    total, square = np.zeros((2, points.shape[1], points.shape[1]))
+    for x in points:
         np.subtract(x[:, None], x[None], out=square)
         square *= square
         total += square
     return total
 
 
-def _push_apart(points: np.ndarray, a: np.ndarray, b: np.ndarray, need: np.ndarray) -> np.ndarray:
-    """Return the shift of each point away from those of other loops that are nearer than ``need``, for pairs a, b."""
-    offset = points[a] - points[b]
-    close = (offset**2).sum(1) < need**2
-    a, offset, need = a[close], offset[close], need[close]
-    distance = np.linalg.norm(offset, axis=1) + 1e-9
-    overlap = need - distance
-    total = np.bincount(a, overlap, len(points)) + 1e-12
-    push = (overlap**2 / (total[a] * distance))[:, None] * offset
-    return 0.3 * np.stack([np.bincount(a, push[:, k], len(points)) for k in range(3)], 1)
+@dataclass(frozen=True)
+class _Unbend:
+    """Numbers of bends over some way."""
+
+    reach: int
+    """Points before and after."""
+    span: np.ndarray
+    """Square of the way to them [m^2], shape (n - 2 reach,)."""
+    sharpest: np.ndarray
+    """Largest curvature [1/m], shape (n - 2 reach,)."""
 
 
-def _unbend(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray) -> np.ndarray:
-    """Return a shift that opens bends: a little everywhere, strongly where the curvature is above ``sharpest``.
+def _unbend_of(edge: np.ndarray, sharpest: np.ndarray, reach: int) -> _Unbend:
+    inner = slice(reach, len(edge) - reach + 1)
+    return _Unbend(reach, (reach * edge[inner]) ** 2, sharpest[reach:-reach])
+
+
+def _unbent(points: np.ndarray, reaches: list[_Unbend]) -> np.ndarray:
+    """Return a shift that opens bends, shape (3, n): a little everywhere, strongly where the curvature is too large.
 
     Over 10, 20 and 40 mm; over the longer ones neighbours move the other way, and the course does not shrink.
     """
     shift = np.zeros_like(points)
-    shift[1:-1] = _sag(points, 1) * (_STIFFER + np.maximum(_excess(points, edge, sharpest, 1), 0.0))[:, None]
-    for reach in (2, 4):
-        part = 0.2 * _sag(points, reach) * _relative_excess(points, edge, sharpest, reach)[:, None]
-        shift[reach:-reach] += part
-        shift[2 * reach :] -= 0.5 * part
-        shift[: -2 * reach] -= 0.5 * part
+    for bend in reaches:
+        reach = bend.reach
+        sag = 0.5 * (points[:, : -2 * reach] + points[:, 2 * reach :]) - points[:, reach:-reach]
+        curvature = 2.0 * np.sqrt((sag**2).sum(0)) / bend.span
+        if reach == 1:
+            excess = np.minimum(np.maximum(curvature / bend.sharpest - 1.0, 0.0), 0.9)
+            shift[:, 1:-1] = sag * (_STIFFER + excess)
+        else:
+            excess = np.minimum(np.maximum(1.0 - bend.sharpest / np.maximum(curvature, 1e-9), 0.0), 0.9)
+            part = 0.2 * sag * excess
+            shift[:, reach:-reach] += part
+            part *= 0.5
+            shift[:, 2 * reach :] -= part
+            shift[:, : -2 * reach] -= part
     return shift
-
-
-def _sag(points: np.ndarray, reach: int) -> np.ndarray:
-    """Return the way from each point to the middle of those ``reach`` before and after it [m]."""
-    return 0.5 * (points[: -2 * reach] + points[2 * reach :]) - points[reach:-reach]
-
-
-def _curvature(points: np.ndarray, edge: np.ndarray, reach: int) -> np.ndarray:
-    span = reach * edge[reach : len(edge) - reach + 1]
-    return 2.0 * np.linalg.norm(_sag(points, reach), axis=1) / span**2
-
-
-def _excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: int) -> np.ndarray:
-    return np.clip(_curvature(points, edge, reach) / sharpest[reach:-reach] - 1.0, 0.0, 0.9)
-
-
-def _relative_excess(points: np.ndarray, edge: np.ndarray, sharpest: np.ndarray, reach: int) -> np.ndarray:
-    return np.clip(1.0 - sharpest[reach:-reach] / np.maximum(_curvature(points, edge, reach), 1e-9), 0.0, 0.9)

@@ -4,16 +4,13 @@
 
 from __future__ import annotations
 
-from itertools import chain
-
 import numpy as np
-from scipy.spatial import cKDTree
 
 _BLOCK = 200_000
 """Pairs of edge and face that are tested at once, which bounds the memory."""
 
-_SIZES = 6
-"""Groups into which faces are sorted by size."""
+_MARGIN = 1e-5
+"""Distance at which boxes still count as meeting [m]: more than positions in single precision are off."""
 
 
 def boundary_faces(tets: np.ndarray) -> np.ndarray:
@@ -43,31 +40,34 @@ def find_crossings(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """Return the vertices, two of an edge and three of a face, of each pair that crosses, shape (n, 5)."""
     points = points.astype(np.float64)
     edges, _ = edge_uses(faces)
-    middle = points[edges].mean(1)
-    half = 0.5 * np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-    center = points[faces].mean(1)
-    size = np.linalg.norm(points[faces] - center[:, None], axis=2).max(1)
-    edge, face = _near_pairs(middle, half, center, size)
-    apart = (edges[edge][:, :, None] != faces[face][:, None, :]).all((1, 2))
-    apart &= np.linalg.norm(middle[edge] - center[face], axis=1) < half[edge] + size[face]
-    edge, face = edge[apart], face[apart]
+    edge, face = _near_pairs(points, edges, faces)
     blocks = range(0, len(edge), _BLOCK)
     hit = [_crosses(points, edges[edge[k : k + _BLOCK]], faces[face[k : k + _BLOCK]]) for k in blocks]
     crossing = np.concatenate(hit) if hit else np.zeros(0, bool)
     return np.concatenate([edges[edge[crossing]], faces[face[crossing]]], axis=1)
 
 
-def _near_pairs(
-    middle: np.ndarray, half: np.ndarray, center: np.ndarray, size: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return edges and faces whose spheres may touch; faces of like size are looked for together, as few are large."""
-    pairs = []
-    for part in np.array_split(np.argsort(size, kind="stable"), min(_SIZES, len(size))):
-        near = cKDTree(center[part]).query_ball_point(middle, half + size[part].max(), return_sorted=False)
-        count = np.array([len(found) for found in near])
-        pairs.append((np.repeat(np.arange(len(middle)), count), part[np.fromiter(chain(*near), int, count.sum())]))
-    edge, face = (np.concatenate(column) for column in zip(*pairs, strict=True))
-    return edge, face
+def _near_pairs(points: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return edges and faces whose boxes meet and that share no vertex, in order."""
+    from arcgym.utils import warp_setup  # noqa: F401  isort: skip
+    import warp as wp
+
+    from arcgym.anatomy.validation.crossing_kernels import near_faces
+
+    vertices = wp.array(points, dtype=wp.vec3, device="cpu")
+    corners = np.ascontiguousarray(faces, np.int32)
+    mesh = wp.Mesh(vertices, wp.array(corners.ravel(), dtype=int, device="cpu"))
+    given = [vertices, wp.array(corners, dtype=int, device="cpu"), wp.array(edges.astype(np.int32), device="cpu")]
+    room = len(edges)
+    while True:
+        count, pairs = wp.zeros(1, dtype=int, device="cpu"), wp.empty((room, 2), dtype=int, device="cpu")
+        wp.launch(near_faces, len(edges), inputs=[mesh.id, *given, _MARGIN], outputs=[count, pairs], device="cpu")
+        found = int(count.numpy()[0])
+        if found <= room:
+            edge, face = pairs.numpy()[:found].astype(int).T
+            order = np.lexsort((face, edge))
+            return edge[order], face[order]
+        room = found
 
 
 def _crosses(points: np.ndarray, edges: np.ndarray, faces: np.ndarray) -> np.ndarray:

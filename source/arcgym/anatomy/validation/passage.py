@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import binary_dilation, label, minimum
@@ -25,6 +26,9 @@ HEAD_LENGTH = 0.043
 
 Clearance = Callable[[np.ndarray], np.ndarray]
 """Function that returns the distance to the wall [m], negative outside the lumen, of points (..., 3)."""
+
+Least = Callable[[np.ndarray], np.ndarray]
+"""Function that returns the least of these distances [m], shape (n,), of groups of chains of points (n, c, m, 3)."""
 
 Touched = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Function that returns which groups of points (n, m, 3) come within a distance (n,) [m] of the wall, shape (n,)."""
@@ -119,9 +123,9 @@ def contact_passage(
         length: Its length with both round ends [m].
         until: Room everywhere at which the search ends [m].
     """
-    surface = _WallDistance(contact.points.astype(float), contact.faces())
     points, arc = line.points.astype(float), line.arc.astype(float)
-    return find_passage(surface.clearance, points, arc, radius, length, surface.touched, until)
+    surface = _WallDistance(contact.points.astype(float), contact.faces(), points[[0, -1]])
+    return _find(surface.least, points, arc, radius, length, surface.touched, until)
 
 
 def wall_passage(
@@ -142,52 +146,103 @@ def wall_passage(
         length: Its length with both round ends [m].
         until: Room everywhere at which the search ends [m].
     """
-    surface = _WallDistance(wall.points.astype(float), inner_faces(wall.tets, wall.layer))
-    return find_passage(surface.clearance, points, arc, radius, length, surface.touched, until)
+    surface = _WallDistance(wall.points.astype(float), inner_faces(wall.tets, wall.layer), points[[0, -1]])
+    return _find(surface.least, points, arc, radius, length, surface.touched, until)
 
 
 class _WallDistance:
     """Signed distance to a triangulated wall; the side is by the winding number, which sharp folds do not mislead."""
 
-    def __init__(self, points: np.ndarray, faces: np.ndarray) -> None:
+    def __init__(self, points: np.ndarray, faces: np.ndarray, ends: np.ndarray) -> None:
+        """Prepare searches.
+
+        Args:
+            points: Vertices [m], shape (V, 3).
+            faces: Triangles, shape (F, 3).
+            ends: Places of the wall's two openings, or of what may be open [m], shape (2, 3).
+        """
         from arcgym.utils import warp_setup  # noqa: F401  isort: skip
         import warp as wp
 
         vertices = wp.array(points, dtype=wp.vec3, device="cpu")
         indices = wp.array(faces.ravel().astype(np.int32), dtype=int, device="cpu")
         self._mesh = wp.Mesh(vertices, indices, support_winding_number=True)
+        self._ends = wp.array(ends, dtype=wp.vec3, device="cpu")
+        self._searches: dict[tuple[str, int, int], _Search] = {}
 
-    def clearance(self, points: np.ndarray) -> np.ndarray:
-        """Return the distance to the wall [m], negative outside the lumen, shape (...,) of points (..., 3)."""
-        import warp as wp
+    def least(self, points: np.ndarray) -> np.ndarray:
+        """Return the least distance to the wall [m], negative outside the lumen, of groups of chains of points.
 
-        from arcgym.anatomy.validation.distance_kernels import signed_distances
+        Args:
+            points: Positions [m], shape (n, chains, points, 3).
+        """
+        from arcgym.anatomy.validation.distance_kernels import least_signed_distances
 
-        places = wp.array(points.reshape(-1, 3), dtype=wp.vec3, device="cpu")
-        out = wp.zeros(len(places), dtype=float, device="cpu")
-        wp.launch(signed_distances, len(places), inputs=[self._mesh.id, places], outputs=[out], device="cpu")
-        return out.numpy().astype(float).reshape(points.shape[:-1])
+        count, chains, length = points.shape[:3]
+        if ("least", chains, length) not in self._searches:
+            search = _Search(least_signed_distances, chains * length, [self._mesh.id], [length, self._ends], float)
+            self._searches["least", chains, length] = search
+        search = self._searches["least", chains, length]
+        return search(points.reshape(count, chains * length, 3)).astype(float)
 
     def touched(self, points: np.ndarray, limit: np.ndarray) -> np.ndarray:
         """Return whether any point of a group is within a distance of the wall [m], shape (n,), of points (n, m, 3)."""
-        import warp as wp
-
         from arcgym.anatomy.validation.distance_kernels import any_nearer
 
-        places = wp.array(np.ascontiguousarray(points, np.float32), dtype=wp.vec3, ndim=2, device="cpu")
-        out = wp.zeros(len(points), dtype=bool, device="cpu")
-        limits = wp.array(limit, dtype=float, device="cpu")
-        wp.launch(any_nearer, len(points), inputs=[self._mesh.id, places, limits], outputs=[out], device="cpu")
-        return out.numpy()
+        length = points.shape[1]
+        if ("touched", 1, length) not in self._searches:
+            self._searches["touched", 1, length] = _Search(any_nearer, length, [self._mesh.id], [], bool, limited=True)
+        return self._searches["touched", 1, length](points, limit)
+
+
+class _Search:
+    """A kernel over groups of points, launched again and again on the same arrays: most launches are small."""
+
+    def __init__(
+        self, kernel: Any, length: int, before: list[Any], after: list[Any], result: type, limited: bool = False
+    ) -> None:
+        """Prepare launches.
+
+        Args:
+            kernel: Takes ``before``, points (n, length), limits (n,) if there are any, ``after``, and an output (n,).
+            length: Points of a group.
+            before: First inputs.
+            after: Last inputs.
+            result: Type of the output.
+            limited: Whether each group has a limit.
+        """
+        self._kernel, self._length, self._before, self._after = kernel, length, before, after
+        self._result, self._limited, self._size = result, limited, 0
+
+    def __call__(self, points: np.ndarray, limit: np.ndarray | None = None) -> np.ndarray:
+        """Return the output for groups of points, shape (n,), of points (n, length, 3) and limits (n,)."""
+        count = len(points)
+        if count > self._size:
+            self._prepare(2 * count)
+        self._points[:count] = points
+        if limit is not None:
+            self._limits[:count] = limit
+        self._launch.set_dim(count)
+        self._launch.launch()
+        return self._out[:count].copy()
+
+    def _prepare(self, size: int) -> None:
+        import warp as wp
+
+        points = wp.zeros((size, self._length), dtype=wp.vec3, device="cpu")
+        limits, out = wp.zeros(size, dtype=float, device="cpu"), wp.zeros(size, dtype=self._result, device="cpu")
+        inputs = [*self._before, points, *([limits] if self._limited else []), *self._after]
+        self._launch = wp.launch(self._kernel, size, inputs=inputs, outputs=[out], device="cpu", record_cmd=True)
+        self._points, self._limits, self._out, self._size = points.numpy(), limits.numpy(), out.numpy(), size
+        self._kept = points, limits, out
 
 
 class _Heads:
     """Heads at all places, each between its neighbors."""
 
-    def __init__(
-        self, clearance: Clearance, points: np.ndarray, arc: np.ndarray, half: float, touched: Touched | None
-    ) -> None:
-        self.clearance, self.half, self.touched = clearance, half, touched
+    def __init__(self, least: Least, points: np.ndarray, arc: np.ndarray, half: float, touched: Touched | None) -> None:
+        self.least, self.half, self.touched = least, half, touched
+        self.beads = half * np.linspace(-1.0, 1.0, _BEADS)[:, None]
         first = arc[0] + half
         self.arc = np.arange(first, max(arc[-1] - half - _BLIND, first + _STATION), _STATION)
         at = lambda s: np.stack([np.interp(s, arc, points[:, k]) for k in range(3)], 1)  # noqa: E731
@@ -198,30 +253,27 @@ class _Heads:
 
     def worst(self, index: np.ndarray) -> np.ndarray:
         """Return the least distance to the wall [m] of heads at some places, and half-way to both neighbors."""
-        return self._least(self._poses(index))
+        return self.least(self._beads(*self._poses(index)))
 
-    def _poses(self, index: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Return middles and axes of heads at some places, and half-way to both neighbors."""
+    def _poses(self, index: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return middles and axes of heads at some places, and half-way to both neighbors, shape (n, 3, 3) each."""
         middle, axis = self.middle[index], self.axis[index]
-        poses = [(middle, axis)]
-        for step in (-1, 1):
-            other = np.clip(index + step, 0, len(self.arc) - 1)
-            poses.append((0.5 * (middle + self.middle[other]), _unit(axis + self.axis[other])))
-        return poses
+        middles, axes = np.empty((2, len(index), 3, 3))
+        middles[:, 0], axes[:, 0] = middle, axis
+        for side, other in ((1, np.maximum(index - 1, 0)), (2, np.minimum(index + 1, len(self.arc) - 1))):
+            middles[:, side] = 0.5 * (middle + self.middle[other])
+            axes[:, side] = _unit(axis + self.axis[other])
+        return middles, axes
 
-    def _least(self, poses: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-        return self.clearance(self._beads(poses)).min((1, 2))
-
-    def _beads(self, poses: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-        """Return points along the axes of heads in some poses [m], shape (n, poses, beads, 3)."""
-        beads = self.half * np.linspace(-1.0, 1.0, _BEADS)[:, None]
-        return np.stack([middle[:, None] + beads * axis[:, None] for middle, axis in poses], 1)
+    def _beads(self, middle: np.ndarray, axis: np.ndarray) -> np.ndarray:
+        """Return points along the axes of heads in some poses (n, poses, 3) [m], shape (n, poses, beads, 3)."""
+        return middle[:, :, None] + self.beads * axis[:, :, None]
 
     def _sure_to_lose(self, index: np.ndarray, room: np.ndarray) -> np.ndarray:
         """Return which heads have no more than some room [m], as far as that can be told without the wall's side."""
         if self.touched is None or not len(index):
             return np.zeros(len(index), bool)
-        return self.touched(self._beads(self._poses(index)).reshape(len(index), -1, 3), room)
+        return self.touched(self._beads(*self._poses(index)).reshape(len(index), -1, 3), room)
 
     def search(self, rng: np.random.Generator, enough: float, until: float) -> None:
         """Lay heads anew wherever there is less room than ``enough`` [m]: each alone first, then with its neighbors.
@@ -247,14 +299,14 @@ class _Heads:
     def _spread_out(self, index: np.ndarray, rng: np.random.Generator, enough: float, along: float) -> None:
         """Move each head to where it has room, up to ``enough`` [m], but not far from where its neighbors went."""
         own = np.full(len(self.arc), np.inf)
-        own[index] = self._least([(self.middle[index], self.axis[index])])
+        own[index] = self.least(self._beads(self.middle[index, None], self.axis[index, None]))
         for k in range(_ROUNDS[0]):
             for parity in (0, 1):
                 chosen = index[(index % 2 == parity) & (own[index] < enough)]
                 if not len(chosen):
                     continue
                 middle, axis = self._moved(chosen, rng, *_MOVES[len(_MOVES) * k // _ROUNDS[0]], along)
-                room = self._least([(middle, axis)])
+                room = self.least(self._beads(middle[:, None], axis[:, None]))
                 before = self._astray(chosen, self.middle[chosen], self.axis[chosen])
                 gain = np.minimum(room, enough) - np.minimum(own[chosen], enough)
                 better = gain > _TOGETHER * (self._astray(chosen, middle, axis) - before)
@@ -264,7 +316,7 @@ class _Heads:
 
     def _astray(self, index: np.ndarray, middle: np.ndarray, axis: np.ndarray) -> np.ndarray:
         """Return how far heads are off the mean of their neighbors, both taken from the course [m], shape (n,)."""
-        sides = [np.clip(index + step, 0, len(self.arc) - 1) for step in (-1, 1)]
+        sides = np.maximum(index - 1, 0), np.minimum(index + 1, len(self.arc) - 1)
         shift = sum(0.5 * (self.middle[side] - self.course[side]) for side in sides)
         turn = sum(0.5 * (self.axis[side] - self.tangent[side]) for side in sides)
         aside = np.linalg.norm(middle - self.course[index] - shift, axis=1)
@@ -286,7 +338,10 @@ class _Heads:
         worse = self._sure_to_lose(index, before[2])
         worse[~worse] = self.worst(index[~worse]) <= before[2][~worse]
         self.middle[index[worse]], self.axis[index[worse]] = before[0][worse], before[1][worse]
-        near = np.unique(np.clip(index[~worse, None] + [-1, 0, 1], 0, len(self.arc) - 1))
+        near = np.zeros(len(self.arc) + 2, bool)
+        for step in (0, 1, 2):
+            near[index[~worse] + step] = True
+        near = np.flatnonzero(near[1:-1])
         self.room[near] = self.worst(near)
 
     def _moved(
@@ -309,7 +364,6 @@ def find_passage(
     arc: np.ndarray,
     radius: float,
     length: float,
-    touched: Touched | None = None,
     until: float = np.inf,
 ) -> Passage:
     """Lay a head along a line and move it about until it has most room, seeded so that results repeat.
@@ -320,13 +374,25 @@ def find_passage(
         arc: Its arc length [m], shape (n,).
         radius: Radius of the head [m].
         length: Its length with both round ends [m].
-        touched: A faster way to tell that a head has no more than some room; the result is the same to the bit.
         until: Room everywhere at which the search ends [m]; else it ends where no place can have more.
     """
-    heads = _Heads(clearance, points, arc, 0.5 * length - radius, touched)
+    return _find(lambda groups: clearance(groups).min((1, 2)), points, arc, radius, length, None, until)
+
+
+def _find(
+    least: Least,
+    points: np.ndarray,
+    arc: np.ndarray,
+    radius: float,
+    length: float,
+    touched: Touched | None,
+    until: float,
+) -> Passage:
+    """Do as :func:`find_passage`; ``touched`` is a faster way to tell that a head has no more than some room."""
+    heads = _Heads(least, points, arc, 0.5 * length - radius, touched)
     heads.search(np.random.default_rng(0), radius + _ENOUGH, min(until, radius + _ENOUGH))
     return Passage(heads.arc, np.minimum(heads.room, radius + _ENOUGH), heads.middle, heads.axis)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12)
+    return vectors / np.maximum(np.sqrt((vectors * vectors).sum(-1, keepdims=True)), 1e-12)
