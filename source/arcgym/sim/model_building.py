@@ -74,7 +74,7 @@ def wall_modes(wall: WallParameters) -> RingModes:
 
 
 def carried_surface(
-    colon: Colon, rest: Sequence[np.ndarray], lumen: LumenTopology, patient: wp.array
+    colon: Colon, rest: Sequence[np.ndarray], lumen: LumenTopology, patient: wp.array, rows_alone: bool
 ) -> CarriedSurface:
     """Return the fine surface that the walls carry.
 
@@ -83,6 +83,7 @@ def carried_surface(
         rest: Rest positions of each patient's wall [m], shape (V, 3).
         lumen: Faces of a wall that the scope would touch without it.
         patient: Patient of each world, shape (W,), int32.
+        rows_alone: Whether to take all rows of the stages' surfaces, but no columns between the wall's.
 
     Raises:
         ValueError: If a stage has none, or they do not fit the wall or each other.
@@ -96,7 +97,7 @@ def carried_surface(
                 "with 'arcgym make-colon' or 'arcgym import-colon', or set env.sim.contact.surface=wall."
             )
         surfaces.append(surface)
-    return CarriedSurface(surfaces, rest, lumen, patient)
+    return CarriedSurface(surfaces, rest, lumen, patient, rows_alone)
 
 
 def wall_lumen(wall: ShellMesh | WallMesh) -> LumenTopology:

@@ -134,7 +134,8 @@ class Simulation:
         if self.cfg.contact.surface == "wall":
             return None
         self.require_two_level("touches the wall's own faces", "set env.sim.contact.surface=wall")
-        return model_building.carried_surface(self.colon, rest, lumen, self.patient)
+        rows_alone = self.cfg.contact.surface == "rows"
+        return model_building.carried_surface(self.colon, rest, lumen, self.patient, rows_alone)
 
     def _coupling(self) -> Coupling:
         if self.cfg.solver == "newton":

@@ -61,11 +61,11 @@ class ContactCfg:
     ``static_friction`` is 1."""
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
-    surface: Literal["wall", "fine"] = "wall"
+    surface: Literal["wall", "rows", "fine"] = "wall"
     """What the links touch: ``wall``, the faces of the simulated wall, a centimetre wide, or ``fine``, the stage's
-    contact surface, which has the folds that they leave out and is carried by the wall (docs/physics.md). Choose it
-    where folds and tight bends matter; it takes three times the room for contacts, and stages made before it have
-    none."""
+    contact surface, which has the folds that they leave out and is carried by the wall (docs/physics.md), or ``rows``,
+    the rows of that surface with the wall's columns alone: folds go round the lumen. Choose them where folds and tight
+    bends matter; they take three times the room for contacts, and stages made before them have none."""
     search_gap: float = 0.001
     """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
     that link and wall close in one physics step."""
@@ -95,7 +95,7 @@ class ContactCfg:
         require_non_negative(self, "friction", "tissue_share")
         require_non_negative(self, "wall_radius", unit="m")
         require_at_least(self, 1, "search_reach", "capacity", "patch_capacity")
-        require(self, "surface", ("wall", "fine"))
+        require(self, "surface", ("wall", "rows", "fine"))
 
 
 @configclass

@@ -28,7 +28,12 @@ class CarriedSurface:
     """
 
     def __init__(
-        self, surfaces: Sequence[ContactSurface], rest: Sequence[np.ndarray], wall: LumenTopology, patient: wp.array
+        self,
+        surfaces: Sequence[ContactSurface],
+        rest: Sequence[np.ndarray],
+        wall: LumenTopology,
+        patient: wp.array,
+        rows_alone: bool = False,
     ):
         """Find the cell of each face and the offset of each point.
 
@@ -37,10 +42,14 @@ class CarriedSurface:
             rest: Rest positions of each patient's wall [m], shape (V, 3).
             wall: Lumen faces of a wall.
             patient: Patient of each world, shape (W,), int32.
+            rows_alone: Whether to take all of their rows, but no columns between the wall's.
 
         Raises:
             ValueError: If the surfaces do not divide the wall's cells evenly, or differ in more than their points.
         """
+        along = surfaces[0].columns // wall.rings.shape[1]
+        if rows_alone:
+            surfaces = [without_columns(surface, max(along, 1)) for surface in surfaces]
         first = surfaces[0]
         for surface in surfaces[1:]:
             same = np.array_equal(surface.skin_indices, first.skin_indices)
@@ -50,7 +59,7 @@ class CarriedSurface:
                     "vertices of the wall: all patients of a run need the same grid. Set env.sim.contact.surface=wall."
                 )
         device = str(patient.device)
-        self.topology, self.carriers, self.weights = carried_topology(first, wall)
+        self.topology, self.carriers, self.weights = carried_topology(first, wall, along)
         self.patient = patient
         offsets = [local_offsets(s, points) for s, points in zip(surfaces, rest, strict=True)]
         self._offset = patient_array(offsets, wp.vec3, device)
@@ -79,12 +88,23 @@ class CarriedSurface:
         return self.points
 
 
-def carried_topology(surface: ContactSurface, wall: LumenTopology) -> tuple[LumenTopology, np.ndarray, np.ndarray]:
+def without_columns(surface: ContactSurface, step: int) -> ContactSurface:
+    """Return a surface with every ``step``-th of its columns."""
+    keep = np.arange(len(surface.points)).reshape(-1, surface.columns)[:, ::step]
+    vertices = keep.ravel()
+    points, index, weight = (part[vertices] for part in (surface.points, surface.skin_indices, surface.skin_weights))
+    return ContactSurface(points, keep.shape[1], index, weight)
+
+
+def carried_topology(
+    surface: ContactSurface, wall: LumenTopology, along: int
+) -> tuple[LumenTopology, np.ndarray, np.ndarray]:
     """Return the faces of a surface sorted by the wall's rings, and what carries them.
 
     Args:
         surface: The surface.
         wall: Lumen faces of the wall; its vertices are numbered ring by ring, sector by sector.
+        along: Rows of the surface for each ring of the wall.
 
     Returns:
         The faces; the wall vertices that carry each, shape (F, 4), int32; and their weights in each corner, shape
@@ -100,7 +120,7 @@ def carried_topology(surface: ContactSurface, wall: LumenTopology) -> tuple[Lume
     row, column = at // columns, at % columns
     keep = (faces >= (surface.rows - 1) * columns).sum(axis=1) < 2  # those at the pole have no area
     faces, row, column = faces[keep], row[keep], column[keep]
-    ring, sector = np.minimum(row // max(parts, 1), rings - 2), column // max(parts, 1)
+    ring, sector = np.minimum(row // max(along, 1), rings - 2), column // max(parts, 1)
     order = np.lexsort((row, column, ring))
     faces, ring, sector = faces[order].astype(np.int32), ring[order], sector[order]
     after = (sector + 1) % sectors
