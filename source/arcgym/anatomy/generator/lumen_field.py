@@ -12,7 +12,7 @@ import os
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import find_objects, gaussian_filter, label
 from scipy.spatial import cKDTree
 
 from arcgym.anatomy.blending import smooth_step
@@ -56,6 +56,10 @@ _CREASE = 0.45, 0.85
 
 _ROUNDING = 0.0032
 """Standard deviation of the smoothing of creases on the inside of bends [m]: two walls do not fold to an edge."""
+
+
+_BOX = 8
+"""Voxels of an edge of the blocks by which creases are gathered to boxes."""
 
 
 @dataclass(frozen=True)
@@ -214,8 +218,30 @@ class _Chunks:
 
 
 def _rounded(values: np.ndarray, crease: np.ndarray, spacing: float) -> np.ndarray:
-    """Smooth a field where creases are."""
+    """Smooth a field where creases are: in boxes round them, which are a small part of the grid."""
     sigma = _ROUNDING / spacing
-    soft = gaussian_filter(values, sigma)
-    share = np.clip(1.5 * gaussian_filter(crease, sigma), 0.0, 1.0)
-    return values + share * (soft - values)
+    reach, out = int(4.0 * sigma + 0.5), values.copy()  # of the filter
+    for box in _boxes(crease > 0.0, reach):
+        around = tuple(slice(max(0, side.start - reach), side.stop + reach) for side in box)
+        within = tuple(
+            slice(side.start - wide.start, side.stop - wide.start) for side, wide in zip(box, around, strict=True)
+        )
+        soft = gaussian_filter(values[around], sigma)[within]
+        share = np.clip(1.5 * gaussian_filter(crease[around], sigma)[within], 0.0, 1.0)
+        out[box] = values[box] + share * (soft - values[box])
+    return out
+
+
+def _boxes(mark: np.ndarray, margin: int) -> list[tuple[slice, ...]]:
+    """Return boxes that hold all marked voxels and what is within some voxels of them."""
+    places = np.stack(np.nonzero(mark), 1)
+    coarse = np.zeros([1 + size // _BOX for size in mark.shape], bool)
+    coarse[tuple((places // _BOX).T)] = True
+    part = label(coarse, np.ones((3, 3, 3)))[0]
+    shape = np.array(mark.shape)
+    boxes = []
+    for box in find_objects(part):
+        low = np.array([side.start for side in box]) * _BOX - margin
+        high = np.array([side.stop for side in box]) * _BOX + margin
+        boxes.append(tuple(map(slice, np.maximum(low, 0).tolist(), np.minimum(high, shape).tolist())))
+    return boxes

@@ -5,7 +5,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
+from math import floor
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -122,15 +124,28 @@ def _stroke(pen: ImageDraw.ImageDraw, path: np.ndarray, branch: _Branch, trunk: 
     if len(path) < 2:
         return
     ink = int(255 * min(1.0, 0.35 + 0.65 * branch.width / trunk))
-    low, high = path.min(0) - branch.width, path.max(0) + branch.width
-    shifts = [np.arange(-np.floor(high[k] / size[k]), -np.floor(low[k] / size[k]) + 1) for k in (0, 1)]
-    thickness = np.linspace(1.0, 0.8, len(path)) * branch.width * _SUPERSAMPLE
+    low, high = path.min(0).tolist(), path.max(0).tolist()
+    shifts = [_copies(low[k] - branch.width, high[k] + branch.width, size[k]) for k in (0, 1)]
+    thinning, rising = _profiles(len(path))
+    thickness = thinning * branch.width * _SUPERSAMPLE
     if branch.rises:
-        thickness *= np.minimum(1.0, np.linspace(0.1, 3.0, len(path)))
+        thickness *= rising
     widths = np.maximum(1, np.rint(thickness[:-1])).astype(int)
-    changes = [0, *(np.flatnonzero(np.diff(widths)) + 1).tolist(), len(widths)]
-    for dx in shifts[0] * size[0]:
-        for dy in shifts[1] * size[1]:
+    changes = [0, *(np.flatnonzero(widths[1:] != widths[:-1]) + 1).tolist(), len(widths)]
+    pieces = [(2 * first, 2 * last + 2, int(widths[first])) for first, last in pairwise(changes)]
+    for dx in shifts[0]:
+        for dy in shifts[1]:
             points = ((path + [dx, dy]) * _SUPERSAMPLE).ravel().tolist()
-            for first, last in pairwise(changes):  # pieces of the same width at once
-                pen.line(points[2 * first : 2 * last + 2], fill=ink, width=int(widths[first]))
+            for first, last, width in pieces:  # of the same width at once
+                pen.line(points[first:last], fill=ink, width=width)
+
+
+def _copies(low: float, high: float, size: int) -> list[int]:
+    """Return the shifts [px] by which what lies between two bounds meets the image."""
+    return [k * size for k in range(-floor(high / size), -floor(low / size) + 1)]
+
+
+@cache
+def _profiles(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return shares of a vessel's width along its points: thinning towards its end, and rising from the depth."""
+    return np.linspace(1.0, 0.8, count), np.minimum(1.0, np.linspace(0.1, 3.0, count))
