@@ -106,6 +106,32 @@ def test_an_action_that_is_never_used_has_the_least_unit():
     torch.testing.assert_close(deviations(actions), torch.tensor([0.02, 1.0]))
 
 
+@one_thread()
+def test_an_expert_that_is_asked_on_corrects_where_the_policy_drives(tmp_path):
+    record_expert(tmp_path, worlds=2)
+    runner = make_runner(tmp_path)
+    before, env = len(runner.alg.read_demonstrations()), runner.env
+    forgotten: list[torch.Tensor] = []
+
+    class Expert:
+        reset = staticmethod(forgotten.append)
+
+        def __call__(self, obs):
+            return (-4.0 * env.offset).clamp(-1.0, 1.0)
+
+    runner.alg.expert = Expert()
+    runner.learn(3)
+    kept = runner.alg.read_demonstrations()
+    steps = 3 * runner.cfg["num_steps_per_env"]
+    assert len(kept) == before + steps * env.num_envs and len(forgotten) == steps
+    assert kept.observations.batch_size == (len(kept),) and kept.actions.abs().max() <= 1.0
+
+
+def test_only_an_expert_can_be_asked_on():
+    with pytest.raises(ValueError, match="asks_on is true with demonstrations 'folder', expected 'expert'"):
+        RslRlBehaviorCloningAlgorithmCfg(asks_on=True, demonstrations="folder").validate_config()
+
+
 def test_unknown_units_are_named():
     with pytest.raises(ValueError, match="action_units is .std.*deviation, raw"):
         RslRlBehaviorCloningAlgorithmCfg(action_units="std").validate_config()

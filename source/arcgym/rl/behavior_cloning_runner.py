@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 
+import torch
 from rsl_rl.env import VecEnv
 
 from arcgym.rl.expert_demonstrations import ask_expert
@@ -48,11 +49,12 @@ class BehaviorCloningRunner(OnPolicyRunner):
 
     def _ask_expert(self) -> None:
         start, alg = time.perf_counter(), self.alg
+        expert = ExpertPolicy(self.env, **alg.expert_settings)  # type: ignore[attr-defined]
         steps_before = self.env.unwrapped.common_step_counter  # type: ignore[attr-defined]
         alg.take(  # type: ignore[attr-defined]
             ask_expert(
                 self.env,
-                ExpertPolicy(self.env, **alg.expert_settings),  # type: ignore[attr-defined]
+                expert,
                 alg.groups,  # type: ignore[attr-defined]
                 self.device,
                 alg.expert_steps,  # type: ignore[attr-defined]
@@ -63,6 +65,9 @@ class BehaviorCloningRunner(OnPolicyRunner):
         steps = self.env.unwrapped.common_step_counter - steps_before  # type: ignore[attr-defined]
         self.clock.add(time.perf_counter() - start, steps * self.env.num_envs * self.gpu_world_size)
         self._describe()
+        if alg.asks_on:  # type: ignore[attr-defined]
+            expert.reset(torch.ones(self.env.num_envs, device=self.device))
+            alg.expert = expert  # type: ignore[attr-defined]
         if self.clock.is_over:
             raise UsageError(
                 f"Asking the expert took {self.clock}, all of agent.{self.clock.limit}, and nothing was learnt: give "

@@ -32,6 +32,11 @@ class Demonstrations:
         """Return the number of steps."""
         return len(self.actions)
 
+    def add(self, observations: TensorDict, actions: torch.Tensor) -> None:
+        """Keep further steps; arguments as of the constructor."""
+        self.observations = torch.cat([self.observations, observations])  # type: ignore[assignment]
+        self.actions = torch.cat([self.actions, actions])
+
     def sample(self, batch_size: int) -> tuple[TensorDict, torch.Tensor]:
         """Return observations and actions, shape (B, A), of steps drawn with replacement."""
         index = torch.randint(len(self), (batch_size,), device=self.actions.device)

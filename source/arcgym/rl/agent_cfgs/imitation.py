@@ -10,7 +10,7 @@ from typing import Any
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
 from arcgym.rl.runner_cfg import GaussianDistributionCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
-from arcgym.utils.validation import require, require_at_least, require_non_negative, require_positive
+from arcgym.utils.validation import FieldError, require, require_at_least, require_non_negative, require_positive
 
 
 @configclass
@@ -38,6 +38,11 @@ class RslRlBehaviorCloningAlgorithmCfg:
     """Settings of the scripted expert, by the names of its arguments; others keep their defaults. Set
     ``{speed: -0.005, sweep: 0.8}`` for a capsule that looks around on its way back."""
 
+    asks_on: bool = False
+    """Whether the expert goes on to say what it would do where the policy drives between updates, which is cloned, too
+    (DAgger, Ross et al. 2011, arXiv:1011.0686). Needs ``demonstrations=expert``. A clone of the expert's own way alone
+    does not know how to get back onto it; give the policy time to come to where it errs by ``num_steps_per_env``."""
+
     learning_rate: float = 3.0e-4
     """Learning rate."""
 
@@ -64,6 +69,10 @@ class RslRlBehaviorCloningAlgorithmCfg:
         """
         require_at_least(self, 1, "expert_steps", "batch_size", "steps_per_update")
         require(self, "action_units", ("raw", "deviation"))
+        if self.asks_on and self.demonstrations != "expert":
+            raise FieldError(
+                self, "asks_on", f"is true with demonstrations '{self.demonstrations}', expected 'expert'."
+            )
         require_positive(self, "learning_rate", "max_grad_norm")
         require_non_negative(self, "expert_noise")
 

@@ -30,8 +30,8 @@ class BehaviorCloning:
     range then counts as much as one that varies over all of it.
 
     The shape is that of rsl_rl's PPO, so that the same runner drives it: the policy acts in the environment between
-    updates, which shows how good it is and teaches it nothing. Recorded actions are raw ones; those beyond [-1, 1]
-    count as the bound, which is what the action terms carry out.
+    updates, which shows how good it is and teaches it nothing, unless an expert says what it would do there. Recorded
+    actions are raw ones; those beyond [-1, 1] count as the bound, which is what the action terms carry out.
     """
 
     rnd = None
@@ -50,6 +50,7 @@ class BehaviorCloning:
         steps_per_update: int = 100,
         max_grad_norm: float = 1.0,
         action_units: str = "raw",
+        asks_on: bool = False,
         device: str = "cpu",
         multi_gpu_cfg: dict | None = None,
         grad_reduce_bucket_mb: float = 25,
@@ -70,6 +71,7 @@ class BehaviorCloning:
             steps_per_update: Gradient steps of one iteration.
             max_grad_norm: Gradient clipping by norm.
             action_units: What a difference of actions is counted in: ``raw`` or ``deviation``.
+            asks_on: Whether the runner gives :attr:`expert`, which is asked where the policy drives.
             device: Device of the network.
             multi_gpu_cfg: Rank and number of processes, from the runner.
             grad_reduce_bucket_mb: Size of the messages that average gradients [MB].
@@ -86,6 +88,10 @@ class BehaviorCloning:
         self.batch_size, self.steps_per_update, self.max_grad_norm = batch_size, steps_per_update, max_grad_norm
         self.action_units = action_units
         self._unit: torch.Tensor | float = 1.0
+        self.asks_on = asks_on
+        self.expert: Any = None
+        """Policy that is asked what it would do where this one drives; None for none."""
+        self._asked: list[tuple[TensorDict, torch.Tensor]] = []
         self.is_multi_gpu, self.grad_reduce_bucket_mb = multi_gpu_cfg is not None, grad_reduce_bucket_mb
         self.gpu_world_size = multi_gpu_cfg["world_size"] if multi_gpu_cfg else 1
         self.actor = actor.to(device)
@@ -132,12 +138,16 @@ class BehaviorCloning:
     def act(self, obs: TensorDict) -> torch.Tensor:
         """Return the mean actions, shape (N, A)."""
         self.actor(obs, stochastic_output=True)
+        if self.expert is not None:
+            self._asked.append((obs.select(*self.groups).clone(), self.expert(obs).clone()))
         return self.actor.output_mean
 
     def process_env_step(
         self, obs: TensorDict, rewards: torch.Tensor, dones: torch.Tensor, extras: dict[str, Any]
     ) -> None:
-        """Do nothing: the environment only shows how good the policy is."""
+        """Let the expert forget the episodes that have ended."""
+        if self.expert is not None:
+            self.expert.reset(dones)
 
     def compute_returns(self, obs: TensorDict) -> None:
         """Do nothing."""
@@ -145,6 +155,10 @@ class BehaviorCloning:
     def update(self) -> dict[str, float]:
         """Make the gradient steps of an iteration and return the mean loss."""
         demonstrations = self.read_demonstrations()
+        if self._asked:
+            seen, said = zip(*self._asked, strict=True)
+            demonstrations.add(torch.cat(seen).to(self.device), torch.cat(said).to(self.device))  # type: ignore
+            self._asked.clear()
         if not self._knows_scale:
             self.actor.update_normalization(demonstrations.observations)
             self._knows_scale = True
