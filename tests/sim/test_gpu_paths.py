@@ -12,6 +12,11 @@ from tiny_sim import TinySim
 
 from arcgym.sim import Simulation
 from arcgym.sim.contact import contact_list_kernels
+from arcgym.sim.contact.link_load_kernels import load_contacts_in_groups
+from arcgym.sim.contact.patch_list_kernels import find_patches
+from arcgym.sim.wall.packed_contact_kernels import FOURS
+from arcgym.sim.wall.shell_fans import ordered_corners
+from arcgym.sim.wall.wall_topology import vertex_entries
 
 CUDA = pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA")
 
@@ -58,6 +63,78 @@ def test_lists_are_ordered_side_by_side(touching: Simulation) -> None:
     wp.launch(contact_list_kernels.order_lists, (2, 1), inputs=[records], outputs=scratch, device=device)
     assert max(map(len, expected)) > 2
     assert lists(touching) == expected
+
+
+def test_patches_are_found_side_by_side(touching: Simulation) -> None:
+    contact, device = touching.contact, touching.device
+    found = contact.candidates
+    names = ("rings", "patches", "start", "link", "patch")
+    expected = [getattr(found, name).numpy().copy() for name in names]
+    for name in names:
+        getattr(found, name).fill_(-7)
+    bounds = contact.bounds
+    bounds.ring_of_world, bounds.patch_of_world = (
+        wp.array(one.numpy().swapaxes(0, 1).copy(), dtype=wp.vec4, device=device) for one in (bounds.ring, bounds.patch)
+    )
+    inputs = [touching.state.body_q, contact.links, contact.surface, bounds, contact.law]
+    inputs += [contact.ring, contact.ring_distance, 1, 1]
+    wp.launch(find_patches, (2, 1), inputs=inputs, outputs=[found, contact.records.dropped], device=device)
+    pairs = expected[2][:, -1]
+    assert pairs.min() > 10
+    for name, before in zip(names, expected, strict=True):
+        now = getattr(found, name).numpy()
+        if name in ("link", "patch"):
+            for world, count in enumerate(pairs):
+                np.testing.assert_array_equal(now[world, :count], before[world, :count])
+        else:
+            np.testing.assert_array_equal(now, before)
+
+
+def test_loads_are_summed_in_groups(touching: Simulation) -> None:
+    sim, loads = touching, touching.coupling.solver.loads
+    names = ("ll", "la", "aa", "wrench")
+    wp.to_torch(sim.state.body_qd)[:, :3] = torch.tensor([-0.02, 0.01, 0.03])
+    sim.coupling.load_contacts(0.001, 0.002)
+    expected = [getattr(loads, name).numpy().copy() for name in names]
+    for name in names:
+        getattr(loads, name).fill_(7.0)
+    contact = sim.contact
+    inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
+    inputs += [contact.links, contact.records, contact.law, contact.friction, sim.coupling.body_q_prev, 0.001, 0.002]
+    outputs, shape = [loads, sim.scope_readout.penetrated], (2, len(contact.links.radius) + 1, 1)
+    wp.launch(load_contacts_in_groups, shape, inputs=[*inputs, 1], outputs=outputs, device=sim.device)
+    assert np.abs(expected[0]).max() > 1e-6
+    for name, before in zip(names, expected, strict=True):
+        scale = np.abs(before).max()
+        np.testing.assert_allclose(getattr(loads, name).numpy(), before, rtol=0.0, atol=1e-5 * scale)
+
+
+def test_triangles_around_a_vertex_follow_one_another() -> None:
+    """A square of four triangles around vertex 4, and the border around it, whose fans are open."""
+    triangles = np.array([[0, 1, 4], [2, 3, 4], [1, 2, 4], [3, 0, 4]])
+    start, corner = vertex_entries(triangles, 5)
+    ordered = ordered_corners(triangles, start, corner)
+    assert ordered[start[4] :].tolist() == [2, 8, 5, 11]  # third corners of triangles 0, 2, 1, 3
+    assert ordered[: start[1]].tolist() == [0, 10]  # triangle 0 leads to 4, from where triangle 3 goes on
+    assert sorted(ordered) == sorted(corner)
+
+
+def test_packed_contacts_push_as_records_do(tiny_sim: TinySim) -> None:
+    """Twelve steps, in half of which friction holds: in single precision packed contacts round elsewhere."""
+    ends = []
+    for packed in (False, True):
+        sim = tiny_sim("proximal", num_envs=2, use_graph=False)
+        wall, slots = sim.wall, len(sim.contact.records.link)
+        wall.on_gpu = packed
+        wall.packed = wp.zeros(FOURS * slots, dtype=wp.vec4, device=sim.device)
+        wp.to_torch(sim.nodal_pos)[..., 0] += torch.tensor([0.014, 0.015])
+        sim.forward()
+        sim.step(12)
+        assert (wall.packed.numpy().any()) == packed
+        ends.append([sim.nodal_pos.numpy(), sim.state.joint_q.numpy(), sim.contact.records.slide.numpy()])
+    assert np.abs(ends[0][2]).max() > 1e-5
+    for one, other, bound in zip(*ends, (5e-6, 1e-4, 5e-6), strict=True):
+        np.testing.assert_allclose(other, one, rtol=0.0, atol=bound)
 
 
 @CUDA

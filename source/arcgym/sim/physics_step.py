@@ -11,6 +11,7 @@ import warp as wp
 
 from arcgym.sim.coupling.two_level_coupling import TwoLevelCoupling
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.beside import Beside
 from arcgym.utils.cpu_threads import Pace, cpu_threads
 from arcgym.utils.stages import Stages
 
@@ -32,6 +33,7 @@ class PhysicsStep:
         """The recorded step: stages for several threads of a CPU, a graph for one of them or a GPU."""
         self._eager_steps = 0
         self._pace = Pace()
+        self._beside = Beside(sim.device)
 
     def make(self, steps: int = 1) -> None:
         """Make some steps."""
@@ -50,12 +52,21 @@ class PhysicsStep:
             wp.capture_launch(self.recorded)
 
     def _launch(self) -> None:
-        self._sim.coupling.step()
-        self._collect()
+        coupling = self._sim.coupling
+        if isinstance(coupling, TwoLevelCoupling) and self._beside.on_gpu:
+            coupling.move()
+            with self._beside.work():
+                self._read_wall()
+            coupling.finish_contacts()
+            self._sim.scope_readout.collect()
+            self._beside.join()
+            return
+        coupling.step()
+        self._sim.scope_readout.collect()
+        self._read_wall()
 
-    def _collect(self) -> None:
+    def _read_wall(self) -> None:
         sim = self._sim
-        sim.scope_readout.collect()
         if sim.wall.moves:
             sim.wall_readout.measure(sim.nodal_pos)
             if sim.surroundings is not None:

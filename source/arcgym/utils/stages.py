@@ -15,11 +15,10 @@ from warp._src import context
 
 from arcgym.utils import stage_kernels, warp_setup  # noqa: F401
 from arcgym.utils.cpu_threads import on_threads
+from arcgym.utils.warp_setup import GPU_BLOCK
 
 PARTS = 2
 """Tasks that a launch of independent rows is divided into, for each thread."""
-BLOCK = 256
-"""Threads of a block of a GPU, Warp's own default."""
 LINE = 8
 """Numbers of a cache line."""
 
@@ -179,7 +178,7 @@ def launch_rows(
     inputs: list[Any],
     outputs: list[Any],
     device: str,
-    block_dim: int = BLOCK,
+    block_dim: int = GPU_BLOCK,
 ) -> None:
     """Launch a kernel whose first argument is the first row of a launch, :func:`in_parts`."""
 

@@ -25,3 +25,6 @@ if driver_is_missing():
 GPU_BLOCK = 128
 """Threads of a block of the kernels of wall and contact on a GPU. They need so many registers that fewer threads of
 larger blocks fit a multiprocessor."""
+
+FAST = {"fast_math": True}
+"""Module options of kernels for a GPU alone whose reciprocals, roots and logarithms may be those of the hardware."""

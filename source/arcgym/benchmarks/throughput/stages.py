@@ -83,9 +83,11 @@ def physics_stages(env: Any) -> dict[str, Action]:
     stages: dict[str, Action] = {"physics": lambda: sim.step(steps)}
     if sim.cfg.solver != "two_level":
         return stages
-    detect, move_wall = recorded_call(sim, sim.contact, "detect"), recorded_call(sim, sim.wall, "step")
-    stages["contact"] = repeated(sim, detect, steps)
-    with silenced((sim.contact, "detect"), (sim.wall, "prepare"), (sim.wall, "step")):
+    contact, wall = sim.contact, sim.wall
+    move_wall = recorded_call(sim, wall, "step")
+    stages["contact"] = repeated(sim, lambda: contact.detect(sim.nodal_pos, sim.state.body_q), steps)
+    searches = [(contact, name) for name in ("follow", "find", "order")]
+    with silenced(*searches, *[(wall, name) for name in ("prepare", "begin_contacts", "step")]):
         stages["scope"] = repeated(sim, sim.coupling.step, steps)
     stages["wall"] = repeated(sim, move_wall, steps)
     for name, field, off in (("wall_coarse", "iterations", 0), ("wall_sweep", "coarse_correction", False)):

@@ -10,7 +10,7 @@ import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactLaw, LinkShapes
 from arcgym.sim.contact.contact_search_kernels import link_axis
-from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, bound_ring, sphere_reached
+from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, bound_ring, sphere_reached, write_ring
 from arcgym.utils import warp_setup  # noqa: F401
 
 MARGIN = wp.constant(1.01)
@@ -80,7 +80,7 @@ def bound_near_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, near: wp.arr
     if near[r, w] == 1:
         bound_ring(x, surface, bounds, r, w)
     else:
-        bounds.ring[r, w] = wp.vec4(FAR, FAR, FAR, 0.0)
+        write_ring(bounds, r, w, wp.vec4(FAR, FAR, FAR, 0.0))
 
 
 @wp.kernel

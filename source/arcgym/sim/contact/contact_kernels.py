@@ -135,16 +135,10 @@ class ContactGeometry:
 
 
 @wp.func
-def contact_geometry(
-    p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: float, radius: float
+def capsule_geometry(
+    p: wp.vec3, wall_normal: wp.vec3, center: wp.vec3, axis: wp.vec3, radius: float
 ) -> ContactGeometry:
-    """Return the signed gap between wall point ``p`` and a capsule, and its normal.
-
-    A point on the lumen side of the axis, judged by the wall's own normal, counts as behind it: the gap is then
-    negative however far the link has gone through, so that a link is always pushed back inside.
-    """
-    center = wp.transform_get_translation(pose)
-    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, half_length))
+    """Return what :func:`contact_geometry` does, for a capsule at ``center`` with half its axis ``axis`` [m]."""
     t = segment_parameter(p, center - axis, center + axis)
     r = p - center - (2.0 * t - 1.0) * axis
     d = wp.length(r)
@@ -157,6 +151,20 @@ def contact_geometry(
         d = -d
     out.gap = d - radius
     return out
+
+
+@wp.func
+def contact_geometry(
+    p: wp.vec3, wall_normal: wp.vec3, pose: wp.transform, half_length: float, radius: float
+) -> ContactGeometry:
+    """Return the signed gap between wall point ``p`` and a capsule, and its normal.
+
+    A point on the lumen side of the axis, judged by the wall's own normal, counts as behind it: the gap is then
+    negative however far the link has gone through, so that a link is always pushed back inside.
+    """
+    center = wp.transform_get_translation(pose)
+    axis = wp.transform_vector(pose, wp.vec3(0.0, 0.0, half_length))
+    return capsule_geometry(p, wall_normal, center, axis, radius)
 
 
 @wp.func

@@ -8,7 +8,7 @@ import numpy as np
 import torch
 import warp as wp
 
-from arcgym.sim.contact import carried_kernels, lumen_kernels
+from arcgym.sim.contact import carried_kernels, lumen_kernels, patch_list_kernels
 from arcgym.sim.contact import contact_list_kernels as list_kernels
 from arcgym.sim.contact import contact_record_kernels as record_kernels
 from arcgym.sim.contact import contact_search_kernels as kernels
@@ -16,7 +16,9 @@ from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
+from arcgym.utils.beside import Beside
 from arcgym.utils.warp_setup import GPU_BLOCK
+from arcgym.utils.warp_vote_kernels import LANES
 
 FURTHER_LINKS = 5
 """Links whose share of contacts every world has room for beyond its own: one link may have several times its share."""
@@ -82,8 +84,12 @@ class ContactSearch:
         self._ring_before = wp.clone(self.ring)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
         self.bounds = lumen_kernels.Bounds()
+        patches, worlds = len(topology.patch_start) - 1, num_envs if wp.get_device(device).is_cuda else 0
         self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
-        self.bounds.patch = wp.zeros((len(topology.patch_start) - 1, num_envs), dtype=wp.vec4, device=device)
+        self.bounds.patch = wp.zeros((patches, num_envs), dtype=wp.vec4, device=device)
+        self.bounds.ring_of_world = wp.zeros((worlds, self.ring_count), dtype=wp.vec4, device=device)
+        self.bounds.patch_of_world = wp.zeros((worlds, patches), dtype=wp.vec4, device=device)
+        self._beside = Beside(device)
         self.candidates = self._candidates(cfg.patch_capacity * room)
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
@@ -199,19 +205,40 @@ class ContactSearch:
         )
 
     def detect(self, x: wp.array, body_q: wp.array) -> None:
-        """Fill the contact records.
+        """Fill the contact records: :meth:`follow`, :meth:`find` and :meth:`order`, one after the other.
 
         Args:
             x: Wall positions [m], shape (V, W), vec3.
             body_q: Link poses, shape (W*L,), transform.
         """
+        self.follow(x, body_q)
+        self.find(x, body_q)
+        self.order()
+
+    def follow(self, x: wp.array, body_q: wp.array) -> None:
+        """Find the ring of every link, and where the faces are; arguments as in :meth:`detect`."""
+        with self._beside.work():
+            self._begin(x)
         if not self.still:
             self.update_centers(x)
         self.track(body_q)
-        if not self.still:
+
+    def find(self, x: wp.array, body_q: wp.array) -> None:
+        """Find and record the contacts of the links; arguments as in :meth:`detect`."""
+        self._beside.join()
+        if not self.still and self.carried is not None:
             self._measure_near(x, body_q)
         self._find(body_q)
         self._record(x, self.points, body_q)
+
+    def _begin(self, x: wp.array) -> None:
+        """Put by what the last search found, and find where the faces are of a wall that is touched itself."""
+        records = self.records
+        self._launch(record_kernels.keep_past, (self.num_envs, records.threads), [records], [self.past])
+        records.vertex_head.fill_(-1)
+        records.ring_head.fill_(-1)
+        if not self.still and self.carried is None:
+            self.measure_surface(x)
 
     def measure_surface(self, x: wp.array) -> None:
         """Find where the faces are at the wall positions ``x`` [m], shape (V, W), vec3.
@@ -223,11 +250,9 @@ class ContactSearch:
         self._launch(lumen_kernels.bound_faces, shape, inputs, [self.bounds])
 
     def _measure_near(self, x: wp.array, body_q: wp.array) -> None:
-        """Find where the faces are that a link may touch: all of a wall's, those near the links of a fine surface."""
-        if self.carried is None:
-            self.measure_surface(x)
-            return
+        """Find where the faces of a fine surface are that a link may touch."""
         fine, shape = self.carried, (self.ring_count, self.num_envs)
+        assert fine is not None
         of_links = [body_q, self.links, self.law, self.ring_distance]
         inputs = [x, self.surface, fine.room, fine.patient, *of_links]
         self._launch(carried_kernels.mark_near_rings, shape, inputs, [fine.near])
@@ -238,6 +263,19 @@ class ContactSearch:
         """Find the patches near each link."""
         links = (self.num_envs, self.link_count)
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
+        if self.device != "cpu":
+            threads = self.records.threads
+            inputs = [*of_links, self.ring, self.ring_distance, threads, LANES]
+            outputs = [self.candidates, self.records.dropped]
+            wp.launch(
+                patch_list_kernels.find_patches,
+                (self.num_envs, threads),
+                inputs=inputs,
+                outputs=outputs,
+                device=self.device,
+                block_dim=threads,
+            )
+            return
         self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
         self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
@@ -246,9 +284,6 @@ class ContactSearch:
         """Record the faces near each link, and what friction held where it touched the same face before."""
         records = self.records
         of_records = (self.num_envs, records.threads)
-        self._launch(record_kernels.keep_past, of_records, [records], [self.past])
-        records.vertex_head.fill_(-1)
-        records.ring_head.fill_(-1)
         inputs = [points, body_q, self.links, self.surface, self.law]
         wp.launch(
             record_kernels.record_faces,
@@ -261,6 +296,10 @@ class ContactSearch:
         near = [self.links, self.surface, self.candidates.nearest, self.past]
         inputs = [x, points, body_q, *near, self.law, self.moduli]
         self._launch(record_kernels.locate_contacts, of_records, inputs, [records])
+
+    def order(self) -> None:
+        """Put the lists of contacts by vertex and ring into order, which the wall reads; the scope does not."""
+        records = self.records
         if self.still:
             return
         if self.device == "cpu":
@@ -269,7 +308,7 @@ class ContactSearch:
             return
         wp.launch(
             list_kernels.order_lists,
-            of_records,
+            (self.num_envs, records.threads),
             inputs=[records],
             outputs=list(self._orders),
             device=self.device,

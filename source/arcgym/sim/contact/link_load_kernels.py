@@ -18,6 +18,8 @@ from arcgym.sim.contact.contact_kernels import (
 )
 from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.warp_setup import FAST
+from arcgym.utils.warp_vote_kernels import group_sum_matrix, group_sum_vector
 
 SLOW = wp.constant(0.02)
 """Speed along the normal below which a contact keeps more of the damping that the step adds [m/s]: without it contacts
@@ -92,6 +94,84 @@ def contact_load(
     return out
 
 
+@wp.struct
+class LinkMotion:
+    """Where a link is and how it moves."""
+
+    pose: wp.transform
+    center: wp.vec3  # of mass [m]
+    velocity: wp.spatial_vector  # [m/s, rad/s]
+    back: wp.transform  # takes a point of the link to where it was at the start of the physics step
+
+
+@wp.func
+def load_at(
+    slot: int,
+    link: int,
+    w: int,
+    motion: LinkMotion,
+    x: wp.array2d[wp.vec3],
+    v: wp.array2d[wp.vec3],
+    links: LinkShapes,
+    records: ContactRecords,
+    law: ContactLaw,
+    friction: wp.array[float],
+    elapsed: float,
+    dt: float,
+    penetrated: wp.array[int],
+) -> ArticulatedBody:
+    """Return the load of the contact in ``slot`` about its link's centre of mass; see :func:`load_contacts`."""
+    wall_v = carried(v, records.corners[slot], records.bary[slot], w)
+    p = touched(records, slot, x, w)
+    radius = links.radius[link] + law.wall_radius
+    c = contact_geometry(p, records.normal[slot], motion.pose, links.half_length[link], radius)
+    if c.gap + radius < CLEARANCE * links.radius[link]:
+        penetrated[w] = 1
+    lin = wp.spatial_top(motion.velocity) + wp.cross(wp.spatial_bottom(motion.velocity), p - motion.center)
+    slide = records.slide[slot] + p - wp.transform_point(motion.back, p) - elapsed * wall_v
+    load = contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, slide, dt)
+    return shift_origin(load, p - motion.center)
+
+
+@wp.func
+def link_motion(
+    row: int,
+    link: int,
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
+    com: wp.array[wp.vec3],
+    body_q_prev: wp.array[wp.transform],
+) -> LinkMotion:
+    """Return the motion of the link in ``row``; see :func:`load_contacts`."""
+    out = LinkMotion()
+    out.pose = body_q[row]
+    out.center = wp.transform_point(out.pose, com[link])
+    out.velocity = body_qd[row]
+    out.back = body_q_prev[row] * wp.transform_inverse(out.pose)
+    return out
+
+
+@wp.func
+def summed(total: ArticulatedBody, one: ArticulatedBody) -> ArticulatedBody:
+    """Return the sum of two loads at the same point."""
+    out = total
+    out.ll += one.ll
+    out.la += one.la
+    out.aa += one.aa
+    out.force += one.force
+    out.torque += one.torque
+    return out
+
+
+@wp.func
+def write_load(link: int, w: int, total: ArticulatedBody, loads: LinkLoads):
+    """Write the sum of a link's contacts."""
+    loads.ll[link, w] = total.ll
+    loads.la[link, w] = total.la
+    loads.aa[link, w] = total.aa
+    loads.wrench[link, w] = wp.spatial_vector(-total.force, -total.torque)
+
+
 @wp.kernel
 def load_contacts(
     body_q: wp.array[wp.transform],
@@ -128,32 +208,73 @@ def load_contacts(
         penetrated: Set to 1 where a link's axis is so close to the wall that it may get behind it, or is, shape (W,).
     """
     link, w = wp.tid()
-    row = w * loads.wrench.shape[0] + link
-    pose = body_q[row]
-    center = wp.transform_point(pose, com[link])
+    motion = link_motion(w * loads.wrench.shape[0] + link, link, body_q, body_qd, com, body_q_prev)
     total = ArticulatedBody()
-    back = body_q_prev[row] * wp.transform_inverse(pose)
     for k in range(records.start[w, link], records.start[w, link + 1]):
         slot = w * records.capacity + k
-        wall_v = carried(v, records.corners[slot], records.bary[slot], w)
-        p = touched(records, slot, x, w)
-        radius = links.radius[link] + law.wall_radius
-        c = contact_geometry(p, records.normal[slot], pose, links.half_length[link], radius)
-        if c.gap + radius < CLEARANCE * links.radius[link]:
-            penetrated[w] = 1
-        lin = wp.spatial_top(body_qd[row]) + wp.cross(wp.spatial_bottom(body_qd[row]), p - center)
-        slide = records.slide[slot] + p - wp.transform_point(back, p) - elapsed * wall_v
-        load = contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, slide, dt)
-        one = shift_origin(load, p - center)
-        total.ll += one.ll
-        total.la += one.la
-        total.aa += one.aa
-        total.force += one.force
-        total.torque += one.torque
-    loads.ll[link, w] = total.ll
-    loads.la[link, w] = total.la
-    loads.aa[link, w] = total.aa
-    loads.wrench[link, w] = wp.spatial_vector(-total.force, -total.torque)
+        one = load_at(slot, link, w, motion, x, v, links, records, law, friction, elapsed, dt, penetrated)
+        total = summed(total, one)
+    write_load(link, w, total, loads)
+
+
+@wp.kernel(module="unique", module_options=FAST)
+def load_contacts_in_groups(
+    body_q: wp.array[wp.transform],
+    body_qd: wp.array[wp.spatial_vector],
+    com: wp.array[wp.vec3],
+    x: wp.array2d[wp.vec3],
+    v: wp.array2d[wp.vec3],
+    links: LinkShapes,
+    records: ContactRecords,
+    law: ContactLaw,
+    friction: wp.array[float],
+    body_q_prev: wp.array[wp.transform],
+    elapsed: float,
+    dt: float,
+    group: int,
+    loads: LinkLoads,
+    penetrated: wp.array[int],
+):
+    """Do as :func:`load_contacts` on a GPU, by ``GROUP`` threads a link. Launch (W, N, ``group``).
+
+    N is L or a little more, so that all warps are whole. One thread would wait for what each contact leads to, one
+    contact after the other; these take as many at a time.
+
+    Args:
+        body_q: Link poses, shape (W*L,).
+        body_qd: Link velocities [m/s, rad/s], shape (W*L,).
+        com: Centres of mass in the links' frames [m], shape (W*L,).
+        x: Wall positions [m], shape (V, W).
+        v: Wall velocities [m/s], shape (V, W).
+        links: Capsules of one world.
+        records: Contacts.
+        law: Contact law.
+        friction: Coulomb coefficient of each world, shape (W,).
+        body_q_prev: Link poses at the start of the physics step, shape (W*L,).
+        elapsed: Time since then [s].
+        dt: Substep [s].
+        group: ``GROUP``; on a CPU 1.
+        loads: Loads of the links; written.
+        penetrated: As in :func:`load_contacts`.
+    """
+    w, link, thread = wp.tid()
+    count = loads.wrench.shape[0]
+    total = ArticulatedBody()
+    if link < count:
+        motion = link_motion(w * count + link, link, body_q, body_qd, com, body_q_prev)
+        k = records.start[w, link] + thread
+        while k < records.start[w, link + 1]:
+            slot = w * records.capacity + k
+            one = load_at(slot, link, w, motion, x, v, links, records, law, friction, elapsed, dt, penetrated)
+            total = summed(total, one)
+            k += group
+    total.ll = group_sum_matrix(total.ll)
+    total.la = group_sum_matrix(total.la)
+    total.aa = group_sum_matrix(total.aa)
+    total.force = group_sum_vector(total.force)
+    total.torque = group_sum_vector(total.torque)
+    if thread == 0 and link < count:
+        write_load(link, w, total, loads)
 
 
 @wp.kernel

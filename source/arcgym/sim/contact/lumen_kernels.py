@@ -41,6 +41,8 @@ class Bounds:
 
     patch: wp.array2d[wp.vec4]  # shape (P, W)
     ring: wp.array2d[wp.vec4]  # shape (R, W)
+    patch_of_world: wp.array2d[wp.vec4]  # the same on a GPU, whose warps read those of one world, shape (W, P)
+    ring_of_world: wp.array2d[wp.vec4]  # shape (W, R)
 
 
 @wp.kernel
@@ -119,6 +121,14 @@ def track_rings(
 
 
 @wp.func
+def write_ring(bounds: Bounds, r: int, w: int, sphere: wp.vec4):
+    """Write the sphere around ring ``r`` of world ``w``."""
+    bounds.ring[r, w] = sphere
+    if bounds.ring_of_world.shape[0] > 0:
+        bounds.ring_of_world[w, r] = sphere
+
+
+@wp.func
 def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, r: int, w: int):
     """Enclose the faces of ring ``r`` of world ``w``, patch by patch."""
     first = surface.ring_patch[r]
@@ -133,14 +143,17 @@ def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, r:
         radius = float(0.0)
         for k in range(vertices):
             radius = wp.max(radius, wp.length_sq(x[surface.patch_vertices[p, k], w] - center))
-        bounds.patch[p, w] = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
+        around = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
+        bounds.patch[p, w] = around
+        if bounds.patch_of_world.shape[0] > 0:
+            bounds.patch_of_world[w, p] = around
         middle += center
     middle = middle / float(wp.max(1, last - first))
     radius = float(0.0)
     for p in range(first, last):
         sphere = bounds.patch[p, w]
         radius = wp.max(radius, wp.length(wp.vec3(sphere[0], sphere[1], sphere[2]) - middle) + sphere[3])
-    bounds.ring[r, w] = wp.vec4(middle[0], middle[1], middle[2], radius)
+    write_ring(bounds, r, w, wp.vec4(middle[0], middle[1], middle[2], radius))
 
 
 @wp.kernel

@@ -10,7 +10,10 @@ import warp as wp
 
 from arcgym.sim.contact import link_load_kernels as kernels
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
+from arcgym.utils.beside import Beside
 from arcgym.utils.stages import at_the_same_time
+from arcgym.utils.warp_setup import GPU_BLOCK
+from arcgym.utils.warp_vote_kernels import GROUP, LANES
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -54,11 +57,17 @@ class TwoLevelCoupling:
         self.solver.resistance = sim.actuation.resistance
         self.body_q_prev = wp.clone(sim.state.body_q)
         """Link poses at the start of the last step, shape (W*L,), transform."""
-        on_gpu = wp.get_device(sim.device).is_cuda
-        self._scope_stream = wp.Stream(sim.device, priority=-1) if on_gpu else None
+        self._on_gpu = wp.get_device(sim.device).is_cuda
+        self._scope_stream = wp.Stream(sim.device, priority=-1) if self._on_gpu else None
+        self._beside, self._drives = Beside(sim.device), Beside(sim.device)
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
+        self.move()
+        self.finish_contacts()
+
+    def move(self) -> None:
+        """Do :meth:`step` but for :meth:`finish_contacts`."""
         if self._scope_stream is None:
             at_the_same_time(self.move_scope, self.prepare_wall)
         else:
@@ -66,23 +75,35 @@ class TwoLevelCoupling:
                 self.move_scope()
             self.prepare_wall()
             wp.get_stream(self.sim.device).wait_stream(self._scope_stream)
-        self.finish()
+        sim = self.sim
+        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, sim.state.body_q, self.body_q_prev)
 
     def move_scope(self) -> None:
         """Find the contacts and advance the scope by a physics step."""
-        self.find_contacts()
+        if self._scope_stream is None:
+            self.find_contacts()
+            self._move_scope()
+            return
+        sim, contact = self.sim, self.sim.contact
+        wp.copy(self.body_q_prev, sim.state.body_q)
+        contact.follow(sim.nodal_pos, sim.state.body_q)
+        with self._drives.work():
+            self._drive()
+        contact.find(sim.nodal_pos, sim.state.body_q)
+        with self._beside.work():
+            contact.order()
+            sim.wall.begin_contacts(sim.nodal_pos, contact, self.body_q_prev)
         self._move_scope()
+        self._beside.join()
 
     def prepare_wall(self) -> None:
         """Begin the wall's step; may be done at the same time as :meth:`move_scope`."""
         self.sim.wall.prepare(self.sim.nodal_pos, self.sim.nodal_vel)
 
-    def finish(self) -> None:
-        """Advance the wall by a physics step, against the scope where it is then."""
-        sim, state = self.sim, self.sim.state
-        sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, state.body_q, self.body_q_prev)
-        link_force = sim.scope_readout.step_force
-        sim.wall.finish_contacts(sim.nodal_pos, sim.contact, state.body_q, self.body_q_prev, link_force)
+    def finish_contacts(self) -> None:
+        """Keep what friction holds and what the links owe the wall; the wall is read, not moved."""
+        sim, link_force = self.sim, self.sim.scope_readout.step_force
+        sim.wall.finish_contacts(sim.nodal_pos, sim.contact, sim.state.body_q, self.body_q_prev, link_force)
 
     def _move_scope(self) -> None:
         """Advance the scope by all substeps of a physics step; of the wall, positions and velocities are read."""
@@ -91,9 +112,18 @@ class TwoLevelCoupling:
         dt = sim.cfg.dt / count
         for k in range(count):
             self.load_contacts(k * dt, dt)
-            sim.actuation.apply(state, sim.control, sim.contact.ring, dt)
-            self.solver.step(state, state, sim.control, None, dt)
+            if k > 0 or self._scope_stream is None:
+                self._drive()
+            else:
+                self._drives.join()
+            self.solver.move(state, state, dt)
             self._record(1.0 / count)
+
+    def _drive(self) -> None:
+        """Write what drives and joints do in a substep that begins, for which no contact has to be known."""
+        sim, dt = self.sim, self.sim.cfg.dt / self.sim.cfg.scope_substeps
+        sim.actuation.apply(sim.state, sim.control, sim.contact.ring, dt)
+        self.solver.prepare(sim.state, sim.control, dt)
 
     def find_contacts(self) -> None:
         """Begin a step: remember where the links are, and find their contacts."""
@@ -105,12 +135,17 @@ class TwoLevelCoupling:
         sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
         inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
         inputs += [contact.links, contact.records, contact.law, contact.friction, self.body_q_prev, elapsed, dt]
+        outputs, (links, worlds) = [loads, sim.scope_readout.penetrated], loads.wrench.shape
+        if not self._on_gpu:
+            wp.launch(kernels.load_contacts, (links, worlds), inputs=inputs, outputs=outputs, device=sim.device)
+            return
         wp.launch(
-            kernels.load_contacts,
-            loads.wrench.shape,
-            inputs=inputs,
-            outputs=[loads, sim.scope_readout.penetrated],
+            kernels.load_contacts_in_groups,
+            (worlds, links + -links % (LANES // GROUP), GROUP),
+            inputs=[*inputs, GROUP],
+            outputs=outputs,
             device=sim.device,
+            block_dim=GPU_BLOCK,
         )
 
     def _record(self, weight: float) -> None:

@@ -112,6 +112,22 @@ class SolverArticulatedChain(SolverBase):
         if state_in is not state_out:
             wp.copy(state_out.joint_q, state_in.joint_q)
             wp.copy(state_out.joint_qd, state_in.joint_qd)
+        self.prepare(state_in, control, dt)
+        self.move(state_in, state_out, dt)
+
+    def prepare(self, state: newton.State, control: newton.Control, dt: float) -> None:
+        """Begin a step of ``dt`` [s] with the joints, for which :attr:`loads` need not be known."""
+        chain = self.chain
+        wp.launch(
+            kernels.prepare_joints,
+            (chain.dofs, self.num_envs),
+            inputs=[chain, state.joint_q, state.joint_qd, control.joint_target_q, control.joint_f, dt],
+            outputs=[self.work],
+            device=self.model.device,
+        )
+
+    def move(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
+        """End a step that :meth:`prepare` began; the joints of ``state_out`` begin where those of ``state_in`` do."""
         chain, work, worlds, device = self.chain, self.work, self.num_envs, self.model.device
         wp.launch(
             kernels.prepare_links,
@@ -126,13 +142,6 @@ class SolverArticulatedChain(SolverBase):
                 self.resistance,
                 self.loads,
             ],
-            outputs=[work],
-            device=device,
-        )
-        wp.launch(
-            kernels.prepare_joints,
-            (chain.dofs, worlds),
-            inputs=[chain, state_in.joint_q, state_in.joint_qd, control.joint_target_q, control.joint_f, dt],
             outputs=[work],
             device=device,
         )

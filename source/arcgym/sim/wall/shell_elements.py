@@ -12,10 +12,10 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.patient_arrays import patient_array
-from arcgym.sim.wall import gas_shell_kernels, shell_kernels
+from arcgym.sim.wall import gas_shell_kernels, shell_cuda_kernels, shell_kernels
 from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.gas_kernels import GasLoads
-from arcgym.sim.wall.shell_fans import own_hinges, triangle_rest, vertex_triangles
+from arcgym.sim.wall.shell_fans import ordered_corners, own_hinges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_topology import vertex_entries
@@ -28,8 +28,8 @@ class Shell:
     size = 1.0
     memory: dict[str, torch.Tensor] = {}
     _laws = (shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces)
-    sweep_color, residual = sweep_kernels(*_laws)
-    surrounded = sweep_kernels(*_laws, surrounded=True)
+    plain = sweep_kernels(*_laws, on_gpu=shell_cuda_kernels.add_elements)
+    surrounded = sweep_kernels(*_laws, surrounded=True, on_gpu=shell_cuda_kernels.add_elements)
     measure_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle)
 
     def __init__(self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str):
@@ -47,6 +47,8 @@ class Shell:
         triangles, hinges = first.triangles, first.hinges
         self.corners = triangles
         start, corner = vertex_entries(triangles, vertices)
+        if wp.get_device(device).is_cuda:
+            corner = ordered_corners(triangles, start, corner)
         types: Any = (shell_kernels.VertexTriangle, shell_kernels.VertexTriangleRest)
         dtypes = (types[0].numpy_dtype(), types[1].numpy_dtype())
         fans = [vertex_triangles(geometry, corner, dtypes) for geometry in geometries]
@@ -93,7 +95,7 @@ class GasShell:
     size = Shell.size
     memory: dict[str, torch.Tensor] = {}
     _laws = (gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_elements, gas_shell_kernels.add_gas_forces)
-    sweep_color, residual = sweep_kernels(*_laws)
+    plain = sweep_kernels(*_laws)
     surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_band_triangle)
 

@@ -26,6 +26,33 @@ def own_hinges(geometry: ShellGeometry) -> np.ndarray:
     return hinge_of_edges(geometry.triangles, geometry.hinges, geometry.sides)
 
 
+def ordered_corners(triangles: np.ndarray, start: np.ndarray, corner: np.ndarray) -> np.ndarray:
+    """Return the corners around each vertex so that a triangle follows the one across its spoke, where there is one.
+
+    Args:
+        triangles: Vertices of the triangles, shape (F, 3).
+        start: First corner of each vertex, shape (V + 1,).
+        corner: Corners, 3 * triangle + corner, shape (3*F,).
+    """
+    first, second = (triangles.ravel()[corner // 3 * 3 + (corner % 3 + k) % 3].tolist() for k in (1, 2))
+    out = corner.tolist()
+    for begin, end in zip(start[:-1].tolist(), start[1:].tolist(), strict=True):
+        left = {first[k]: k for k in range(begin, end)}
+        seconds = {second[k] for k in range(begin, end)}
+        at = begin
+        while left:
+            k: int | None = next((left[v] for v in left if v not in seconds), next(iter(left.values())))
+            while k is not None:
+                del left[first[k]]
+                seconds.discard(second[k])
+                out[at] = int(corner[k])
+                at += 1
+                k = left.get(second[k])
+        if at < end:
+            raise ValueError(f"Two triangles around vertex {triangles.ravel()[corner[begin]]} lie on one another.")
+    return np.array(out, dtype=corner.dtype)
+
+
 def vertex_triangles(geometry: ShellGeometry, corner: np.ndarray, dtypes: tuple[Any, Any]) -> tuple[Any, Any]:
     """Return each corner's view of its triangle and of two of the hinges there.
 

@@ -3,8 +3,11 @@
 # mypy: ignore-errors
 """Sweep and total force of a wall, the same for elements of every kind."""
 
+from typing import NamedTuple
+
 import warp as wp
 
+from arcgym.sim.wall.packed_contact_kernels import add_packed
 from arcgym.sim.wall.wall_kernels import (
     MeasuredContacts,
     Tissue,
@@ -20,12 +23,31 @@ from arcgym.sim.wall.wall_kernels import (
 )
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.math_kernels import clamp_length
+from arcgym.utils.warp_setup import FAST
+
+
+class SweepKernels(NamedTuple):
+    """Kernels of a wall for one kind of elements."""
+
+    sweep_color: wp.Kernel
+    """Newton step of the vertices of one colour."""
+    residual: wp.Kernel
+    """Total force on every vertex."""
+    sweep_packed: wp.Kernel
+    """Does as ``sweep_color``, on a GPU, with contacts that were packed, see :mod:`.packed_contact_kernels`."""
 
 
 def sweep_kernels(
-    elements_type: type, add_elements: wp.Function, add_forces: wp.Function, surrounded: bool = False
-) -> tuple[wp.Kernel, wp.Kernel]:
-    """Make the kernels ``sweep_color`` and ``residual`` for one kind of elements.
+    elements_type: type,
+    add_elements: wp.Function,
+    add_forces: wp.Function,
+    surrounded: bool = False,
+    on_gpu: wp.Function | None = None,
+) -> SweepKernels:
+    """Make the kernels for one kind of elements.
+
+    On a GPU reciprocals, roots, exponentials and logarithms are those of the hardware, which are off by a few units in
+    the last place: less than what the rounding of positions does to differences between them.
 
     Args:
         elements_type: Struct of the elements.
@@ -33,9 +55,23 @@ def sweep_kernels(
             takes block, elements, positions, vertex, world and moduli.
         add_forces: Adds the forces alone, where the elements were measured; takes the same.
         surrounded: Whether to add ``contacts.outer``.
+        on_gpu: Does as ``add_elements``, faster on a GPU, if there is such.
     """
+    return SweepKernels(
+        _sweep_kernel(elements_type, add_elements, surrounded, add_contact, {}),
+        _residual_kernel(elements_type, add_forces, surrounded),
+        _sweep_kernel(elements_type, on_gpu or add_elements, surrounded, add_packed, FAST),
+    )
 
-    @wp.kernel(module="unique")
+
+def _sweep_kernel(
+    elements_type: type,
+    add_elements: wp.Function,
+    surrounded: bool,
+    add_contacts: wp.Function,
+    options: dict[str, bool],
+) -> wp.Kernel:
+    @wp.kernel(module="unique", module_options=options)
     def sweep_color(
         color: wp.array[int],
         nodes: WallNodes,
@@ -69,12 +105,16 @@ def sweep_kernels(
             return
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
         block = add_elements(block, elements, x, i, w, tissue.moduli[w])
-        block = add_contact(block, contacts, x, i, w)
+        block = add_contacts(block, contacts, x, i, w)
         block = add_self_contact(block, contacts.self_contact, x[i, w], i, w)
         if wp.static(surrounded):
             block = add_outer_force(block, contacts.outer, x[i, w], i, w)
         x[i, w] = x[i, w] + clamp_length(wp.inverse(block.hessian) * block.force, largest_move)
 
+    return sweep_color
+
+
+def _residual_kernel(elements_type: type, add_forces: wp.Function, surrounded: bool) -> wp.Kernel:
     @wp.kernel(module="unique")
     def residual(
         first: int,
@@ -114,4 +154,4 @@ def sweep_kernels(
                 block = add_outer_force(block, contacts.outer, x[i, w], i, w)
         force[i, w] = block.force
 
-    return sweep_color, residual
+    return residual

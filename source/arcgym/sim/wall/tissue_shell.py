@@ -35,7 +35,7 @@ class TissueShell:
 
     size = Shell.size
     _laws = (kernels.TissueShellElements, kernels.add_tissue_elements, kernels.add_tissue_forces)
-    sweep_color, residual = sweep_kernels(*_laws)
+    plain = sweep_kernels(*_laws)
     surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(kernels.TissueShellElements, kernels.add_tissue_band_triangle)
 

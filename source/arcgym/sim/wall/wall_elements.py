@@ -17,7 +17,7 @@ from arcgym.sim.wall import solid_kernels
 from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.shell_elements import GasShell, Shell
-from arcgym.sim.wall.sweep_kernels import sweep_kernels
+from arcgym.sim.wall.sweep_kernels import SweepKernels, sweep_kernels
 from arcgym.sim.wall.tissue_shell import TissueShell
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_parameters import ShellParameters, SolidParameters, WallParameters
@@ -27,12 +27,10 @@ from arcgym.sim.wall.wall_topology import vertex_entries
 class WallElements(Protocol):
     """Elements of all worlds' walls."""
 
-    sweep_color: wp.Kernel
-    """Sweep over this kind of elements, see :mod:`arcgym.sim.wall.sweep_kernels`."""
-    residual: wp.Kernel
-    """Total force with this kind of elements."""
-    surrounded: tuple[wp.Kernel, wp.Kernel]
-    """The two for walls with surroundings, see :mod:`arcgym.sim.wall.outer_force_kernels`."""
+    plain: SweepKernels
+    """Sweep over this kind of elements, and their total force, see :mod:`arcgym.sim.wall.sweep_kernels`."""
+    surrounded: SweepKernels
+    """The same for walls with surroundings, see :mod:`arcgym.sim.wall.outer_force_kernels`."""
     measure_bands: wp.Kernel
     """Stiffness in the rings' modes, see :mod:`arcgym.sim.wall.band_kernels`."""
     corners: np.ndarray
@@ -87,7 +85,7 @@ class Solid:
 
     memory: dict[str, torch.Tensor] = {}
     _laws = (solid_kernels.SolidElements, solid_kernels.add_elastic, solid_kernels.add_elastic)
-    sweep_color, residual = sweep_kernels(*_laws)
+    plain = sweep_kernels(*_laws)
     surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(solid_kernels.SolidElements, solid_kernels.add_band_tet)
 

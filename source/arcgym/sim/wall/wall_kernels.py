@@ -95,6 +95,7 @@ class WallContacts:
     x_prev: wp.array2d[wp.vec3]  # wall positions at the start of the step [m], shape (V, W)
     body_q: wp.array[wp.transform]  # link poses at its end, shape (W*L,)
     body_q_prev: wp.array[wp.transform]  # and at its start, shape (W*L,)
+    packed: wp.array[wp.vec4]  # on a GPU what a step leaves as it is, see ``packed_contact_kernels``, shape (9*W*S,)
 
 
 @wp.struct

@@ -16,12 +16,13 @@ from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
-from arcgym.sim.wall import coarse_kernels, wall_kernels, weight_kernels
+from arcgym.sim.wall import coarse_kernels, packed_contact_kernels, wall_kernels, weight_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.gas_rings import GasRings
 from arcgym.sim.wall.lumen_gas import LumenGas
+from arcgym.sim.wall.packed_contact_kernels import FOURS
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
 from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_elements import wall_elements
@@ -103,8 +104,7 @@ class WallSolver:
         self.nodes = wall_nodes(walls, patient, device)
         self.gas, self.weight, self.surroundings = gas, weight, surroundings
         self.elements = wall_elements(walls, patient, dt, device, None if gas is None else gas.loads, law)
-        kernels = (self.elements.sweep_color, self.elements.residual)
-        self._sweep_color, self._sum_forces = kernels if surroundings is None else self.elements.surrounded
+        self._kernels = self.elements.plain if surroundings is None else self.elements.surrounded
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
@@ -120,7 +120,11 @@ class WallSolver:
         self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
         self.bands = wp.zeros((self.ring_count, ENTRIES, ENTRIES, num_envs), dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
-        self._prepared = False
+        self.on_gpu = wp.get_device(device).is_cuda
+        """Whether contacts are packed, see :mod:`.packed_contact_kernels`."""
+        self.packed = wp.zeros(FOURS * contact_slots if self.on_gpu else 1, dtype=wp.vec4, device=device)
+        """The packed contacts."""
+        self._prepared = self._begun = False
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.gas_rings = None if gas is None else GasRings(gas, self.ring_count)
         self.self_contact = SelfContact(
@@ -188,8 +192,27 @@ class WallSolver:
         self._measure(self.inertial)
         self._prepared = True
 
+    def begin_contacts(self, x: wp.array, contact: ContactSearch, body_q_prev: wp.array) -> None:
+        """Begin with what takes the contacts alone, once they are found, while the scope moves.
+
+        Args:
+            x: Wall positions at the start of the step [m], shape (V, W), vec3.
+            contact: Contacts found at the start of the step.
+            body_q_prev: Link poses at its start, shape (W*L,).
+        """
+        if not self.moves:
+            return
+        records, inputs = contact.records, [contact.links, contact.law, contact.debt]
+        self._launch(wall_kernels.share_debts, contact.debt.shape, inputs, [records])
+        shape = (self.num_envs, records.threads)
+        if self.cfg.coarse_correction:
+            self._launch(coarse_kernels.measure_fields, shape, [self.rings, records], [self.measured])
+        if self.on_gpu:
+            self._pack(self._contacts(contact, x, body_q_prev, body_q_prev), x)
+        self._begun = True
+
     def step(self, x: wp.array, v: wp.array, contact: ContactSearch, body_q: wp.array, body_q_prev: wp.array) -> None:
-        """Advance the wall by one physics step, in place, after :meth:`prepare` or with it.
+        """Advance the wall by one physics step, in place, with :meth:`prepare` and :meth:`begin_contacts` if not done.
 
         Args:
             x: Wall positions [m], shape (V, W), vec3.
@@ -202,11 +225,10 @@ class WallSolver:
             return
         if not self._prepared:
             self.prepare(x, v)
-        self._prepared = False
-        contacts = wall_contacts(contact, self.dt, self.x_prev, body_q, body_q_prev)
-        self._launch(
-            wall_kernels.share_debts, contact.debt.shape, [contact.links, contact.law, contact.debt], [contact.records]
-        )
+        if not self._begun:
+            self.begin_contacts(x, contact, body_q_prev)
+        self._prepared = self._begun = False
+        contacts = self._contacts(contact, self.x_prev, body_q, body_q_prev)
         wp.copy(x, self.inertial)
         for repeat in range(self.cfg.repeats):
             if repeat > 0:
@@ -227,22 +249,36 @@ class WallSolver:
 
         ``link_force`` is the mean force of the wall on each link in this step [N], shape (W*L,), vec3.
         """
-        contacts = wall_contacts(contact, self.dt, self.x_prev if self.moves else x, body_q, body_q_prev)
+        contacts = self._contacts(contact, self.x_prev if self.moves else x, body_q, body_q_prev)
         shape, measured = (self.num_envs, contacts.records.threads), self.measured
-        self._launch(wall_kernels.advance_slides, shape, [contacts, x], [measured])
+        packed = self.on_gpu and self.moves
+        advance = packed_contact_kernels.advance_packed if packed else wall_kernels.advance_slides
+        self._launch(advance, shape, [contacts, x], [measured])
         if self.moves:
             inputs = [contact.records, measured, link_force]
             self._launch(wall_kernels.settle_debts, contact.debt.shape, inputs, [contact.debt])
 
+    def _contacts(
+        self, contact: ContactSearch, x_prev: wp.array, body_q: wp.array, body_q_prev: wp.array
+    ) -> wall_kernels.WallContacts:
+        contacts = wall_contacts(contact, self.dt, x_prev, body_q, body_q_prev)
+        contacts.packed = self.packed
+        return contacts
+
+    def _pack(self, contacts: wall_kernels.WallContacts, x: wp.array) -> None:
+        shape = (self.num_envs, contacts.records.threads)
+        self._launch(packed_contact_kernels.pack_contacts, shape, [contacts, x], [])
+
     def _sweep(self, x: wp.array, contacts: wall_kernels.WallContacts, together: bool) -> None:
         """Move the vertices color by color; those of a color ``together`` where no contact joins two of them."""
+        sweep = self._kernels.sweep_packed if self.on_gpu else self._kernels.sweep_color
         inputs = [self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
         inputs += [self.cfg.largest_move, ROUNDING * self.elements.size, self.force]
         for color in self.colors:
 
             def move(first: int, rows: int, color: wp.array = color) -> None:
                 part = color[first : first + rows]
-                self._launch(self._sweep_color, (rows, self.num_envs), [part, *inputs], [x])
+                self._launch(sweep, (rows, self.num_envs), [part, *inputs], [x])
 
             if together:
                 in_parts(len(color), move)
@@ -258,7 +294,7 @@ class WallSolver:
             body_q: Link poses, shape (W*L,).
         """
         force = wp.zeros_like(x)
-        contacts = wall_contacts(contact, self.dt, x, body_q, body_q)
+        contacts = self._contacts(contact, x, body_q, body_q)
         self.self_contact.measure(x)
         if self.surroundings is not None:
             self.surroundings.measure(x, self.tissue, self.dt)
@@ -269,6 +305,8 @@ class WallSolver:
         if self.weight is not None:
             inertial = wp.clone(x)
             self.weight.add(self.nodes, self.tissue, self.dt, inertial)
+        if self.on_gpu:
+            self._pack(contacts, x)
         self._residual(x, inertial, contacts, force)
         return force
 
@@ -290,15 +328,14 @@ class WallSolver:
             contacts.outer = self.surroundings.force
         shape = (self.num_envs, contacts.records.threads)
         measured = self.measured
-        self._launch(wall_kernels.measure_contacts, shape, [contacts, x], [measured])
+        measure = packed_contact_kernels.measure_packed if self.on_gpu else wall_kernels.measure_contacts
+        self._launch(measure, shape, [contacts, x], [measured])
         inputs = [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x]
-        self._launch_rows(self._sum_forces, x.shape, inputs, [force])
+        self._launch_rows(self._kernels.residual, x.shape, inputs, [force])
 
     def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts, repeat: int) -> None:
         """Solve for the modes of all rings and move every vertex with its ring."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
-        shape, records = (self.num_envs, contacts.records.threads), contacts.records
-        self._launch(coarse_kernels.measure_fields, shape, [rings, records], [self.measured])
         if self.surroundings is None and self.gas_rings is None and wp.get_device(self.device).is_cpu:
             in_sequence(self.ring_count, lambda *rows: self._assemble(contacts, *rows), system.eliminate)
             system.substitute()
@@ -326,7 +363,7 @@ class WallSolver:
         )
 
     def _launch_rows(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
-        launch_rows(kernel, shape, inputs, outputs, self.device, GPU_BLOCK)
+        launch_rows(kernel, shape, inputs, outputs, self.device)
 
     def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[Any], outputs: list[Any]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)
