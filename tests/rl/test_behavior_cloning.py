@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+
 import numpy as np
 import pytest
 import torch
@@ -16,6 +19,7 @@ from arcgym.rl.algorithms.behavior_cloning import deviations
 from arcgym.rl.behavior_cloning_runner import BehaviorCloningRunner
 from arcgym.rl.demonstrations import read_demonstrations
 from arcgym.rl.expert_demonstrations import ask_expert
+from arcgym.rl.interrupt import TrainingInterrupted
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
@@ -255,4 +259,18 @@ def test_asking_counts_among_the_transitions(monkeypatch):
 def test_a_policy_that_was_left_no_time_to_learn_is_refused(monkeypatch):
     runner = asked_runner(monkeypatch, max_minutes=1e-6)
     with pytest.raises(UsageError, match="Asking the expert took .* nothing was learnt"):
+        runner.learn(1)
+    assert runner.env.common_step_counter == 1, "the round was not ended"
+
+
+def test_a_kill_unwinds_while_the_expert_is_asked(monkeypatch):
+    runner = asked_runner(monkeypatch)
+    step = runner.env.step
+
+    def killed(actions: torch.Tensor):
+        os.kill(os.getpid(), signal.SIGTERM)
+        return step(actions)
+
+    monkeypatch.setattr(runner.env, "step", killed)
+    with pytest.raises(TrainingInterrupted):
         runner.learn(1)

@@ -6,12 +6,14 @@
 from __future__ import annotations
 
 import time
+from typing import Any, NoReturn
 
 import torch
 from rsl_rl.env import VecEnv
 
 from arcgym.rl.expert_demonstrations import ask_expert
 from arcgym.rl.expert_policy import ExpertPolicy
+from arcgym.rl.interrupt import InterruptGuard
 from arcgym.rl.runner import OnPolicyRunner
 from arcgym.utils.errors import UsageError
 
@@ -48,31 +50,39 @@ class BehaviorCloningRunner(OnPolicyRunner):
         super().learn(num_learning_iterations, init_at_random_ep_len)
 
     def _ask_expert(self) -> None:
-        start, alg = time.perf_counter(), self.alg
-        expert = ExpertPolicy(self.env, **alg.expert_settings)  # type: ignore[attr-defined]
-        steps_before = self.env.unwrapped.common_step_counter  # type: ignore[attr-defined]
-        alg.take(  # type: ignore[attr-defined]
-            ask_expert(
-                self.env,
-                expert,
-                alg.groups,  # type: ignore[attr-defined]
-                self.device,
-                alg.expert_steps,  # type: ignore[attr-defined]
-                alg.expert_noise,  # type: ignore[attr-defined]
-                alg.successful_only,  # type: ignore[attr-defined]
-            )
-        )
+        """Ask for the steps, count them and their time, and let the expert go on where it is asked on.
+
+        Raises:
+            TrainingInterrupted: A signal came.
+            UsageError: The time was over before the expert was.
+        """
+        alg: Any = self.alg
+        start, steps_before = time.perf_counter(), self.env.unwrapped.common_step_counter  # type: ignore[attr-defined]
+
+        def check() -> None:
+            took = self.clock.seconds + time.perf_counter() - start
+            if self.clock.max_seconds is not None and took >= self.clock.max_seconds:
+                self._end_in_vain(start)
+
+        expert = ExpertPolicy(self.env, **alg.expert_settings)
+        with InterruptGuard():
+            noise, successful = alg.expert_noise, alg.successful_only
+            alg.take(ask_expert(self.env, expert, alg.groups, self.device, alg.expert_steps, noise, successful, check))
         steps = self.env.unwrapped.common_step_counter - steps_before  # type: ignore[attr-defined]
         self.clock.add(time.perf_counter() - start, steps * self.env.num_envs * self.gpu_world_size)
         self._describe()
-        if alg.asks_on:  # type: ignore[attr-defined]
+        if alg.asks_on:
             expert.reset(torch.ones(self.env.num_envs, device=self.device))
-            alg.expert = expert  # type: ignore[attr-defined]
+            alg.expert = expert
         if self.clock.is_over:
-            raise UsageError(
-                f"Asking the expert took {self.clock}, all of agent.{self.clock.limit}, and nothing was learnt: give "
-                "more, or fewer agent.algorithm.expert_steps."
-            )
+            self._end_in_vain(start)
+
+    def _end_in_vain(self, start: float) -> NoReturn:
+        raise UsageError(
+            f"Asking the expert took {(time.perf_counter() - start) / 60.0:.1f} minutes, all of agent."
+            f"{self.clock.limit}, and nothing was learnt: give more, or fewer agent.algorithm.expert_steps, which are "
+            "asked for in whole episodes."
+        )
 
     def _describe(self) -> None:
         demonstrations = self.alg.read_demonstrations()  # type: ignore[attr-defined]

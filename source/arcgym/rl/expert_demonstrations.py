@@ -27,6 +27,7 @@ def ask_expert(
     num_steps: int,
     noise: float = 0.0,
     successful_only: bool = True,
+    check: Callable[[], None] = lambda: None,
 ) -> Demonstrations:
     """Let the expert act until there are enough steps of it, and return them.
 
@@ -41,6 +42,7 @@ def ask_expert(
         num_steps: Steps to keep, at least. Rounds of whole episodes are made until there are as many.
         noise: Standard deviation of the noise, in raw actions.
         successful_only: Whether episodes that the task's success did not end are left out.
+        check: Called after every control step; it may raise, to end a round that takes too long.
 
     Raises:
         UsageError: A round of episodes in all worlds held nothing to keep.
@@ -50,7 +52,7 @@ def ask_expert(
     with counted("asking the expert", num_steps) as show, torch.inference_mode():
         while count < num_steps:
             tell = partial(_tell, show, count, num_steps)
-            found, number = _round(env, expert, groups, device, noise, successful_only, tell)
+            found, number = _round(env, expert, groups, device, noise, successful_only, tell, check)
             if number == 0:
                 wanted = "succeeded" if successful_only else "ended"
                 raise UsageError(f"The expert's first episodes of {env.num_envs} worlds: none {wanted}.")
@@ -76,6 +78,7 @@ def _round(
     noise: float,
     successful_only: bool,
     show: Callable[[int], None],
+    check: Callable[[], None],
 ) -> tuple[list[tuple[TensorDict, torch.Tensor]], int]:
     """Run each world's next episode to its end; return a step's observations and actions each, and the episodes.
 
@@ -94,6 +97,7 @@ def _round(
         obs, _, dones, _ = env.step(actions + noise * torch.randn_like(actions))
         forget(dones)
         show(asked := asked + len(worlds))
+        check()
         ends = running & (dones > 0)
         good |= ends & env.unwrapped.succeeded if successful_only else ends  # type: ignore
         running = running & ~ends
