@@ -47,6 +47,7 @@ def main() -> None:
         print(text, end="")
         return
     write_floors(args.floors, floors)
+    text = tables(read_floors(args.floors))  # of the digits in the file, so that the page is made again from it
     page = PAGE.read_text()
     PAGE.write_text(f"{page[: page.index(BEGIN) + len(BEGIN)]}\n{text}{page[page.index(END) :]}")
 
