@@ -36,10 +36,10 @@ def test_no_file_is_left_out_of_the_wheel(wheel_python, source, installed, patte
 
 
 def test_the_wheel_is_named_by_the_code_of_the_checkout(wheel_python):
-    from arcgym.envs.provenance import code_hash
+    from arcgym.utils.source_digest import source_digest
 
     code = "from arcgym.envs.provenance import versions; print(versions()['arcgym code'])"
-    assert wheel_python.check(code).strip() == code_hash()
+    assert wheel_python.check(code).strip() == source_digest("arcgym", "arcgym_tasks")
 
 
 def test_list_names_the_tasks(wheel_python):

@@ -19,6 +19,7 @@ import warp as wp
 from arcgym import __version__
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.paths import portable_asset
+from arcgym.utils.source_digest import source_digest
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -111,7 +112,7 @@ def _commit() -> dict[str, str]:
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         said = os.environ.get("ARCGYM_COMMIT", "")
-        return {COMMIT: said} if said else {CODE: code_hash()}
+        return {COMMIT: said} if said else {CODE: source_digest("arcgym", "arcgym_tasks")}
     try:
         commit, changed = (
             subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10).stdout.strip()
@@ -120,16 +121,6 @@ def _commit() -> dict[str, str]:
     except (OSError, subprocess.SubprocessError):
         return {}
     return {COMMIT: commit + (CHANGED if changed else "")} if commit else {}
-
-
-def code_hash() -> str:
-    """Return the hash of all Python files of ARCGym and its tasks, 12 digits: the same in wheel and checkout."""
-    source = Path(__file__).resolve().parents[2]
-    digest = hashlib.sha256()
-    for path in sorted(path for name in ("arcgym", "arcgym_tasks") for path in (source / name).rglob("*.py")):
-        content = path.read_bytes()
-        digest.update(f"{path.relative_to(source).as_posix()} {len(content)}\n".encode() + content)
-    return digest.hexdigest()[:12]
 
 
 def stage_hash(path: str | Path) -> str:
