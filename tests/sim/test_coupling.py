@@ -44,6 +44,7 @@ def two_level(narrow: TinySim) -> Simulation:
     return settled(narrow)
 
 
+@pytest.mark.slow  # 720 steps of plain Newton
 def test_two_level_agrees_with_plain_newton(narrow: TinySim) -> None:
     two_level, newton = settled(narrow, SOLID), settled(narrow, SOLID, solver="newton", mass_scaling=3.0)
     tips, forces, moved = (
