@@ -19,6 +19,7 @@ from arcgym.benchmarks.lumen import LumenCheck, below_opening
 from arcgym.benchmarks.soak.adversaries import KINDS, OVERDRIVE, Adversaries
 from arcgym.benchmarks.soak.isolation import ResetGuard, different
 from arcgym.benchmarks.soak.journal import Journal, Tally
+from arcgym.benchmarks.soak.piercing import Piercing
 from arcgym.benchmarks.soak.session import growth
 from arcgym.cli.main import main
 
@@ -93,6 +94,24 @@ def test_contacts_that_were_missed_or_found_no_room_are_violations():
     total = Tally(contact_samples=1, touching_pairs=5)
     total.add(Tally(contact_samples=1, touching_pairs=4, missed_contacts=1, dropped_contacts=2))
     assert total.violations(growth_mib=1.0) == ["2 contacts found no room", "1 of 9 pairs that touch were missed"]
+
+
+def test_ends_that_no_perforating_force_explains_are_told_from_others() -> None:
+    """Forces are those before the reset; one of an earlier step does not count."""
+    tip, windows = torch.tensor([3.0, 20.0, 3.0, 3.0]), torch.tensor([[4.0], [4.0], [15.0], [15.0]])
+    data = SimpleNamespace(tip_force_peak=tip, window_force_peak=windows)
+    ended = torch.tensor([True, True, True, False])
+    terminations = SimpleNamespace(active_terms=["wall_penetrated"], get_term=lambda name: ended)
+    scene = {"endoscope": SimpleNamespace(data=data)}
+    env = SimpleNamespace(num_envs=4, device="cpu", cfg=None, scene=scene, termination_manager=terminations)
+    piercing = Piercing(env)
+    piercing.before_reset()
+    tip[:], windows[:] = 0.0, 0.0  # as a reset leaves them
+    assert piercing.look().tolist() == [True, False, False, False]
+    assert (int(piercing.ends), int(piercing.light_ends)) == (3, 1)
+    ended[:] = torch.tensor([False, False, False, True])
+    assert piercing.look().tolist() == [False, False, False, True]
+    assert (int(piercing.ends), int(piercing.light_ends)) == (4, 2)
 
 
 class LeakySim:

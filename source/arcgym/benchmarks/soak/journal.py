@@ -12,7 +12,7 @@ from typing import Any
 from arcgym.utils.lines import append_line
 
 SUMS = (
-    *("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds", "pierced"),
+    *("env_steps", "seconds", "resets", "recovered_worlds", "disturbed_worlds", "pierced", "pierced_lightly"),
     *("outside_links", "examined_links", "dropped_contacts", "missed_contacts", "touching_pairs", "contact_samples"),
 )
 """Findings that add up over the parts of a soak."""
@@ -36,6 +36,8 @@ class Tally:
     """Worlds whose state another world's reset changed."""
     pierced: int = 0
     """Episodes that ended because a link was going through the wall."""
+    pierced_lightly: int = 0
+    """Those of them with less on the tip and on 50 mm of scope than perforates a colon, see ``force_tiers``."""
     outside_links: int = 0
     """Links found outside the lumen."""
     examined_links: int = 0
@@ -127,7 +129,7 @@ class Journal:
         return len(self._of("start", task))
 
     def events(self, task: str) -> list[dict[str, Any]]:
-        """Return the worlds of a task that were recovered or had a link outside, with seed, step and kind of action."""
+        """Return the worlds of a task in which something was found, with seed, step and kind of action."""
         return self._of("event", task)
 
     def tally(self, task: str) -> Tally:

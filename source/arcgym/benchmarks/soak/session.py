@@ -110,7 +110,8 @@ def progress(task: str, total: Tally, part: Tally, memory: tuple[float, float]) 
     forces = max(total.largest["shaft_force"].values())
     print(
         f"{task:24s}{total.env_steps:>10d} steps {part.env_steps / part.seconds:>8.1f}/s  {total.resets} resets  "
-        f"{total.recovered_worlds} recovered  {total.pierced} pierced  {total.outside_links} links outside  "
+        f"{total.recovered_worlds} recovered  {total.pierced} pierced, {total.pierced_lightly} lightly  "
+        f"{total.outside_links} links outside  "
         f"{total.missed_contacts} missed and {total.dropped_contacts} dropped contacts  "
         f"{sum(total.not_finite.values())} not finite  up to {forces:.1f} N  "
         f"host {memory[0]:.0f} MiB  device {memory[1]:.0f} MiB",

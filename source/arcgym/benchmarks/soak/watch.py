@@ -14,6 +14,7 @@ from arcgym.benchmarks.lumen import LumenCheck
 from arcgym.benchmarks.soak.adversaries import KINDS
 from arcgym.benchmarks.soak.isolation import ResetGuard, leaves
 from arcgym.benchmarks.soak.journal import Tally
+from arcgym.benchmarks.soak.piercing import Piercing
 
 LUMEN_EVERY = 10
 """Control steps between two searches for links outside the lumen."""
@@ -36,9 +37,9 @@ class Watch:
             kind: Kind of each world's actions, index into ``KINDS``, shape (N,).
         """
         self.guard = ResetGuard(env)
-        self.guard.before = self._note_largest
+        self.guard.before = self._before_reset
         self._env, self._kind = env, kind
-        self._lumen = LumenCheck(env.sim)
+        self._lumen, self._piercing = LumenCheck(env.sim), Piercing(env)
         self._step = 0
         self._failures_read = env.world_failures
         self._dropped_read = int(env.sim.dropped_contacts.sum())
@@ -51,18 +52,18 @@ class Watch:
         self._since = self._step
         self._not_finite: dict[str, torch.Tensor] = {}
         self._largest: dict[str, torch.Tensor] = {}
-        self._outside, self._examined, self._pierced = zero(), zero(), zero()
+        self._outside, self._examined = zero(), zero()
+        self._piercing.clear()
         self._samples = list[ContactSample]()
         never = torch.full((self._env.num_envs,), -1, dtype=torch.long, device=self._env.device)
-        self._last = {what: never.clone() for what in ("recovered", "outside")}
+        self._last = {what: never.clone() for what in ("recovered", "outside", "pierced_lightly")}
         self.guard.resets, self.guard.disturbed = zero(), zero()
 
     def look(self, obs: Any, reward: torch.Tensor, terminated: torch.Tensor, extras: dict[str, Any]) -> None:
         """Take in what ``env.step`` returned, and the state that it left."""
         self._step += 1
         self._last["recovered"][self._env.failed] = self._step
-        if "wall_penetrated" in self._env.termination_manager.active_terms:
-            self._pierced += self._env.termination_manager.get_term("wall_penetrated").sum()
+        self._last["pierced_lightly"][self._piercing.look()] = self._step
         self._count_not_finite(obs, reward, extras)
         self._note_largest()
         if self._step % LUMEN_EVERY == 0:
@@ -72,6 +73,11 @@ class Watch:
             self._examined += examined.sum()
         if self._step % CONTACTS_EVERY == 0:
             self._samples += sample_contacts(self._env.sim, self._worlds_to_sample())
+
+    def _before_reset(self) -> None:
+        """Take in what a reset is about to clear."""
+        self._note_largest()
+        self._piercing.before_reset()
 
     def _worlds_to_sample(self) -> set[int]:
         """Return the world with the most contacts, and one after the other of all."""
@@ -117,7 +123,8 @@ class Watch:
             resets=int(self.guard.resets),
             recovered_worlds=failures - self._failures_read,
             disturbed_worlds=int(self.guard.disturbed),
-            pierced=int(self._pierced),
+            pierced=int(self._piercing.ends),
+            pierced_lightly=int(self._piercing.light_ends),
             outside_links=int(self._outside),
             examined_links=int(self._examined),
             dropped_contacts=dropped - self._dropped_read,
@@ -136,7 +143,7 @@ class Watch:
         return tally, events
 
     def _events(self) -> list[dict[str, Any]]:
-        """Return the last time that each world was recovered or had a link outside: kind, world, step and action."""
+        """Return the last time that each of these was found in each world: what, world, step and kind of action."""
         events = []
         for what, last in self._last.items():
             for world in (last >= 0).nonzero().flatten().tolist():
