@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""The expert for a tip that is pulled, two worlds of a straight tube."""
+"""The expert for a tip that is pulled, three worlds of a straight tube."""
 
 from __future__ import annotations
 
@@ -21,19 +21,21 @@ from arcgym.sim import SimulationCfg
 @pytest.fixture
 def scene(tmp_path: Path) -> InteractiveScene:
     tube = TinySim(tmp_path)
-    cfg = InteractiveSceneCfg(num_envs=2, colon=tube.colon_cfg(rigid=True), endoscope=tube.scope_cfg("capsule"))
+    cfg = InteractiveSceneCfg(num_envs=3, colon=tube.colon_cfg(rigid=True), endoscope=tube.scope_cfg("capsule"))
     return InteractiveScene(cfg, SimulationCfg())
 
 
 def test_a_tip_rolls_to_and_fro_where_it_is_told_to(scene: InteractiveScene) -> None:
-    expert = PullExpert(scene, roll=torch.tensor([0.0, 6.0]))
+    """Worlds that do not roll, that roll in 2 s, 20 control steps, and in 4 s."""
+    expert = PullExpert(scene, roll=torch.tensor([0.0, 6.0, 6.0]), roll_time=torch.tensor([2.0, 2.0, 4.0]))
     rolls = []
     for _ in range(15):
         expert.act()
         rolls.append(wp.to_torch(scene["endoscope"].actuators["tip"].angular)[:, 2].tolist())
-    still, rolled = zip(*rolls, strict=True)
+    still, fast, slow = zip(*rolls, strict=True)
     assert still == (0.0,) * 15
-    assert (rolled[4], rolled[9], rolled[14]) == pytest.approx((6.0, 0.0, -6.0), abs=1.0e-5)  # a period of 20 steps
+    assert (fast[4], fast[9], fast[14]) == pytest.approx((6.0, 0.0, -6.0), abs=1.0e-5)
+    assert slow[9] == pytest.approx(6.0, abs=1.0e-5)
 
 
 def test_a_view_circles_around_the_way_while_the_tip_is_pulled_back(scene: InteractiveScene) -> None:
@@ -44,15 +46,15 @@ def test_a_view_circles_around_the_way_while_the_tip_is_pulled_back(scene: Inter
     """
     expert = PullExpert(scene, speed=-0.01, sweep=0.5)
     for angle, expected in ((0.5, (2.0 * math.sin(0.5), 0.0)), (0.75, (2.0 * math.sin(0.75), 1.0)), (0.0, (0.0, -2.0))):
-        gaze = torch.tensor([[math.sin(angle), 0.0, math.cos(angle)]] * 2)
+        gaze = torch.tensor([[math.sin(angle), 0.0, math.cos(angle)]] * 3)
         turn = expert._circle(gaze)
-        assert turn.tolist() == [pytest.approx((*expected, 0.0), abs=1.0e-6)] * 2
+        assert turn.tolist() == [pytest.approx((*expected, 0.0), abs=1.0e-6)] * 3
 
 
 def test_only_a_tip_that_is_pulled_back_looks_around(scene: InteractiveScene) -> None:
-    expert = PullExpert(scene, speed=torch.tensor([0.04, -0.01]), sweep=0.5)
+    expert = PullExpert(scene, speed=torch.tensor([0.04, 0.04, -0.01]), sweep=0.5)
     expert.act()
-    onward, back = wp.to_torch(scene["endoscope"].actuators["tip"].angular).norm(dim=1).tolist()
+    onward, _, back = wp.to_torch(scene["endoscope"].actuators["tip"].angular).norm(dim=1).tolist()
     assert onward < 0.2 < back
 
 

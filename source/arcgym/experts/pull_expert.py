@@ -15,8 +15,8 @@ from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.math import norm, normalize, quat_apply_inverse, row_sum
 
-ROLL_PERIOD = 20
-"""Control steps of one roll of the tip to and fro."""
+CONTROL_STEP = 0.1
+"""Time between two commands [s]."""
 SWEEP_RATE = 2.0
 """Rate at which a view circles around the way back [rad/s]: at a sweep of 0.8 rad it turns by 1.4 rad/s, of 1.5 that
 actions allow."""
@@ -33,9 +33,10 @@ class PullExpert(ExpertBase):
         "axis": (0.0, 0.8),
         "slide": (0.0, 1.0),
         "back": (0.0, 0.8),
-        "roll": (0.0, 12.0),
+        "roll": (0.0, 18.0),
+        "roll_time": (2.0, 5.0),
     }
-    FREEING = ("roll",)
+    FREEING = ("roll", "roll_time")
 
     def __init__(
         self,
@@ -48,6 +49,7 @@ class PullExpert(ExpertBase):
         slide: float = 1.0,
         back: float = 0.5,
         roll: float = 0.0,
+        roll_time: float = 4.0,
         sweep: float = 0.0,
     ):
         """Keep the settings; each may be one number or one a world.
@@ -63,13 +65,15 @@ class PullExpert(ExpertBase):
             slide: How much of the pull into what the tip touches is turned along it.
             back: How much the tip moves back along its axis while its front stands against a wall.
             roll: Amplitude of rolling the tip to and fro [rad/s]: a tether that rolls has less friction along its way.
+                How far the tip turns is limited by its torque: more than that lets it turn as fast as it can.
+            roll_time: Time of one roll to and fro [s]: a slower one goes farther down the tether.
             sweep: Angle between the view and the way ahead while the tip is pulled back [rad]: it circles around the
                 way, and sees what lies behind folds. 0 looks straight along the way.
         """
         super().__init__(scene, speed)
         self.look, self.gaze, self.turn_gain = self.each(look), self.each(gaze), self.each(turn_gain)
         self.axis, self.slide, self.back = self.each(axis), self.each(slide), self.each(back)
-        self.roll, self.sweep = self.each(roll), self.each(sweep)
+        self.roll, self.roll_time, self.sweep = self.each(roll), self.each(roll_time), self.each(sweep)
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=20, first=6, longest=40)
         self._side = torch.zeros(scene.num_envs, 3, device=scene.device)
@@ -96,7 +100,7 @@ class PullExpert(ExpertBase):
         turn = self.turn_gain[:, None] * turn
         turn = torch.where((withdraws & (self.sweep > 0.0))[:, None], self._circle(gaze), turn)
         self._steps += 1.0
-        turn[:, 2] += self.roll * (2.0 * math.pi / ROLL_PERIOD * self._steps).sin()
+        turn[:, 2] += self.roll * (2.0 * math.pi * CONTROL_STEP / self.roll_time * self._steps).sin()
         self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
 
     def reset(self, env_ids: torch.Tensor) -> None:
