@@ -92,13 +92,13 @@ def record(output: str, device: str) -> dict[str, Any]:
     return {"figures": figures, "device": device, "day": str(date.today())} | {"versions": versions()}
 
 
-def shrink(source: Path, target: Path, every: int) -> None:
-    """Write one of so many frames of a video at half its size, whole or not at all."""
+def shrink(source: Path, target: Path, every: int, fps: float = 10.0) -> None:
+    """Write one of so many frames of a video at half its size, whole or not at all, with ``fps`` frames a second."""
     import imageio_ffmpeg
 
     temporary = target.with_name(f".{target.name}.tmp.mp4")
     chosen = f"framestep={every},setpts=PTS/{every},scale=trunc(iw/4)*2:trunc(ih/4)*2"
-    filters = ["-vf", chosen, "-r", "10", "-crf", str(QUALITY), "-preset", "slow", "-an"]
+    filters = ["-vf", chosen, "-r", f"{fps:g}", "-crf", str(QUALITY), "-preset", "slow", "-an"]
     tool = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-i", str(source)]
     subprocess.run([*tool, *filters, "-movflags", "+faststart", str(temporary)], check=True)
     temporary.replace(target)

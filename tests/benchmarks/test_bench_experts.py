@@ -5,11 +5,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import torch
 
 from arcgym.benchmarks.experts.measure import OUT_OF_TIME, Attempt, attempt, row_of
 from arcgym.benchmarks.experts.table import failures, read_rows, table
+from arcgym.benchmarks.experts.ways import Ways, read_way
 from arcgym.cli.bench_experts import _missing
 from arcgym.start_states.route import Entry, Route
 from arcgym.utils.paths import assets_dir
@@ -62,6 +65,26 @@ def test_a_drive_that_was_cut_off_goes_on_from_the_kept_one(tmp_path: Path) -> N
     assert [row["time"] for row in rows] == [0.1, 0.2]
     assert [row["problem"] for row in rows] == [OUT_OF_TIME] * 2
     assert [path.name for path in tmp_path.iterdir()] == ["colon_1-capsule-paper.npz"]
+
+
+class _Place:
+    """A state on the way."""
+
+    def __init__(self, arc: float) -> None:
+        self.arc, self.state = arc, {"joint_q": torch.tensor([arc, 1.0])}
+
+
+def test_states_on_the_way_are_kept_once_and_read_in_order(tmp_path: Path) -> None:
+    places = [[_Place(0.96)], []]
+    drive, ways, folder = SimpleNamespace(trail=SimpleNamespace(places=places)), Ways(), tmp_path / "a"
+    for arc in (0.96, 1.0, 1.0):
+        if arc > places[0][-1].arc:
+            places[0].append(_Place(arc))
+        ways.keep(drive, 0, folder)  # type: ignore[arg-type]
+        ways.keep(drive, 1, tmp_path / "b")  # type: ignore[arg-type]  # nothing on its way yet
+    way = read_way(folder)
+    assert list(way) == [0.96, 1.0] and not (tmp_path / "b").exists()
+    assert way[1.0].arrays["joint_q"].tolist() == [1.0, 1.0]
 
 
 def test_overrides_are_part_of_a_row_s_tissue() -> None:

@@ -61,6 +61,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--halts", type=Path, help="folder that keeps drives for which --minutes were not enough, to go on with them"
     )
+    parser.add_argument(
+        "--ways",
+        type=Path,
+        help="folder that keeps the foremost world's state every 4 cm, for scripts/tools/film_way.py",
+    )
     parser.add_argument("--seed", type=int, default=0, help="seed of the experts' settings (0)")
     parser.add_argument("--device", help="cpu, cuda or cuda:<n> (default: cuda:0 where there is one, else cpu)")
     parser.add_argument("--out", type=Path, required=True, help="folder of the rows and the table")
@@ -125,6 +130,7 @@ def _drive(
         )
 
     how = {"keep_states": args.states, "patience": args.patience, "length": args.length, "halts": args.halts}
+    how["ways"] = args.ways
     how["overrides"] = tuple(args.overrides)
     plan = Attempt(robot, tissue, worlds, args.max_time, device, args.seed, deadline, **how)
     attempt(plan, stages, done, lambda text: print(f"{robot}, {tissue}: {text}", flush=True))

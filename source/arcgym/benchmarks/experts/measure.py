@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.assets import CAPSULE_CFG, MAGNETIC_CFG, PROXIMAL_CFG, ColonCfg
+from arcgym.benchmarks.experts.ways import Ways
 from arcgym.benchmarks.worlds import load_env_cfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
@@ -61,6 +62,8 @@ class Attempt:
     """Overrides of the robot's task, such as ``env.clinical=[all]``."""
     halts: Path | None = None
     """Folder in which drives under way are kept, and from which they go on if they are stopped; None for none."""
+    ways: Path | None = None
+    """Folder in which states on the way of each patient's foremost world are kept; None for none."""
 
     @property
     def label(self) -> str:
@@ -85,10 +88,12 @@ def attempt(
     scene = build(plan, stages)
     drive = Drive(scene, patience=plan.patience, max_time=plan.max_time, seed=plan.seed)
     _go_on(plan, drive)
-    began, written = time.monotonic(), set[int]()
+    began, written, ways = time.monotonic(), set[int](), Ways()
 
     def report(drive: Drive) -> None:
         for patient, route in enumerate(drive.routes):
+            if plan.ways is not None:
+                ways.keep(drive, patient, plan.ways / _name(plan, drive, patient))
             if route.running and time.monotonic() > plan.deadline:
                 route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
                 _keep_halt(plan, drive, patient)
@@ -109,10 +114,14 @@ def attempt(
         _keep(scene, drive)
 
 
+def _name(plan: Attempt, drive: Drive, patient: int) -> str:
+    """Return a name of patient, scope and tissue, for files and folders."""
+    return "-".join((drive.scene.colon.patients[patient].name, drive.scene.endoscope.path.stem, *plan.label.split()))
+
+
 def _halt(folder: Path, plan: Attempt, drive: Drive, patient: int) -> Path:
     """Return the file of a drive that was stopped from outside."""
-    words = (drive.scene.colon.patients[patient].name, drive.scene.endoscope.path.stem, *plan.label.split())
-    return folder / ("-".join(words) + ".npz")
+    return folder / f"{_name(plan, drive, patient)}.npz"
 
 
 def _keep_halt(plan: Attempt, drive: Drive, patient: int) -> None:
