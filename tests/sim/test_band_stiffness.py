@@ -42,7 +42,7 @@ def matrix(sim: Simulation, points: np.ndarray) -> np.ndarray:
     solver, rings = sim.wall, sim.wall.ring_count
     inputs, outputs = [sim.nodal_pos, solver.rings, solver.loads], [solver.axes, solver.shift]
     wp.launch(coarse_kernels.place_rings, (rings, 1), inputs=inputs, outputs=outputs)
-    inputs = [sim.nodal_pos, solver.elements.data, solver.rings, solver.axes, solver.tissue]
+    inputs = [sim.nodal_pos, solver.elements.data, solver.rings, solver.axes, solver.tissue, None]
     wp.launch(solver.elements.measure_bands, (rings - 1, 1), inputs=[0, *inputs], outputs=[solver.bands])
     upper = np.triu(solver.bands.numpy()[..., 0].astype(float))
     of_rings = np.zeros((15, 2 * MODES))  # t of the ring less t of the next one, g_p and g_q of the one, of the other
@@ -136,7 +136,7 @@ def test_one_correction_of_a_dented_tube_does_not_overshoot(tiny_sim: TinySim) -
     solver._measure(sim.nodal_pos)
     solver._residual(sim.nodal_pos, solver.inertial, contacts, solver.force)
     force = solver.force.numpy()[:, 0].ravel()
-    solver._correct_rings(sim.nodal_pos, contacts, repeat=0)
+    solver._correct_rings(sim.nodal_pos, sim.nodal_pos, contacts, repeat=0)
     move = (sim.nodal_pos.numpy()[:, 0] - start).ravel()
     before = force @ move
     solver._measure(sim.nodal_pos)

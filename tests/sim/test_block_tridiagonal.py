@@ -9,6 +9,7 @@ import pytest
 import warp as wp
 
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
+from arcgym.sim.wall.kept_rows_kernels import KeptRows
 from arcgym.sim.wall.ring_modes import MODES
 
 
@@ -49,3 +50,36 @@ def test_solution_agrees_with_a_dense_solver(rows: int, device: str) -> None:
         [np.linalg.solve(matrix, other[:, k].ravel()).reshape(rows, MODES) for k, (matrix, _) in enumerate(systems)], 1
     )
     np.testing.assert_allclose(also.numpy(), answers, atol=2e-5 * np.abs(answers).max())
+
+
+@pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA")
+@pytest.mark.parametrize("rows", [2, 3, 24])
+def test_rows_whose_factors_are_kept(rows: int) -> None:
+    """Of two worlds the first rows change, as many as said, and all right-hand sides."""
+    rng, device = np.random.default_rng(rows), "cuda:0"
+    system, kept = BlockTridiagonalSolver(2, rows, device), KeptRows()
+    kept.first = wp.zeros(2, dtype=int, device=device)
+    kept.middle = wp.full(2, -1, dtype=int, device=device)
+    matrices = [random_system(rng, rows)[0] for _ in range(2)]
+    for first in ([rows, rows], [1, rows // 2], [rows // 3, 0], [0, 0], [rows - 1, 1], [rows, 0], [2 * rows // 3, 1]):
+        middle = kept.middle.numpy()
+        diagonal, upper, rhs = (one.numpy() for one in (system.diagonal, system.upper, system.rhs))
+        for w in range(2):
+            other = random_system(rng, rows)[0]
+            changed = first[w] * MODES
+            matrices[w][:changed, :changed] = other[:changed, :changed]
+            blocks = matrices[w].reshape(rows, MODES, rows, MODES)
+            light = rows if middle[w] < 0 else max(first[w], middle[w] + 1)
+            for r in range(light):
+                diagonal[r, w] = blocks[r, :, r]
+                if r + 1 < light or light == rows:
+                    upper[r, w] = blocks[r, :, r + 1] if r + 1 < rows else 0.0
+            rhs[:, w] = rng.normal(size=(rows, MODES))
+        expected = [np.linalg.solve(matrices[w], rhs[:, w].ravel()).reshape(rows, MODES) for w in range(2)]
+        system.diagonal.assign(diagonal)
+        system.upper.assign(upper)
+        system.rhs.assign(rhs)
+        kept.first.assign(np.array(first, np.int32))
+        system.solve_changed(kept)
+        np.testing.assert_allclose(system.rhs.numpy(), np.stack(expected, axis=1), atol=2e-5 * np.abs(expected).max())
+        assert ((kept.middle.numpy() >= 0) & (kept.middle.numpy() < rows)).all()

@@ -27,4 +27,5 @@ GPU_BLOCK = 128
 larger blocks fit a multiprocessor."""
 
 FAST = {"fast_math": True}
-"""Module options of kernels for a GPU alone whose reciprocals, roots and logarithms may be those of the hardware."""
+"""Module options of kernels whose reciprocals, roots and logarithms on a GPU may be those of the hardware. A CPU
+ignores them."""

@@ -19,6 +19,49 @@ FURTHER_RINGS = wp.constant(2)
 """Rings beyond those near a link whose points are carried, too: of the faces across a border, whose normals count."""
 
 
+@wp.func
+def carrying_sphere(
+    x: wp.array2d[wp.vec3],
+    surface: LumenSurface,
+    room: wp.array2d[float],
+    patient: wp.array[int],
+    centers: wp.array2d[wp.vec3],
+    r: int,
+    w: int,
+) -> wp.vec4:
+    """Return the sphere around what ring ``r`` and the next one carry."""
+    above = wp.min(r + 1, surface.rings.shape[0] - 1)
+    middle = 0.5 * (centers[w, r] + centers[w, above])
+    square = float(0.0)
+    for k in range(surface.rings.shape[1]):
+        square = wp.max(square, wp.length_sq(x[surface.rings[r, k], w] - middle))
+        square = wp.max(square, wp.length_sq(x[surface.rings[above, k], w] - middle))
+    return wp.vec4(middle[0], middle[1], middle[2], MARGIN * (wp.sqrt(square) + room[r, patient[w]]))
+
+
+@wp.func
+def link_near(
+    sphere: wp.vec4,
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    law: ContactLaw,
+    ring_distance: wp.array2d[float],
+    w: int,
+) -> bool:
+    """Return whether a link of world ``w`` may touch what is in a sphere."""
+    count = links.radius.shape[0]
+    found = bool(False)
+    link = int(0)
+    while link < count and not found:
+        if ring_distance[w, link] < FAR:
+            row = w * count + link
+            center = wp.transform_get_translation(body_q[row])
+            limit = links.radius[link] + law.wall_radius + law.search_gap
+            found = sphere_reached(sphere, center, link_axis(body_q, row, links.half_length[link]), limit)
+        link += 1
+    return found
+
+
 @wp.kernel
 def mark_near_rings(
     x: wp.array2d[wp.vec3],
@@ -29,6 +72,7 @@ def mark_near_rings(
     links: LinkShapes,
     law: ContactLaw,
     ring_distance: wp.array2d[float],
+    centers: wp.array2d[wp.vec3],
     near: wp.array2d[int],
 ):
     """Mark the rings of the fine surface that a link may touch. Launch (R, W).
@@ -45,32 +89,54 @@ def mark_near_rings(
         links: Capsules of one world.
         law: Contact law.
         ring_distance: Distance from the center of the link's ring, FAR for links outside the anus [m], shape (W, L).
+        centers: Center of each ring [m], shape (W, R).
         near: 1 where a link may touch the ring, else 0, shape (R, W); written.
     """
     r, w = wp.tid()
-    above = wp.min(r + 1, surface.rings.shape[0] - 1)
-    columns = surface.rings.shape[1]
-    middle = wp.vec3(0.0)
-    for k in range(columns):
-        middle += x[surface.rings[r, k], w] + x[surface.rings[above, k], w]
-    middle = middle / float(2 * columns)
-    square = float(0.0)
-    for k in range(columns):
-        square = wp.max(square, wp.length_sq(x[surface.rings[r, k], w] - middle))
-        square = wp.max(square, wp.length_sq(x[surface.rings[above, k], w] - middle))
-    sphere = wp.vec4(middle[0], middle[1], middle[2], MARGIN * (wp.sqrt(square) + room[r, patient[w]]))
-    count = links.radius.shape[0]
-    found = int(0)
-    link = int(0)
-    while link < count and found == 0:
-        if ring_distance[w, link] < FAR:
-            row = w * count + link
-            center = wp.transform_get_translation(body_q[row])
-            limit = links.radius[link] + law.wall_radius + law.search_gap
-            if sphere_reached(sphere, center, link_axis(body_q, row, links.half_length[link]), limit):
-                found = 1
-        link += 1
-    near[r, w] = found
+    sphere = carrying_sphere(x, surface, room, patient, centers, r, w)
+    near[r, w] = int(link_near(sphere, body_q, links, law, ring_distance, w))
+
+
+@wp.kernel
+def mark_near_followed(
+    x: wp.array2d[wp.vec3],
+    surface: LumenSurface,
+    room: wp.array2d[float],
+    patient: wp.array[int],
+    body_q: wp.array[wp.transform],
+    links: LinkShapes,
+    law: ContactLaw,
+    ring_distance: wp.array2d[float],
+    centers: wp.array2d[wp.vec3],
+    moved: wp.array2d[int],
+    slack: float,
+    spheres: wp.array2d[wp.vec4],
+    near: wp.array2d[int],
+):
+    """Do as ``mark_near_rings`` with spheres that are larger by the slack, and kept until a ring moves. Launch (R, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        surface: Inner faces of one world.
+        room: Longest offset of a point of each ring [m], shape (R, P).
+        patient: Patient of each world, shape (W,).
+        body_q: Link poses, shape (W*L,).
+        links: Capsules of one world.
+        law: Contact law.
+        ring_distance: Distance from the center of the link's ring, FAR for links outside the anus [m], shape (W, L).
+        centers: Center of each ring [m], shape (W, R).
+        moved: 1 where a vertex of a ring has moved by the slack, else 0, shape (R, W).
+        slack: See ``follow_rings`` [m].
+        spheres: Around each ring and the next, shape (R, W); updated.
+        near: 1 where a link may touch the ring, else 0, shape (R, W); written.
+    """
+    r, w = wp.tid()
+    sphere = spheres[r, w]
+    if moved[r, w] == 1 or moved[wp.min(r + 1, moved.shape[0] - 1), w] == 1:
+        sphere = carrying_sphere(x, surface, room, patient, centers, r, w)
+        sphere = wp.vec4(sphere[0], sphere[1], sphere[2], sphere[3] + slack)
+        spheres[r, w] = sphere
+    near[r, w] = int(link_near(sphere, body_q, links, law, ring_distance, w))
 
 
 @wp.kernel
@@ -78,7 +144,7 @@ def bound_near_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, near: wp.arr
     """Enclose the faces of each ring, patch by patch; those of rings that are not ``near`` are FAR. Launch (R, W)."""
     r, w = wp.tid()
     if near[r, w] == 1:
-        bound_ring(x, surface, bounds, r, w)
+        bound_ring(x, surface, bounds, 0.0, r, w)
     else:
         write_ring(bounds, r, w, wp.vec4(FAR, FAR, FAR, 0.0))
 

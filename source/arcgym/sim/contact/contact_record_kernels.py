@@ -22,6 +22,7 @@ from arcgym.sim.contact.lumen_kernels import FAR, LumenSurface
 from arcgym.sim.geometry_kernels import corner_point, segment_parameter, segment_triangle_mean
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.block_queue_kernels import wait_for_block
+from arcgym.utils.warp_setup import FAST
 
 SMOOTHING = wp.constant(5.0e-5)
 """Length over which the contact point is a mean of a face's nearest points, weighted by exp(-distance / length) [m]."""
@@ -189,7 +190,7 @@ def fill_slots(k: int, w: int, surface: LumenSurface, candidates: Candidates, re
             slot += 1
 
 
-@wp.kernel(launch_bounds=(256, 3))
+@wp.kernel(launch_bounds=(256, 3), module="unique", module_options=FAST)
 def record_faces(
     x: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
@@ -283,7 +284,7 @@ def locate_contact(
     records.slide[slot] = past_slide(past, face, link, w, records.capacity)
 
 
-@wp.kernel
+@wp.kernel(module="unique", module_options=FAST)
 def locate_contacts(
     x: wp.array2d[wp.vec3],
     points: wp.array2d[wp.vec3],

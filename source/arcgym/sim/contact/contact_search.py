@@ -30,6 +30,10 @@ MAX_RING_SHIFT = 4
 """Rings that a link may cross in one physics step."""
 
 
+SPHERE_SLACK = 1.0e-4
+"""How far the wall may move until a GPU encloses its faces anew [m]: the spheres around them are larger by as much."""
+
+
 class ContactSearch:
     """Finds the contacts of every link with the inner wall faces near it, however the wall is gathered or folded.
 
@@ -90,6 +94,12 @@ class ContactSearch:
         self.bounds.ring_of_world = wp.zeros((worlds, self.ring_count), dtype=wp.vec4, device=device)
         self.bounds.patch_of_world = wp.zeros((worlds, patches), dtype=wp.vec4, device=device)
         self._beside = Beside(device)
+        rings_apart = np.ptp(vertex_ring[topology.faces], axis=1).max() if carried is None else 1
+        self._follows = wp.get_device(device).is_cuda and rings_apart <= 1
+        if self._follows:
+            self._place = wp.full((self.vertex_count, num_envs), lumen_kernels.FAR, dtype=wp.vec3, device=device)
+            self._moved = wp.ones((self.ring_count, num_envs), dtype=int, device=device)
+            self._spheres = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
         self.candidates = self._candidates(cfg.patch_capacity * room)
         self.debt = wp.zeros((self.num_envs, self.link_count), dtype=wp.vec3, device=device)
         """Impulse over ``dt`` that each link has had from the wall and not yet given back to it [N], shape (W, L)."""
@@ -217,6 +227,13 @@ class ContactSearch:
 
     def follow(self, x: wp.array, body_q: wp.array) -> None:
         """Find the ring of every link, and where the faces are; arguments as in :meth:`detect`."""
+        if self._follows and not self.still:
+            shape, inputs = (self.ring_count, self.num_envs), [x, self.surface, SPHERE_SLACK]
+            self._launch(lumen_kernels.follow_rings, shape, inputs, [self.centers, self._place, self._moved])
+            with self._beside.work():
+                self._begin(x)
+            self.track(body_q)
+            return
         with self._beside.work():
             self._begin(x)
         if not self.still:
@@ -237,7 +254,11 @@ class ContactSearch:
         self._launch(record_kernels.keep_past, (self.num_envs, records.threads), [records], [self.past])
         records.vertex_head.fill_(-1)
         records.ring_head.fill_(-1)
-        if not self.still and self.carried is None:
+        if not self.still and self._follows and self.carried is None:
+            self.points = x
+            inputs = [x, self.surface, self._moved, SPHERE_SLACK]
+            self._launch(lumen_kernels.bound_moved_faces, (self.ring_count, self.num_envs), inputs, [self.bounds])
+        elif not self.still and self.carried is None:
             self.measure_surface(x)
 
     def measure_surface(self, x: wp.array) -> None:
@@ -253,9 +274,13 @@ class ContactSearch:
         """Find where the faces of a fine surface are that a link may touch."""
         fine, shape = self.carried, (self.ring_count, self.num_envs)
         assert fine is not None
-        of_links = [body_q, self.links, self.law, self.ring_distance]
+        of_links = [body_q, self.links, self.law, self.ring_distance, self.centers]
         inputs = [x, self.surface, fine.room, fine.patient, *of_links]
-        self._launch(carried_kernels.mark_near_rings, shape, inputs, [fine.near])
+        if self._follows:
+            outputs = [self._spheres, fine.near]
+            self._launch(carried_kernels.mark_near_followed, shape, [*inputs, self._moved, SPHERE_SLACK], outputs)
+        else:
+            self._launch(carried_kernels.mark_near_rings, shape, inputs, [fine.near])
         self.points = fine.update_near(x)
         self._launch(carried_kernels.bound_near_faces, shape, [self.points, self.surface, fine.near], [self.bounds])
 

@@ -63,6 +63,42 @@ def ring_centers(x: wp.array2d[wp.vec3], surface: LumenSurface, centers: wp.arra
 
 
 @wp.kernel
+def follow_rings(
+    x: wp.array2d[wp.vec3],
+    surface: LumenSurface,
+    slack: float,
+    centers: wp.array2d[wp.vec3],
+    place: wp.array2d[wp.vec3],
+    moved: wp.array2d[int],
+):
+    """Do as ``ring_centers``, and find the rings of which a vertex has moved on by the slack. Launch (R, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        surface: Inner faces of one world.
+        slack: How far a vertex may have moved in a ring that counts as not moved [m].
+        centers: Ring centres [m], shape (W, R); written.
+        place: Where the vertices were when the ring had last moved [m], shape (V, W); updated.
+        moved: 1 where the ring has moved, else 0, shape (R, W); written.
+    """
+    r, w = wp.tid()
+    n = surface.rings.shape[1]
+    total = wp.vec3(0.0)
+    farthest = float(0.0)
+    for k in range(n):
+        i = surface.rings[r, k]
+        here = x[i, w]
+        total += here
+        farthest = wp.max(farthest, wp.length_sq(here - place[i, w]))
+    centers[w, r] = total / float(n)
+    moved[r, w] = int(farthest > slack * slack)
+    if farthest > slack * slack:
+        for k in range(n):
+            i = surface.rings[r, k]
+            place[i, w] = x[i, w]
+
+
+@wp.kernel
 def track_rings(
     centers: wp.array2d[wp.vec3],
     body_q: wp.array[wp.transform],
@@ -129,8 +165,8 @@ def write_ring(bounds: Bounds, r: int, w: int, sphere: wp.vec4):
 
 
 @wp.func
-def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, r: int, w: int):
-    """Enclose the faces of ring ``r`` of world ``w``, patch by patch."""
+def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, slack: float, r: int, w: int):
+    """Enclose the faces of ring ``r`` of world ``w``, patch by patch, in spheres larger by ``slack`` [m]."""
     first = surface.ring_patch[r]
     last = surface.ring_patch[r + 1]
     middle = wp.vec3(0.0)
@@ -143,7 +179,7 @@ def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, r:
         radius = float(0.0)
         for k in range(vertices):
             radius = wp.max(radius, wp.length_sq(x[surface.patch_vertices[p, k], w] - center))
-        around = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius))
+        around = wp.vec4(center[0], center[1], center[2], wp.sqrt(radius) + slack)
         bounds.patch[p, w] = around
         if bounds.patch_of_world.shape[0] > 0:
             bounds.patch_of_world[w, p] = around
@@ -160,7 +196,20 @@ def bound_ring(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds, r:
 def bound_faces(x: wp.array2d[wp.vec3], surface: LumenSurface, bounds: Bounds):
     """Enclose the faces of each ring, patch by patch. Launch (R, W)."""
     r, w = wp.tid()
-    bound_ring(x, surface, bounds, r, w)
+    bound_ring(x, surface, bounds, 0.0, r, w)
+
+
+@wp.kernel
+def bound_moved_faces(
+    x: wp.array2d[wp.vec3], surface: LumenSurface, moved: wp.array2d[int], slack: float, bounds: Bounds
+):
+    """Enclose the faces of each ring of which a vertex has ``moved``, shape (R, W), by ``slack`` [m]. Launch (R, W).
+
+    The spheres are larger by the slack: they hold the faces until then.
+    """
+    r, w = wp.tid()
+    if moved[r, w] == 1 or moved[wp.min(r + 1, moved.shape[0] - 1), w] == 1:
+        bound_ring(x, surface, bounds, slack, r, w)
 
 
 @wp.func

@@ -14,6 +14,7 @@ from arcgym.sim.contact.contact_search_kernels import Candidates, LinkReach, lin
 from arcgym.sim.contact.lumen_kernels import FAR, Bounds, LumenSurface, sphere_reached
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.block_queue_kernels import wait_for_block
+from arcgym.utils.warp_setup import FAST
 from arcgym.utils.warp_vote_kernels import first_vote, last_vote, vote_count, votes, votes_before, warp_sum
 
 
@@ -123,7 +124,7 @@ def list_near(
         p += lanes
 
 
-@wp.kernel
+@wp.kernel(module="unique", module_options=FAST)
 def find_patches(
     body_q: wp.array[wp.transform],
     links: LinkShapes,

@@ -164,4 +164,5 @@ class TwoLevelCoupling:
         self.solver.forward(self.sim.state, world_mask)
 
     def reset(self, world_mask: wp.array) -> None:
-        """Nothing to forget: neither solver keeps anything from step to step."""
+        """Have the wall's solver measure anew what it keeps while nothing moves."""
+        self.sim.wall.forget(world_mask)

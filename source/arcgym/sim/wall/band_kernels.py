@@ -17,7 +17,7 @@ import warp as wp
 from arcgym.sim.wall.band_matrix_kernels import BandMatrix, Five, add_strain_difference, write_band
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.warp_setup import GPU_BLOCK
+from arcgym.utils.warp_setup import FAST, GPU_BLOCK
 
 
 @wp.struct
@@ -82,16 +82,17 @@ def add_bending(band: BandMatrix, axes: RingAxes, factor: wp.mat33, rigidity: fl
     return out
 
 
-def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
+def band_kernel(elements_type: type, add_element: wp.Function, changed_alone: bool = False) -> wp.Kernel:
     """Make the kernel that measures the bands' stiffness, for one kind of elements.
 
     Args:
         elements_type: Struct of the elements.
         add_element: Adds an element to a band's matrix, at the present positions; takes matrix, elements, rings,
             positions, element, ring, world and moduli.
+        changed_alone: Whether to leave the bands out of which neither ring has changed.
     """
 
-    @wp.kernel(module="unique", launch_bounds=(GPU_BLOCK, 3))
+    @wp.kernel(module="unique", launch_bounds=(GPU_BLOCK, 3), module_options=FAST)
     def measure_bands(
         first: int,
         x: wp.array2d[wp.vec3],
@@ -99,6 +100,7 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
         rings: Rings,
         axes: RingAxes,
         tissue: Tissue,
+        changed: wp.array2d[int],
         bands: wp.array4d[float],
     ):
         """Measure the stiffness of every band. Launch (R - 1, W), or some of the rows.
@@ -110,10 +112,14 @@ def band_kernel(elements_type: type, add_element: wp.Function) -> wp.Kernel:
             rings: Rings of all patients.
             axes: Directions of the rings.
             tissue: Values of each world.
+            changed: 1 where a ring has changed, else 0, shape (R, W); read if ``changed_alone``.
             bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W); written.
         """
         r, w = wp.tid()
         r += first
+        if wp.static(changed_alone):
+            if changed[r, w] == 0 and changed[r + 1, w] == 0:
+                return
         band = BandMatrix()
         for e in range(rings.band_start[r], rings.band_start[r + 1]):
             band = add_element(band, elements, rings, x, rings.band[e], r, w, tissue.moduli[w])

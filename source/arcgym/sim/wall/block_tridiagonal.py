@@ -8,6 +8,7 @@ import warp as wp
 
 from arcgym.sim.wall import block_tridiagonal_cuda_kernels as cuda_kernels
 from arcgym.sim.wall import block_tridiagonal_kernels as kernels
+from arcgym.sim.wall.kept_rows_kernels import KeptRows
 from arcgym.sim.wall.ring_modes import MODES
 
 
@@ -49,6 +50,15 @@ class BlockTridiagonalSolver:
         self.substitute()
         if also is not None:
             wp.launch(kernels.solve_again, self.num_envs, inputs=blocks, outputs=[also], device=self.device)
+
+    def solve_changed(self, kept: KeptRows) -> None:
+        """Solve all systems in place on a GPU, which were filled but for the rows that are ``kept``.
+
+        Those have to be as :meth:`solve_changed` has left them, but for their right-hand sides.
+        """
+        shape, threads = (self.num_envs, cuda_kernels.THREADS), cuda_kernels.THREADS
+        outputs = [self.diagonal, self.upper, self.rhs, kept]
+        wp.launch(cuda_kernels.solve_changed_rows, shape, outputs=outputs, device=self.device, block_dim=threads)
 
     def eliminate(self, first: int, count: int) -> None:
         """Begin to solve, on a CPU: go down ``count`` rows from ``first`` on, those before it having been done."""

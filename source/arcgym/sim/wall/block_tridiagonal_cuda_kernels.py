@@ -8,11 +8,15 @@ both go back. A warp holds a row of the system in registers, a column a lane: th
 a column of the Cholesky factor, of W = L^-1 U and of y = L^-1 b take one multiplication and, for each row below, one
 exchange and one fused product in all lanes at once. Another right-hand side takes one lane more on the way down; on the
 way back the lanes of U, which are free then, find its solution beside those of S.
+
+Of a row of the second warp that is kept, see ``kept_rows_kernels``, y alone is missing: each of M lanes has a column of
+L and one of the W before, and takes as many exchanges as on the way back.
 """
 
 import warp as wp
 
 from arcgym.sim.wall.block_tridiagonal_kernels import SMALLEST_PIVOT
+from arcgym.sim.wall.kept_rows_kernels import KeptRows
 from arcgym.sim.wall.ring_modes import MODES
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -33,7 +37,15 @@ _SOLVE = """
     const int lane = thread % 32, side = thread / 32;
     const bool in_s = lane < M, in_u = lane >= M && lane < 2 * M, in_other = SIDES == 2 && lane == 2 * M + 1;
     const bool in_b = lane == 2 * M || in_other;
-    const int rows = diagonal.shape[0], middle = rows / 2;
+    const int rows = diagonal.shape[0];
+#if KEEPS
+    const int before = kept.middle.data[world];
+    const int light = before < 0 ? rows : wp::max(kept.first.data[world], before + 1);  // first_kept
+    // where the warps meet at the same time, if a kept row takes a third of another on the way down, as on the way back
+    const int middle = wp::min((14 * rows + 13 * light) / 54, light - 1);
+#else
+    const int middle = rows / 2;
+#endif
     const int step = side == 0 ? 1 : -1, count = side == 0 ? middle : rows - 1 - middle;
     const long long block = (long long)diagonal.shape[1] * M * M, row = (long long)diagonal.shape[1] * M;
     float* const d = diagonal.data + (long long)world * M * M;
@@ -106,11 +118,48 @@ _SOLVE = """
         return x;
     };
 
-    int r = side == 0 ? 0 : rows - 1;
-    if (side == 0 || count > 0) load(r, a);
+    int r = side == 0 ? 0 : rows - 1, done = 0;
     float taken[M];
     for (int k = 0; k < M; ++k) taken[k] = 0.0f;
-    for (int n = 0; n < count; ++n, r += step) {
+#if KEEPS
+    if (side == 1 && light < rows) {  // of rows whose L and W are kept y alone is missing
+        const int i = in_s ? lane : M - 1;
+        float lower[M], coupling[M], lower_next[M], coupling_next[M];
+        float y = 0.0f, c = b[r * row + i], c_next = 0.0f;
+        for (int k = 0; k < M; ++k) {
+            lower[k] = lower_next[k] = d[r * block + k * M + i];
+            coupling[k] = coupling_next[k] = 0.0f;
+        }
+        for (; r >= light; --r) {
+            if (r > light) {
+                for (int k = 0; k < M; ++k) lower_next[k] = d[(r - 1) * block + k * M + i];
+                for (int k = 0; k < M; ++k) coupling_next[k] = u[r * block + i * M + k];
+                c_next = b[(r - 1) * row + i];
+                if (r - 2 >= light) ask(r - 2);
+            }
+            for (int k = 0; k < M; ++k) c -= coupling[k] * __shfl_sync(ALL, y, k);
+            for (int j = 0; j < M; ++j) {
+                const float found = __shfl_sync(ALL, c * lower[j], j);
+                if (i == j) y = found;
+                c -= lower[j] * found;
+            }
+            if (in_s) b[r * row + i] = y;
+            for (int k = 0; k < M; ++k) {
+                lower[k] = lower_next[k];
+                coupling[k] = coupling_next[k];
+            }
+            c = c_next;
+        }
+        __syncwarp();
+        done = rows - light;
+        load(light, a);
+        product(taken);
+        load(r, next);
+        for (int k = 0; k < M; ++k) a[k] = in_u ? next[k] : next[k] - taken[k];
+    } else
+#endif
+    if (side == 0 || count > 0) load(r, a);
+    for (int n = done; n < count; ++n, r += step) {
         load(r + step, next);
         if (n + 2 < count) ask(r + 2 * step);
         factor();
@@ -149,17 +198,25 @@ _SOLVE = """
         }
         y = y_next;
     }
+#if KEEPS
+    if (thread == 0) kept.middle.data[world] = middle;
+#endif
 #endif
 """.replace("MODES", str(MODES)).replace("SMALLEST_PIVOT", f"{float(SMALLEST_PIVOT)}f")
 
 
-@wp.func_native(_SOLVE.replace("RIGHT_HAND_SIDES", "1").replace("OTHER", "rhs"))
+def _code(sides: int, other: str, keeps: bool) -> str:
+    """Return the code for one or two right-hand sides, the ``other`` one by name, and with or without rows ``kept``."""
+    return _SOLVE.replace("RIGHT_HAND_SIDES", str(sides)).replace("OTHER", other).replace("KEEPS", str(int(keeps)))
+
+
+@wp.func_native(_code(1, "rhs", False))
 def solve_world(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], world: int, thread: int):
     """Solve the system of ``world``; all threads of a block have to call it."""
     ...
 
 
-@wp.func_native(_SOLVE.replace("RIGHT_HAND_SIDES", "2").replace("OTHER", "other"))
+@wp.func_native(_code(2, "other", False))
 def solve_world_twice(
     diagonal: wp.array4d[float],
     upper: wp.array4d[float],
@@ -169,6 +226,19 @@ def solve_world_twice(
     thread: int,
 ):
     """Solve the system of ``world`` for two right-hand sides; all threads of a block have to call it."""
+    ...
+
+
+@wp.func_native(_code(1, "rhs", True))
+def solve_changed_world(
+    diagonal: wp.array4d[float],
+    upper: wp.array4d[float],
+    rhs: wp.array3d[float],
+    kept: KeptRows,
+    world: int,
+    thread: int,
+):
+    """Solve the system of ``world`` with the factors that are ``kept``; all threads of a block have to call it."""
     ...
 
 
@@ -183,6 +253,20 @@ def solve_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.ar
     """
     world, thread = wp.tid()
     solve_world(diagonal, upper, rhs, world, thread)
+
+
+@wp.kernel(launch_bounds=(THREADS, 8), module="unique")
+def solve_changed_rows(diagonal: wp.array4d[float], upper: wp.array4d[float], rhs: wp.array3d[float], kept: KeptRows):
+    """Do as ``solve_rows`` with the factors of rows that are kept. Launch (W, ``THREADS``) in blocks of ``THREADS``.
+
+    Args:
+        diagonal: Blocks D, shape (R, W, M, M), of the rows that are not kept; overwritten. Of the others the factors.
+        upper: Couplings U to the next row, shape (R, W, M, M), where neither row is kept; overwritten, likewise.
+        rhs: Right-hand side b, shape (R, W, M); the solution x afterwards.
+        kept: Rows that are kept; ``middle`` is written.
+    """
+    world, thread = wp.tid()
+    solve_changed_world(diagonal, upper, rhs, kept, world, thread)
 
 
 @wp.kernel(launch_bounds=(THREADS, 8), module="unique")

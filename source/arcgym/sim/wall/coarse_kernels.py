@@ -20,10 +20,12 @@ from arcgym.sim.wall.anchor_kernels import secant_share
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import band_entry
 from arcgym.sim.wall.block_tridiagonal_kernels import MODES, Unknowns
-from arcgym.sim.wall.row_store_kernels import store_row
+from arcgym.sim.wall.kept_rows_kernels import KeptRows, first_kept
+from arcgym.sim.wall.row_store_kernels import store_row, store_row_if
 from arcgym.sim.wall.wall_kernels import MeasuredContacts, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.math_kernels import clamp_length
+from arcgym.utils.warp_setup import FAST
 
 
 @wp.struct
@@ -38,18 +40,17 @@ class RingLoads:
     rest_center: wp.array2d[wp.vec3]  # mean rest position of the ring's vertices [m], shape (R, P)
 
 
-@wp.kernel
-def place_rings(x: wp.array2d[wp.vec3], rings: Rings, loads: RingLoads, axes: RingAxes, shift: wp.array2d[wp.vec3]):
-    """Measure how each ring lies and how far its centre has moved since rest. Launch (R, W).
-
-    Args:
-        x: Wall positions [m], shape (V, W).
-        rings: Rings of all patients.
-        loads: Loads of all patients.
-        axes: Directions of the rings; written.
-        shift: Shift of each ring's centre [m], shape (R, W); written.
-    """
-    r, w = wp.tid()
+@wp.func
+def place_ring(
+    x: wp.array2d[wp.vec3],
+    rings: Rings,
+    loads: RingLoads,
+    axes: RingAxes,
+    shift: wp.array2d[wp.vec3],
+    r: int,
+    w: int,
+):
+    """Measure how ring ``r`` of world ``w`` lies and how far its centre has moved since rest, see ``place_rings``."""
     patient = rings.patient[w]
     total = wp.vec3(0.0)
     p = wp.vec3(0.0)
@@ -67,6 +68,21 @@ def place_rings(x: wp.array2d[wp.vec3], rings: Rings, loads: RingLoads, axes: Ri
     p = wp.normalize(p)
     axes.p[r, w] = p
     axes.q[r, w] = wp.normalize(q - wp.dot(p, q) * p)
+
+
+@wp.kernel
+def place_rings(x: wp.array2d[wp.vec3], rings: Rings, loads: RingLoads, axes: RingAxes, shift: wp.array2d[wp.vec3]):
+    """Measure how each ring lies and how far its centre has moved since rest. Launch (R, W).
+
+    Args:
+        x: Wall positions [m], shape (V, W).
+        rings: Rings of all patients.
+        loads: Loads of all patients.
+        axes: Directions of the rings; written.
+        shift: Shift of each ring's centre [m], shape (R, W); written.
+    """
+    r, w = wp.tid()
+    place_ring(x, rings, loads, axes, shift, r, w)
 
 
 @wp.func
@@ -185,109 +201,138 @@ def next_sign(i: int) -> float:
     return wp.where(i < 3, -1.0, 1.0)
 
 
+def _assemble_kernel(keeps: bool) -> wp.Kernel:
+    """Make the kernel that assembles the equations: all of them, or but for the rows that are kept."""
+
+    @wp.kernel(module="unique", module_options=FAST)
+    def assemble(
+        first: int,
+        force: wp.array2d[wp.vec3],
+        rings: Rings,
+        loads: RingLoads,
+        bands: wp.array4d[float],
+        shift: wp.array2d[wp.vec3],
+        tissue: Tissue,
+        inv_dt2: float,
+        regularisation: float,
+        records: ContactRecords,
+        measured: MeasuredContacts,
+        self_contact: SelfContactForce,
+        kept: KeptRows,
+        diagonal: wp.array4d[float],
+        upper: wp.array4d[float],
+        rhs: wp.array3d[float],
+    ):
+        """Assemble one row of the coarse system of every world.
+
+        Launch (R, W, M), or some of the rows, in blocks of ``GPU_BLOCK``.
+
+        Args:
+            first: First row of this launch.
+            force: Residual of each vertex [N], shape (V, W).
+            rings: Rings of all patients.
+            loads: Loads of all patients.
+            bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W).
+            shift: Shift of each ring's centre [m], shape (R, W).
+            tissue: Values of each world.
+            inv_dt2: One over the squared physics step [1/s^2].
+            regularisation: Relative addition to the diagonal.
+            records: Contacts, listed by ring.
+            measured: Their normals and stiffness.
+            self_contact: Contact of the wall with itself.
+            kept: Rows of which only the right-hand side is written, if ``keeps``.
+            diagonal: Blocks of the rings [N/m], shape (R, W, M, M); written.
+            upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
+            rhs: Force on each unknown [N], shape (R, W, M); written.
+        """
+        r, w, a = wp.tid()
+        r += first
+        field = axis(a // 3)
+        along = axis(a % 3)
+        p = rings.patient[w]
+        count = loads.mass.shape[0]
+        own_row = Unknowns()
+        next_row = Unknowns()
+        total = float(0.0)
+        free = rings.moves[r, p] == 1 and tissue.rigid[w] == 0
+        next_free = int(0)
+        if r + 1 < count:
+            next_free = rings.moves[r + 1, p]
+        works = free
+        light = int(count)
+        if wp.static(keeps):
+            light = first_kept(kept, count, w)
+            works = free and r < light
+        if works:
+            own_row = add_share(Unknowns(), inv_dt2 * (loads.mass[r, p] * field), along)
+            own_row += tissue.anchor[w] * anchor_row(rings, loads, shift[r, w], r, field, along, p)
+            for i in range(MODES):
+                if r + 1 < count:
+                    own_row[i] = own_row[i] + band_entry(bands, r, a, i, w)
+                if r > 0:
+                    behind = band_entry(bands, r - 1, next_unknown(a), next_unknown(i), w)
+                    own_row[i] = own_row[i] + next_sign(a) * next_sign(i) * behind
+                if next_free == 1:
+                    next_row[i] = next_sign(i) * band_entry(bands, r, a, next_unknown(i), w)
+            for i in range(MODES):  # own_row[a], which would keep the row out of the registers
+                if i == a:
+                    own_row[i] = own_row[i] * (1.0 + regularisation) + 1.0e-6
+            if self_contact.in_contact[r, w] == 1:
+                own_row += self_contact_row(rings, loads, self_contact, r, field, along, w)
+        if free:
+            for j in range(loads.members.shape[1]):
+                v = loads.members[r, j]
+                fields = ring_fields(rings, wp.max(v, 0), p)
+                push = force[wp.max(v, 0), w]
+                if v >= 0:
+                    total += wp.dot(fields, field) * wp.dot(push, along)
+        if works:
+            for which in range(2):
+                lowest = r - which
+                slot = int(-1)
+                if lowest >= 0:
+                    slot = records.ring_head[lowest, w]
+                while slot >= 0:
+                    stiffness = measured.stiffness[slot]
+                    normal = measured.normal[slot]
+                    own_fields = measured.own_fields[slot]
+                    next_fields = measured.next_fields[slot]
+                    slot = records.ring_next[slot]
+                    if stiffness[0] > 0.0:
+                        fields = own_fields
+                        if which == 1:
+                            fields = next_fields
+                        push = contact_push(normal, stiffness, wp.dot(fields, field) * along)
+                        own_row = add_share(own_row, fields, push)
+                        if which == 0 and next_free == 1:
+                            next_row = add_share(next_row, next_fields, push)
+        if not free:
+            for i in range(MODES):
+                own_row[i] = wp.where(i == a, 1.0, 0.0)
+        rhs[r, w, a] = total
+        if wp.static(keeps):
+            store_row_if(diagonal, r, w, a, own_row, r < light)
+            store_row_if(upper, r, w, a, next_row, r < light - 1)
+        else:
+            store_row(diagonal, r, w, a, own_row)
+            store_row(upper, r, w, a, next_row)
+
+    return assemble
+
+
+assemble = _assemble_kernel(False)
+assemble_changed = _assemble_kernel(True)
+
+
 @wp.kernel
-def assemble(
+def prolong(
     first: int,
-    force: wp.array2d[wp.vec3],
     rings: Rings,
-    loads: RingLoads,
-    bands: wp.array4d[float],
-    shift: wp.array2d[wp.vec3],
-    tissue: Tissue,
-    inv_dt2: float,
-    regularisation: float,
-    records: ContactRecords,
-    measured: MeasuredContacts,
-    self_contact: SelfContactForce,
-    diagonal: wp.array4d[float],
-    upper: wp.array4d[float],
-    rhs: wp.array3d[float],
+    solution: wp.array3d[float],
+    largest_move: float,
+    start: wp.array2d[wp.vec3],
+    x: wp.array2d[wp.vec3],
 ):
-    """Assemble one row of the coarse system of every world.
-
-    Launch (R, W, M), or some of the rows, in blocks of ``GPU_BLOCK``.
-
-    Args:
-        first: First row of this launch.
-        force: Residual of each vertex [N], shape (V, W).
-        rings: Rings of all patients.
-        loads: Loads of all patients.
-        bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W).
-        shift: Shift of each ring's centre [m], shape (R, W).
-        tissue: Values of each world.
-        inv_dt2: One over the squared physics step [1/s^2].
-        regularisation: Relative addition to the diagonal.
-        records: Contacts, listed by ring.
-        measured: Their normals and stiffness.
-        self_contact: Contact of the wall with itself.
-        diagonal: Blocks of the rings [N/m], shape (R, W, M, M); written.
-        upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
-        rhs: Force on each unknown [N], shape (R, W, M); written.
-    """
-    r, w, a = wp.tid()
-    r += first
-    field = axis(a // 3)
-    along = axis(a % 3)
-    p = rings.patient[w]
-    count = loads.mass.shape[0]
-    own_row = Unknowns()
-    next_row = Unknowns()
-    total = float(0.0)
-    free = rings.moves[r, p] == 1 and tissue.rigid[w] == 0
-    next_free = int(0)
-    if r + 1 < count:
-        next_free = rings.moves[r + 1, p]
-    if free:
-        own_row = add_share(Unknowns(), inv_dt2 * (loads.mass[r, p] * field), along)
-        own_row += tissue.anchor[w] * anchor_row(rings, loads, shift[r, w], r, field, along, p)
-        for i in range(MODES):
-            if r + 1 < count:
-                own_row[i] = own_row[i] + band_entry(bands, r, a, i, w)
-            if r > 0:
-                behind = band_entry(bands, r - 1, next_unknown(a), next_unknown(i), w)
-                own_row[i] = own_row[i] + next_sign(a) * next_sign(i) * behind
-            if next_free == 1:
-                next_row[i] = next_sign(i) * band_entry(bands, r, a, next_unknown(i), w)
-        for i in range(MODES):  # own_row[a], which would keep the row out of the registers
-            if i == a:
-                own_row[i] = own_row[i] * (1.0 + regularisation) + 1.0e-6
-        if self_contact.in_contact[r, w] == 1:
-            own_row += self_contact_row(rings, loads, self_contact, r, field, along, w)
-        for j in range(loads.members.shape[1]):
-            v = loads.members[r, j]
-            fields = ring_fields(rings, wp.max(v, 0), p)
-            push = force[wp.max(v, 0), w]
-            if v >= 0:
-                total += wp.dot(fields, field) * wp.dot(push, along)
-        for which in range(2):
-            lowest = r - which
-            slot = int(-1)
-            if lowest >= 0:
-                slot = records.ring_head[lowest, w]
-            while slot >= 0:
-                stiffness = measured.stiffness[slot]
-                normal = measured.normal[slot]
-                own_fields = measured.own_fields[slot]
-                next_fields = measured.next_fields[slot]
-                slot = records.ring_next[slot]
-                if stiffness[0] > 0.0:
-                    fields = own_fields
-                    if which == 1:
-                        fields = next_fields
-                    push = contact_push(normal, stiffness, wp.dot(fields, field) * along)
-                    own_row = add_share(own_row, fields, push)
-                    if which == 0 and next_free == 1:
-                        next_row = add_share(next_row, next_fields, push)
-    else:
-        for i in range(MODES):
-            own_row[i] = wp.where(i == a, 1.0, 0.0)
-    rhs[r, w, a] = total
-    store_row(diagonal, r, w, a, own_row)
-    store_row(upper, r, w, a, next_row)
-
-
-@wp.kernel
-def prolong(first: int, rings: Rings, solution: wp.array3d[float], largest_move: float, x: wp.array2d[wp.vec3]):
     """Move every vertex with its ring. Launch (V, W), or some of the rows.
 
     Args:
@@ -295,7 +340,8 @@ def prolong(first: int, rings: Rings, solution: wp.array3d[float], largest_move:
         rings: Rings of all patients.
         solution: Amplitude of each unknown [m], shape (R, W, M).
         largest_move: Longest displacement of a vertex [m].
-        x: Wall positions [m], shape (V, W); moved in place.
+        start: Wall positions before [m], shape (V, W); may be ``x``.
+        x: Wall positions [m], shape (V, W); written.
     """
     i, w = wp.tid()
     i += first
@@ -304,4 +350,4 @@ def prolong(first: int, rings: Rings, solution: wp.array3d[float], largest_move:
     d = wp.vec3(0.0)
     for k in range(3):
         d += fields[k] * wp.vec3(solution[r, w, 3 * k], solution[r, w, 3 * k + 1], solution[r, w, 3 * k + 2])
-    x[i, w] = x[i, w] + clamp_length(d, largest_move)
+    x[i, w] = start[i, w] + clamp_length(d, largest_move)

@@ -26,18 +26,33 @@ _STORE = """
         __syncwarp();
         for (int k = 0; k < M; ++k) shared[lane * M + k] = row[k];
         __syncwarp();
+#if SOME
+        const unsigned wanted = __ballot_sync(0xffffffffu, want);
+        for (int k = 0; k < M; ++k)
+            if (wanted >> ((32 * k + lane) / M) & 1u) blocks.data[first * M + 32 * k + lane] = shared[32 * k + lane];
+#else
         for (int k = 0; k < M; ++k) blocks.data[first * M + 32 * k + lane] = shared[32 * k + lane];
+#endif
         return;
     }
+#endif
+#if SOME
+    if (!want) return;
 #endif
     for (int k = 0; k < M; ++k) blocks.data[own * M + k] = row[k];
 """.replace("MODES", str(MODES)).replace("GPU_BLOCK", str(GPU_BLOCK))
 
 
-@wp.func_native(_STORE)
+@wp.func_native(_STORE.replace("SOME", "0"))
 def store_row(blocks: wp.array4d[float], r: int, w: int, a: int, row: Unknowns):
     """Write ``row`` to ``blocks[r, w, a]``, shape (R, W, M, M).
 
     All threads of a kernel launched as (R, W, M) in blocks of ``GPU_BLOCK`` have to call it, each for its own row.
     """
+    ...
+
+
+@wp.func_native(_STORE.replace("SOME", "1"))
+def store_row_if(blocks: wp.array4d[float], r: int, w: int, a: int, row: Unknowns, want: bool):
+    """Do as :func:`store_row`, for the threads that want it."""
     ...

@@ -28,9 +28,11 @@ class Shell:
     size = 1.0
     memory: dict[str, torch.Tensor] = {}
     _laws = (shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces)
-    plain = sweep_kernels(*_laws, on_gpu=shell_cuda_kernels.add_elements)
-    surrounded = sweep_kernels(*_laws, surrounded=True, on_gpu=shell_cuda_kernels.add_elements)
+    _faster = {"on_gpu": shell_cuda_kernels.add_elements, "in_groups": shell_cuda_kernels.add_element_part}
+    plain = sweep_kernels(*_laws, **_faster)
+    surrounded = sweep_kernels(*_laws, surrounded=True, **_faster)
     measure_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle)
+    measure_changed_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle, True)
 
     def __init__(self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str):
         """Copy the elements of the walls to the device and allocate what is measured in all W worlds.
@@ -98,6 +100,7 @@ class GasShell:
     plain = sweep_kernels(*_laws)
     surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(gas_shell_kernels.GasShellElements, gas_shell_kernels.add_gas_band_triangle)
+    measure_changed_bands = None
 
     def __init__(
         self, geometries: Sequence[ShellGeometry], vertices: int, patient: wp.array, device: str, gas: GasLoads

@@ -38,6 +38,7 @@ class TissueShell:
     plain = sweep_kernels(*_laws)
     surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(kernels.TissueShellElements, kernels.add_tissue_band_triangle)
+    measure_changed_bands = None
 
     def __init__(
         self,

@@ -33,6 +33,9 @@ class WallElements(Protocol):
     """The same for walls with surroundings, see :mod:`arcgym.sim.wall.outer_force_kernels`."""
     measure_bands: wp.Kernel
     """Stiffness in the rings' modes, see :mod:`arcgym.sim.wall.band_kernels`."""
+    measure_changed_bands: wp.Kernel | None
+    """The same where a ring has changed, for a GPU; None where the stiffness depends on more than the wall's places and
+    its moduli."""
     corners: np.ndarray
     """Vertices of each element, shape (E, n)."""
     data: Any
@@ -88,6 +91,7 @@ class Solid:
     plain = sweep_kernels(*_laws)
     surrounded = sweep_kernels(*_laws, surrounded=True)
     measure_bands = band_kernel(solid_kernels.SolidElements, solid_kernels.add_band_tet)
+    measure_changed_bands = None
 
     def __init__(self, points: Sequence[np.ndarray], tets: np.ndarray, patient: wp.array, device: str):
         """Copy the T tets of the walls to the device.

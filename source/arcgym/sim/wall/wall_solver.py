@@ -21,6 +21,8 @@ from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
 from arcgym.sim.wall.gas_rings import GasRings
+from arcgym.sim.wall.kept_rings import KeptRings
+from arcgym.sim.wall.kept_rows_kernels import KeptRows
 from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.packed_contact_kernels import FOURS
 from arcgym.sim.wall.ring_modes import MODES, RingModes, band_elements
@@ -31,6 +33,7 @@ from arcgym.sim.wall.wall_topology import ring_mean
 from arcgym.sim.wall.wall_weight import WallWeight
 from arcgym.utils.stages import in_parts, in_sequence, launch_rows
 from arcgym.utils.warp_setup import GPU_BLOCK
+from arcgym.utils.warp_vote_kernels import GROUP, LANES
 
 REGULARISATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
@@ -39,6 +42,10 @@ ROUNDING = 2.0e-7
 to 6e-8 (colon 1 at rest, every vertex swept, ``paper`` and ``in_situ``). A fixed 1 mN, as before, is 4e-6 in
 ``in_situ``, whose wall trembled at 0.5 mm/s; with less than this, 5 % of a CPU's physics step go into vertices that
 hardly move."""
+
+
+FEW_WORLDS = 64
+"""Worlds up to which several threads of a GPU share the elements of a vertex in a sweep: more keep it busy anyway."""
 
 
 def wall_contacts(
@@ -105,6 +112,7 @@ class WallSolver:
         self.gas, self.weight, self.surroundings = gas, weight, surroundings
         self.elements = wall_elements(walls, patient, dt, device, None if gas is None else gas.loads, law)
         self._kernels = self.elements.plain if surroundings is None else self.elements.surrounded
+        self._measure_changed_bands = self.elements.measure_changed_bands if surroundings is None else None
         self.rings, self.loads = self._rings(walls, modes, patient)
         self.colors = [wp.array(c[mobile[c]], dtype=int, device=device) for c in first.colors if mobile[c].any()]
         self.tissue = wall_kernels.Tissue()
@@ -122,11 +130,16 @@ class WallSolver:
         self.measured = self._measured_contacts(contact_slots)
         self.on_gpu = wp.get_device(device).is_cuda
         """Whether contacts are packed, see :mod:`.packed_contact_kernels`."""
+        self.in_groups = self.on_gpu and num_envs <= FEW_WORLDS
+        """Whether a group of threads moves each vertex in a sweep."""
         self.packed = wp.zeros(FOURS * contact_slots if self.on_gpu else 1, dtype=wp.vec4, device=device)
         """The packed contacts."""
         self._prepared = self._begun = False
         self.ring_system = BlockTridiagonalSolver(num_envs, self.ring_count, device)
         self.gas_rings = None if gas is None else GasRings(gas, self.ring_count)
+        keeps = self.on_gpu and cfg.coarse_correction and self._measure_changed_bands is not None
+        self.kept = KeptRings(self.vertex_count, self.ring_count, num_envs, device) if keeps else None
+        """What is kept from step to step where the wall hardly moves, on a GPU."""
         self.self_contact = SelfContact(
             cfg, [wall.points for wall in walls], first.ring, modes[0].members, first.thickness, patient, device
         )
@@ -141,6 +154,11 @@ class WallSolver:
         measured.own_fields = wp.zeros(slots, dtype=wp.vec3, device=self.device)
         measured.next_fields = wp.zeros(slots, dtype=wp.vec3, device=self.device)
         return measured
+
+    def forget(self, world_mask: wp.array) -> None:
+        """Forget what is kept of the worlds in ``world_mask``, shape (W + 1,), bool, from step to step."""
+        if self.kept is not None:
+            self.kept.forget(world_mask)
 
     def _rings(
         self, walls: Sequence[WallParameters], modes: Sequence[RingModes], patient: wp.array
@@ -229,15 +247,19 @@ class WallSolver:
             self.begin_contacts(x, contact, body_q_prev)
         self._prepared = self._begun = False
         contacts = self._contacts(contact, self.x_prev, body_q, body_q_prev)
-        wp.copy(x, self.inertial)
+        start = self.inertial
+        if not self.cfg.coarse_correction or self.gas_rings is not None:
+            start = x
+            wp.copy(x, self.inertial)
         for repeat in range(self.cfg.repeats):
             if repeat > 0:
+                start = x
                 if self.gas is not None:
                     self.gas.measure(x)
                 self._measure(x)
-            self._residual(x, self.inertial, contacts, self.force)
+            self._residual(start, self.inertial, contacts, self.force)
             if self.cfg.coarse_correction:
-                self._correct_rings(x, contacts, repeat)
+                self._correct_rings(start, x, contacts, repeat)
             for _ in range(self.cfg.iterations):
                 self._sweep(x, contacts, contact.carried is None)
         self._launch_rows(wall_kernels.finish, x.shape, [x, self.x_prev, self.dt], [v])
@@ -274,7 +296,12 @@ class WallSolver:
         sweep = self._kernels.sweep_packed if self.on_gpu else self._kernels.sweep_color
         inputs = [self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
         inputs += [self.cfg.largest_move, ROUNDING * self.elements.size, self.force]
+        in_groups = self._kernels.sweep_in_groups if self.in_groups else None
         for color in self.colors:
+            if in_groups is not None:
+                shape = (len(color) + -len(color) % (LANES // GROUP), self.num_envs, GROUP)
+                self._launch(in_groups, shape, [color, *inputs, len(color)], [x])
+                continue
 
             def move(first: int, rows: int, color: wp.array = color) -> None:
                 part = color[first : first + rows]
@@ -308,6 +335,8 @@ class WallSolver:
         if self.on_gpu:
             self._pack(contacts, x)
         self._residual(x, inertial, contacts, force)
+        if self.kept is not None:
+            self.kept.forget_rows()
         return force
 
     def _measure(self, x: wp.array) -> None:
@@ -315,10 +344,14 @@ class WallSolver:
         self.elements.measure(x, self.tissue)
         if not self.cfg.coarse_correction:
             return
-        rings, shape = self.rings, (self.ring_count - 1, self.num_envs)
-        inputs, outputs = [x, rings, self.loads], [self.axes, self.shift]
-        self._launch(coarse_kernels.place_rings, self.shift.shape, inputs, outputs)
-        inputs = [x, self.elements.data, rings, self.axes, self.tissue]
+        rings, shape, data = self.rings, (self.ring_count - 1, self.num_envs), self.elements.data
+        if self.kept is not None:
+            self.kept.place(x, rings, self.loads, self.axes, self.shift, self.tissue)
+            inputs = [x, data, rings, self.axes, self.tissue, self.kept.rings.changed]
+            self._launch_rows(self._measure_changed_bands, shape, inputs, [self.bands])
+            return
+        self._launch(coarse_kernels.place_rings, self.shift.shape, [x, rings, self.loads], [self.axes, self.shift])
+        inputs = [x, data, rings, self.axes, self.tissue, None]
         self._launch_rows(self.elements.measure_bands, shape, inputs, [self.bands])
 
     def _residual(self, x: wp.array, inertial: wp.array, contacts: wall_kernels.WallContacts, force: wp.array) -> None:
@@ -333,13 +366,15 @@ class WallSolver:
         inputs = [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x]
         self._launch_rows(self._kernels.residual, x.shape, inputs, [force])
 
-    def _correct_rings(self, x: wp.array, contacts: wall_kernels.WallContacts, repeat: int) -> None:
-        """Solve for the modes of all rings and move every vertex with its ring."""
+    def _correct_rings(self, start: wp.array, x: wp.array, contacts: wall_kernels.WallContacts, repeat: int) -> None:
+        """Solve for the modes of all rings and move every vertex with its ring, from ``start`` to ``x``."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
         if self.surroundings is None and self.gas_rings is None and wp.get_device(self.device).is_cpu:
             in_sequence(self.ring_count, lambda *rows: self._assemble(contacts, *rows), system.eliminate)
             system.substitute()
         else:
+            if self.kept is not None:
+                self.kept.find_rows(contacts.records, contacts.self_contact)
             in_parts(self.ring_count, lambda *rows: self._assemble(contacts, *rows))
             if self.surroundings is not None:
                 self.surroundings.add_rows(rings, tissue, system.diagonal)
@@ -348,17 +383,23 @@ class WallSolver:
                 self.gas_rings.solve(self.elements.data.shell, rings, self.loads, tissue, system, *ends)
                 self.gas_rings.prolong(rings, system, self.cfg.largest_move, x)
                 return
-            system.solve()
-        self._launch_rows(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move], [x])
+            if self.kept is not None:
+                system.solve_changed(self.kept.rows)
+            else:
+                system.solve()
+        self._launch_rows(coarse_kernels.prolong, x.shape, [rings, system.rhs, self.cfg.largest_move, start], [x])
 
     def _assemble(self, contacts: wall_kernels.WallContacts, first: int, rows: int) -> None:
         """Write some rows of the rings' equations."""
         system = self.ring_system
         inputs = [first, self.force, self.rings, self.loads, self.bands, self.shift, self.tissue, 1.0 / self.dt**2]
+        kernel, kept = coarse_kernels.assemble, KeptRows()
+        if self.kept is not None:
+            kernel, kept = coarse_kernels.assemble_changed, self.kept.rows
         self._launch(
-            coarse_kernels.assemble,
+            kernel,
             (rows, self.num_envs, MODES),
-            [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact],
+            [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact, kept],
             [system.diagonal, system.upper, system.rhs],
         )
 
