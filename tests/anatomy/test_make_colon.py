@@ -147,6 +147,14 @@ def test_same_seed_same_patient() -> None:
     assert draw_spec(7) == draw_spec(7) and draw_spec(7) != draw_spec(8)
 
 
+def test_a_draw_without_room_for_its_lesions_is_rejected() -> None:
+    spec = draw_spec(173)
+    assert spec.segments["cecum"].polyps == 1
+    with pytest.raises(AnatomyError, match=r"\['cecum'\]: no room for another polyp"):
+        draw_surface(spec, 0)
+    assert any(lesion.kind in ("sessile", "pedunculated") for lesion in draw_surface(spec, 1)[1])
+
+
 def first_valid_surface(spec: ColonSpec) -> Surface:
     """Return the surface of the first draw whose course the generator would accept."""
     for attempt in range(spec.max_attempts):

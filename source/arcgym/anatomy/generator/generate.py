@@ -85,8 +85,7 @@ def draw_colon(spec: ColonSpec, attempt: int) -> DrawnColon:
     """Draw and fit one anatomy.
 
     Raises:
-        AnatomyError: It is not as the spec asks, or has no room for a stiff head; says in what.
-        ValueError: A segment has no room for its lesions.
+        AnatomyError: It is not as the spec asks, or has no room for a stiff head or for its lesions; says in what.
     """
     surface, lesions = draw_surface(spec, attempt)
     _require([] if spec.posture != "supine" else failed(check_course(spec, surface)))
@@ -111,13 +110,15 @@ def draw_surface(spec: ColonSpec, attempt: int = 0) -> tuple[Surface, list[Lesio
         attempt: Number of the draw from the spec's seed.
 
     Raises:
-        AnatomyError: The course does not fit into the other posture.
-        ValueError: A segment has no room for its lesions.
+        AnatomyError: The course does not fit into the other posture, or a segment has no room for its lesions.
     """
     rng = np.random.default_rng([spec.seed, attempt])
     supine = replace(spec, posture="supine")
     surface = Surface(spec, make_centerline(supine, rng), rng)
-    lesions = place_lesions(surface, rng)
+    try:
+        lesions = place_lesions(surface, rng)
+    except ValueError as crowded:  # the folds and bends of another draw may leave room
+        raise AnatomyError(str(crowded)) from crowded
     if spec.posture != "supine":
         _require(failed(check_course(spec, surface)))
         posed = make_posed(spec, surface.curve, [spec.seed, attempt])
