@@ -38,6 +38,18 @@ def test_a_tip_rolls_to_and_fro_where_it_is_told_to(scene: InteractiveScene) -> 
     assert slow[9] == pytest.approx(6.0, abs=1.0e-5)
 
 
+def test_a_tip_rests_for_a_share_of_the_time_where_it_is_told_to(scene: InteractiveScene) -> None:
+    """Worlds that never rest, that rest for half of 2 s, 10 of 20 control steps, and below 0; nothing is pulled yet."""
+    expert = PullExpert(scene, rest=torch.tensor([0.0, 0.5, -0.5]))
+    drawn = []
+    for _ in range(20):
+        expert.act()
+        drawn.append(wp.to_torch(scene["endoscope"].actuators["tip"].linear)[:, 2].tolist())
+    rested = [abs(rest - 0.03 * 0.3) < 1.0e-6 for _, rest, _ in drawn]
+    assert rested == [False] * 10 + [True] * 10
+    assert all(never == below > 0.01 for never, _, below in drawn)
+
+
 def test_a_view_circles_around_the_way_while_the_tip_is_pulled_back(scene: InteractiveScene) -> None:
     """Sweep 0.5 rad, turn gain 4, rate 2 rad/s; the way ahead at 0.5 rad from the view, at 0.75 rad, and right ahead.
 

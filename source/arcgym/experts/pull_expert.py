@@ -17,6 +17,9 @@ from arcgym.utils.math import norm, normalize, quat_apply_inverse, row_sum
 
 CONTROL_STEP = 0.1
 """Time between two commands [s]."""
+REST_TIME, REST_PULL, REST_SPEED = 2.0, 0.3, 0.03
+"""Time from one rest of the pull to the next [s], pull along the tip's axis meanwhile [N], and speed at which it gets
+there, where the pull is off by 1 N or more [m/s]."""
 SWEEP_RATE = 2.0
 """Rate at which a view circles around the way back [rad/s]: at a sweep of 0.8 rad it turns by 1.4 rad/s, of 1.5 that
 actions allow."""
@@ -34,7 +37,8 @@ class PullExpert(ExpertBase):
         "slide": (0.0, 1.0),
         "back": (0.0, 0.8),
         "roll": (0.0, 18.0),
-        "roll_time": (2.0, 5.0),
+        "roll_time": (2.0, 6.0),
+        "rest": (-0.5, 0.5),
     }
     FREEING = ("roll", "roll_time")
 
@@ -50,6 +54,7 @@ class PullExpert(ExpertBase):
         back: float = 0.5,
         roll: float = 0.0,
         roll_time: float = 4.0,
+        rest: float = 0.0,
         sweep: float = 0.0,
     ):
         """Keep the settings; each may be one number or one a world.
@@ -67,13 +72,16 @@ class PullExpert(ExpertBase):
             roll: Amplitude of rolling the tip to and fro [rad/s]: a tether that rolls has less friction along its way.
                 How far the tip turns is limited by its torque: more than that lets it turn as fast as it can.
             roll_time: Time of one roll to and fro [s]: a slower one goes farther down the tether.
+            rest: Share of the time in which the tip hardly pulls, once in 2 s; none below 0. A tether that rolls
+                without tension rolls farther down, and slides after.
             sweep: Angle between the view and the way ahead while the tip is pulled back [rad]: it circles around the
                 way, and sees what lies behind folds. 0 looks straight along the way.
         """
         super().__init__(scene, speed)
         self.look, self.gaze, self.turn_gain = self.each(look), self.each(gaze), self.each(turn_gain)
         self.axis, self.slide, self.back = self.each(axis), self.each(slide), self.each(back)
-        self.roll, self.roll_time, self.sweep = self.each(roll), self.each(roll_time), self.each(sweep)
+        self.roll, self.roll_time = self.each(roll), self.each(roll_time)
+        self.rest, self.sweep = self.each(rest), self.each(sweep)
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=20, first=6, longest=40)
         self._side = torch.zeros(scene.num_envs, 3, device=scene.device)
@@ -91,7 +99,7 @@ class PullExpert(ExpertBase):
         way = self._way.find()
         aim, gaze = self._seen(way, self.look), self._seen(way, self.gaze)
         pace = self.speed * (0.35 + 0.65 * gaze[:, 2].clamp(min=0.0))
-        onward = pace[:, None] * (self._direction(aim, gaze) + self.disturbance)
+        onward = self._rested(pace[:, None] * (self._direction(aim, gaze) + self.disturbance))
         away = self.speed.abs()[:, None] * (0.5 * self._side - data.tip_lumen_direction_w)
         velocity = torch.where((backs | withdraws)[:, None], quat_apply_inverse(data.tip_quat_w, away), onward)
         gaze = normalize(gaze + 0.5 * self.disturbance)
@@ -116,6 +124,14 @@ class PullExpert(ExpertBase):
         """Return the unit vector from the tip to a point of the way, in the tip's frame, shape (N, 3)."""
         data = self.scene["endoscope"].data
         return normalize(quat_apply_inverse(data.tip_quat_w, along(way, length) - data.tip_pos_w))
+
+    def _rested(self, velocity: torch.Tensor) -> torch.Tensor:
+        """Return velocities in the tip's frame, shape (N, 3), with those of tips that rest instead of pulling."""
+        data = self.scene["endoscope"].data
+        pull = quat_apply_inverse(data.tip_quat_w, data.tip_pull_force_w)[:, 2]
+        eased = torch.nn.functional.pad(REST_SPEED * (REST_PULL - pull).clamp(-1.0, 1.0)[:, None], (2, 0))
+        part = self._steps * CONTROL_STEP / REST_TIME
+        return torch.where((part - part.floor() >= 1.0 - self.rest)[:, None], eased, velocity)
 
     def _circle(self, gaze: torch.Tensor) -> torch.Tensor:
         """Return the angular velocity that leads the view around ``gaze`` at the angle of the sweep, shape (N, 3).
