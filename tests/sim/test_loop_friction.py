@@ -23,19 +23,19 @@ STEP = 1.0 / 480.0
 class Tubes:
     """Two tubes that touch, the second of which slides along the first in steps."""
 
-    def __init__(self, friction: float = 0.05, stiffness: float = 100.0) -> None:
+    def __init__(self, friction: float = 0.05, stiffness: float = 100.0, device: str = "cpu") -> None:
         (self.points, self.ring), members = two_tubes(0.035, 0.02), np.arange(192).reshape(16, 12)
-        rest, patient = two_tubes(0.045, 0.02)[0], own_patients(1, "cpu")
-        self.contact = SelfContact(WallSolverCfg(), [rest], self.ring, members, 0.002, patient, "cpu")
-        self.rub = LoopFriction(LoopFrictionCfg(friction=friction, stiffness=stiffness), 16, 1, "cpu")
-        groups = wp.array(members, dtype=int, device="cpu")
-        self.around = Surroundings(self.ring, groups, 1, "cpu", friction=self.rub)
-        self.x = wp.array(self.points[:, None], dtype=wp.vec3, device="cpu")
+        rest, patient = two_tubes(0.045, 0.02)[0], own_patients(1, device)
+        self.contact = SelfContact(WallSolverCfg(), [rest], self.ring, members, 0.002, patient, device)
+        self.rub = LoopFriction(LoopFrictionCfg(friction=friction, stiffness=stiffness), 16, 1, device)
+        groups = wp.array(members, dtype=int, device=device)
+        self.around = Surroundings(self.ring, groups, 1, device, friction=self.rub)
+        self.x = wp.array(self.points[:, None], dtype=wp.vec3, device=device)
 
     def slide(self, way: float) -> tuple[np.ndarray, np.ndarray]:
         """Return what drags the tubes after the second has slid by ``way`` along Z, (2, 3), and pushes of rings [N]."""
         velocity = np.where(self.ring[:, None] >= 8, [0.0, 0.0, way / STEP], 0.0)
-        v = wp.array(velocity[:, None], dtype=wp.vec3, device="cpu")
+        v = wp.array(velocity[:, None], dtype=wp.vec3, device=self.x.device)
         measured, outer = self.contact.measure(self.x), self.around.force
         outer.push.zero_(), outer.stiffness.zero_()
         self.rub.measure(self.x, v, self.contact, STEP, outer)
@@ -80,6 +80,20 @@ def test_rings_that_part_forget() -> None:
     tubes.x.assign(two_tubes(0.045, 0.02)[0][:, None].astype(np.float32))
     tubes.slide(0.0)
     assert not tubes.rub.ties.partner.numpy().any()
+
+
+@pytest.mark.parametrize(
+    "device", ["cpu", pytest.param("cuda:0", marks=pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA"))]
+)
+def test_groups_of_threads_do_as_one_does(device: str) -> None:
+    plain, shared = Tubes(), Tubes(device=device)
+    if device == "cpu":
+        shared.contact.lanes = 1
+    for way in (1.0e-4, 3.0e-3, -1.0e-4, -4.0e-3):
+        for one, other in zip(plain.slide(way), shared.slide(way), strict=True):
+            assert np.abs(one).max() > 1.0e-4
+            np.testing.assert_allclose(other, one, rtol=0.0, atol=2.0e-5 * np.abs(one).max())
+    np.testing.assert_array_equal(shared.rub.ties.partner.numpy(), plain.rub.ties.partner.numpy())
 
 
 @pytest.fixture(scope="module")

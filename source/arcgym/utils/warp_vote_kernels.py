@@ -103,3 +103,23 @@ def group_sum_matrix(value: wp.mat33) -> wp.mat33:
 def group_sum_vector(value: wp.vec3) -> wp.vec3:
     """Return the sum over the ``GROUP`` neighbouring threads; all of the warp have to call this."""
     ...
+
+
+@wp.func_native(
+    """
+#if defined(__CUDA_ARCH__)
+    const unsigned group = ((1u << GROUP) - 1u) << (threadIdx.x % 32 / GROUP * GROUP);
+    for (int k = 0; k < 3; ++k) {
+        float& one = value[k];
+        for (int step = GROUP / 2; step > 0; step /= 2) one += __shfl_xor_sync(group, one, step);
+    }
+#endif
+    return value;
+""".replace("GROUP", str(GROUP))
+)
+def sum_of_group(value: wp.vec3) -> wp.vec3:
+    """Return the sum over the ``GROUP`` neighbouring threads, the same bits in each; all of them have to call it.
+
+    Other groups of the warp may be elsewhere, which those of ``group_sum_...`` may not.
+    """
+    ...

@@ -8,9 +8,11 @@ import torch
 import warp as wp
 
 from arcgym.sim.contact import loop_friction_kernels as kernels
+from arcgym.sim.contact import self_contact_group_kernels as group_kernels
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.loop_friction_cfg import LoopFrictionCfg
 from arcgym.sim.wall.outer_force_kernels import OuterForce
+from arcgym.utils.warp_setup import GPU_BLOCK
 
 LOOPS = "loops."
 """Begins the names of what friction's future depends on. A state without it has loops that have not slid yet."""
@@ -62,5 +64,10 @@ class LoopFriction:
         if not contact.active:
             return
         inputs = [x, v, contact.rings, contact.spheres, contact.force, self.friction, dt]
-        shape = contact.force.in_contact.shape
-        wp.launch(kernels.rub_loops, shape, inputs=inputs, outputs=[self.ties, outer], device=self._device)
+        shape: tuple[int, ...] = contact.force.in_contact.shape
+        kernel = kernels.rub_loops
+        if contact.lanes > 0:
+            kernel, shape = group_kernels.rub_loops_in_groups, (*shape, contact.lanes)
+            inputs = [*inputs, contact.lanes]
+        outputs = [self.ties, outer]
+        wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self._device, block_dim=GPU_BLOCK)

@@ -11,10 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 import warp as wp
 
+from arcgym.sim.contact import self_contact_group_kernels as group_kernels
 from arcgym.sim.contact import self_contact_kernels as kernels
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
 from arcgym.sim.wall.wall_topology import ring_mean
+from arcgym.utils.warp_setup import GPU_BLOCK
+from arcgym.utils.warp_vote_kernels import GROUP
 
 MIN_ARC_RATIO = 1.25 * math.pi
 """Least arc length between rings that may touch, over their mean radius: a tube that turns back on itself touches
@@ -74,6 +77,8 @@ class SelfContact:
         self.force.stiffness = wp.zeros((len(ring), num_envs), dtype=float, device=device)
         self.force.in_contact = wp.zeros((count, num_envs), dtype=int, device=device)
         self._watched = False
+        self.lanes = GROUP if wp.get_device(device).is_cuda else 0
+        """Threads that share a ring's vertices out, see :mod:`.self_contact_group_kernels`; 0 for the plain kernels."""
         if self.active:
             self._measure_rest(points, self.rings)
 
@@ -121,14 +126,16 @@ class SelfContact:
             wp.launch(kernels.measure_spheres, shape, inputs=[x, rings], outputs=[spheres], device=self.device)
         if self.active:
             wp.launch(kernels.find_near_rings, shape, inputs=[rings], outputs=[spheres], device=self.device)
-            wp.launch(
-                kernels.measure_self_contact,
-                shape,
-                inputs=[x, rings, spheres],
-                outputs=[self.force],
-                device=self.device,
-            )
+            self._measure([x, rings, spheres])
         return self.force
+
+    def _measure(self, inputs: list[object]) -> None:
+        shape: tuple[int, ...] = self.force.in_contact.shape
+        kernel = kernels.measure_self_contact
+        if self.lanes > 0:
+            kernel, shape = group_kernels.measure_self_contact_in_groups, (*shape, self.lanes)
+            inputs = [*inputs, self.lanes]
+        wp.launch(kernel, shape, inputs=inputs, outputs=[self.force], device=self.device, block_dim=GPU_BLOCK)
 
 
 @dataclass(frozen=True)
