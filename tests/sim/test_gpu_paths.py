@@ -14,6 +14,7 @@ from arcgym.sim import Simulation
 from arcgym.sim.contact import contact_list_kernels
 from arcgym.sim.contact.link_load_kernels import load_contacts_in_groups
 from arcgym.sim.contact.patch_list_kernels import find_patches
+from arcgym.sim.wall import shell_kernels, shell_measure_cuda_kernels
 from arcgym.sim.wall.packed_contact_kernels import FOURS
 from arcgym.sim.wall.shell_fans import ordered_corners
 from arcgym.sim.wall.wall_topology import vertex_entries
@@ -135,6 +136,22 @@ def test_packed_contacts_push_as_records_do(tiny_sim: TinySim) -> None:
     assert np.abs(ends[0][2]).max() > 1e-5
     for one, other, bound in zip(*ends, (5e-6, 1e-4, 5e-6), strict=True):
         np.testing.assert_allclose(other, one, rtol=0.0, atol=bound)
+
+
+def test_a_shell_is_measured_as_ever(tiny_sim: TinySim) -> None:
+    """In single precision the angles of hinges, of which many are small differences, round to 1e-6 rad."""
+    sim = tiny_sim("proximal", num_envs=2, use_graph=False)
+    shell, generator = sim.wall.elements, torch.Generator().manual_seed(5)
+    x = wp.to_torch(sim.nodal_pos)
+    x += 1.0e-3 * (torch.rand(x.shape, generator=generator) - 0.5)
+    found = []
+    for kernels in (shell_kernels, shell_measure_cuda_kernels):
+        shell.kernels = kernels
+        shell.measure(sim.nodal_pos, sim.wall.tissue)
+        names = ("angle_change", "moment", "scaled_normal", "corner_force")
+        found.append([getattr(shell.data, name).numpy().copy() for name in names])
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_allclose(other, one, rtol=0.0, atol=1.0e-5 * np.abs(one).max())
 
 
 @CUDA

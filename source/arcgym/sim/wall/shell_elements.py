@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import ModuleType
 from typing import Any
 
 import torch
@@ -12,7 +13,7 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.patient_arrays import patient_array
-from arcgym.sim.wall import gas_shell_kernels, shell_cuda_kernels, shell_kernels
+from arcgym.sim.wall import gas_shell_kernels, shell_cuda_kernels, shell_kernels, shell_measure_cuda_kernels
 from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.shell_fans import ordered_corners, own_hinges, triangle_rest, vertex_triangles
@@ -45,6 +46,10 @@ class Shell:
         """
         self.device, num_envs = device, len(patient)
         self.data = data = shell_kernels.ShellElements()
+        self.kernels: ModuleType = shell_kernels
+        """Module of the kernels that measure."""
+        if wp.get_device(device).is_cuda:
+            self.kernels = shell_measure_cuda_kernels
         first = geometries[0]
         triangles, hinges = first.triangles, first.hinges
         self.corners = triangles
@@ -85,10 +90,10 @@ class Shell:
 
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
-        data = self.data
-        launch_rows(shell_kernels.measure_hinges, data.angle_change.shape, [x], [data], self.device)
-        launch_rows(shell_kernels.measure_moments, data.angle_change.shape, [tissue], [data], self.device)
-        launch_rows(shell_kernels.measure_triangles, data.scaled_normal.shape, [x, tissue], [data], self.device)
+        data, kernels = self.data, self.kernels
+        launch_rows(kernels.measure_hinges, data.angle_change.shape, [x], [data], self.device)
+        launch_rows(kernels.measure_moments, data.angle_change.shape, [tissue], [data], self.device)
+        launch_rows(kernels.measure_triangles, data.scaled_normal.shape, [x, tissue], [data], self.device)
 
 
 class GasShell:
