@@ -64,13 +64,13 @@ def test_stiffness_is_measured_where_a_ring_changed(sim: Simulation) -> None:
     place(sim, kept)
     inputs = [0, sim.nodal_pos, wall.elements.data, wall.rings, wall.axes, wall.tissue, kept.rings.changed]
     shape = (wall.ring_count - 1, 2)
-    wp.launch(wall.elements.measure_changed_bands, shape, inputs=inputs, outputs=[wall.bands])
+    wp.launch(wall.elements.measure_changed_bands, shape, inputs=inputs, outputs=[wall.bands], device=sim.device)
     before = wall.bands.numpy().copy()
     moved_ring(sim, 6, 0, 1.0e-3)
     place(sim, kept)
-    wp.launch(wall.elements.measure_changed_bands, shape, inputs=inputs, outputs=[wall.bands])
+    wp.launch(wall.elements.measure_changed_bands, shape, inputs=inputs, outputs=[wall.bands], device=sim.device)
     now = wall.bands.numpy().copy()
-    wp.launch(wall.elements.measure_bands, shape, inputs=inputs, outputs=[wall.bands])
+    wp.launch(wall.elements.measure_bands, shape, inputs=inputs, outputs=[wall.bands], device=sim.device)
     differ = (now != before).any(axis=(1, 2))
     assert np.argwhere(differ).tolist() == [[5, 0], [6, 0]]
     np.testing.assert_array_equal(now, wall.bands.numpy())

@@ -15,10 +15,10 @@ from arcgym.sim.wall.kept_rows_kernels import KeptRows
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.utils.warp_setup import GPU_BLOCK
 
-UNMOVED = 1.0e-5
-"""How far a vertex may move until the stiffness around its ring is measured again [m]: a thousandth of an edge. The
-residual, which decides where the wall goes, is that of its present shape; only the way there is a thousandth off, where
-a step moves the wall by less than this."""
+UNMOVED = 3.0e-5
+"""How far a vertex may move until the stiffness around its ring is measured again [m]: three thousandths of an edge.
+The residual, which decides where the wall goes, is always that of its present shape; the way there is off by as much, of
+moves that are shorter than this."""
 
 
 class KeptRings:
