@@ -17,8 +17,8 @@ from arcgym.utils.warp_setup import GPU_BLOCK
 
 UNMOVED = 3.0e-5
 """How far a vertex may move until the stiffness around its ring is measured again [m]: three thousandths of an edge.
-The residual, which decides where the wall goes, is always that of its present shape; the way there is off by as much, of
-moves that are shorter than this."""
+The residual, which decides where the wall goes, is always that of its present shape; the way there is off by as much,
+of moves that are shorter than this."""
 
 
 class KeptRings:
