@@ -26,14 +26,16 @@ from arcgym.evaluation.results import find_results
 from arcgym.evaluation.results_keep import keep
 from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.first_episodes import write_rows
-from arcgym.rl.params import RunParams, read_params
+from arcgym.rl.params import RunParams, differences, read_params
 from arcgym.rl.pretrained import ABOUT, FILE, folder_of, policies_dir, write_small
 from arcgym.rl.run_folder import write_params
+from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
+from arcgym.utils.registry import load_cfg_from_registry
 
 OF_THE_MAKER = ("usd_path", "num_patients")
-"""Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own, and its own
-event that draws them."""
+"""Fields of ``scene.colon`` that name patients on the machine of the training; a player's task has its own, as it has
+its own events."""
 
 NAMES = 2
 """Last names of a path that are kept: folder and file, by which results tell patients apart."""
@@ -72,10 +74,11 @@ def ship(checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str
         raise UsageError(f"{checkpoint.parent} has no params/, which names task and agent; expected a run's folder.")
     folder = out / folder_of(saved.task)
     write_small(checkpoint, folder / FILE)
-    (folder / ABOUT).write_text(json.dumps(_about(checkpoint, folder, saved, trained_on), indent=1) + "\n")
+    about = _about(checkpoint, folder, saved, trained_on) | {"trained_with": _other_draws(saved)}
+    (folder / ABOUT).write_text(json.dumps(about, indent=1) + "\n")
     for name in OF_THE_MAKER:
         saved.env.get("scene", {}).get("colon", {}).pop(name, None)
-    saved.env.get("events", {}).pop("patient", None)
+    saved.env.pop("events", None)
     env, agent = without_folders(saved.env), without_folders(saved.agent)
     write_params(folder, run={"task": saved.task, "agent": saved.agent_key}, env=env, agent=agent)
     _write_curve(checkpoint.parent, curve, folder / CURVE)
@@ -123,6 +126,16 @@ def _about(checkpoint: Path, folder: Path, saved: RunParams, trained_on: str | N
         "sha256": file_sha256(folder / FILE),
         "made_from_sha256": file_sha256(checkpoint),
     }
+
+
+def _other_draws(saved: RunParams) -> dict[str, Any]:
+    """Return what the training drew otherwise than its task as registered, such as friction, by dotted path.
+
+    A policy that ships meets the task as registered: its parameters have no events.
+    """
+    registered = to_plain(load_cfg_from_registry(saved.task, "env_cfg_entry_point").events)
+    found = differences(registered, saved.env.get("events", registered))
+    return {f"env.events.{path}": used for path, (_, used) in found.items() if path.partition(".")[0] != "patient"}
 
 
 def _began_with(init_policy: str | None) -> dict[str, Any] | None:

@@ -33,6 +33,7 @@ def test_a_run_becomes_a_policy_of_its_robot(tmp_path: Path) -> None:
     env = load_cfg_from_registry(TASK, "env_cfg_entry_point")
     env.scene.colon.usd_path = ["/home/me/patient_0/colon.usda"]
     env.log_dir = "/home/me/logs/rectum/run_1"
+    env.events.friction.params = {"friction": (0.06, 0.16)}
     agent = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
     agent.init_policy = str(_first_policy(tmp_path / "sigmoid"))
     run = tmp_path / "run"
@@ -53,6 +54,7 @@ def test_a_run_becomes_a_policy_of_its_robot(tmp_path: Path) -> None:
     assert about["transitions"] == 96 and about["trained_on"] == ["patient_0/colon.usda"]
     first = {"policy": "sigmoid/model_9.pt", "task": "ARC-Sigmoid-Magnetic", "sha256": sha256(b"weights").hexdigest()}
     assert about["began_with"] == first
+    assert about["trained_with"] == {"env.events.friction.params.friction": [0.06, 0.16]} and "events" not in saved.env
     shipped = tmp_path / "policies" / "rectum-magnetic" / "model.pt"
     assert trained_on(shipped) == ["patient_0/colon.usda"]
     assert about["sha256"] == file_sha256(tmp_path / "policies" / "rectum-magnetic" / "model.pt")
