@@ -13,6 +13,7 @@ from arcgym.cli.main import main
 from arcgym.evaluation.leaderboard import entries_table, submissions
 from arcgym.evaluation.result_folder import result_folders
 
+ROOT = Path(__file__).resolve().parents[2]
 ENTRY = "name: Mine\nby: A. Author\nsees: policy\ntrained_on: colon 1\ntransitions: 2.0e+6\ngpu_hours: 1.5\n"
 
 
@@ -37,6 +38,13 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert "nameless: trial 0 of ARC-Rectum-Magnetic succeeded with a progress of 0.5" in out
     assert "lacks by, sees, trained_on, transitions, gpu_hours and has the unknown cost" in out
     assert page.read_text() == text
+
+
+def test_the_committed_page_has_the_committed_entries() -> None:
+    good, refused = submissions(ROOT / "docs" / "leaderboard")
+    page = (ROOT / "docs" / "leaderboard.md").read_text()
+    assert good and not refused
+    assert page.partition("<!-- entries -->\n")[2].partition("<!-- end of entries -->")[0] == entries_table(good)
 
 
 def test_a_leaderboard_needs_no_page_but_a_page_needs_marks(tmp_path: Path, capsys) -> None:
