@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import torch
 import warp as wp
-from hairpin import COLON, HairpinSim, hairpin, step_wall
+from hairpin import COLON, HairpinSim, hairpin, of_rings, step_wall
 
-from arcgym.sim import LoopFrictionCfg, Simulation, WallSolverCfg
+from arcgym.sim import ContactCfg, LoopFrictionCfg, Simulation, WallSolverCfg
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import own_patients
 from arcgym.sim.wall.surroundings import Surroundings
@@ -120,6 +120,22 @@ def test_a_hairpin_at_rest_is_as_without_it(sim_in: HairpinSim) -> None:
         step_wall(sim, 50)
         ends.append(sim.colon.data.nodal_pos_w)
     torch.testing.assert_close(*ends, rtol=0.0, atol=1.0e-7)
+
+
+@pytest.mark.parametrize("reach", [3, 12])
+def test_the_wall_of_the_other_limb_is_held_off_a_link(sim_in: HairpinSim, reach: int) -> None:
+    """A limb that is drawn across the other, through whose wall it comes as nothing holds it there."""
+    sim = sim_in("capsule", colon=COLON, wall=WallSolverCfg(self_contact=False), contact=ContactCfg(search_reach=reach))
+    scope, still = sim.endoscope, torch.zeros(1, 3)
+    scope.set_tip_velocity_command(torch.tensor([[0.0, 0.0, 0.05]]), still)
+    sim.step(400)
+    scope.set_tip_velocity_command(still, still)
+    upper = of_rings(sim, (13, 14, 15, 16, 17))
+    wp.to_torch(sim.wall.nodes.anchors.rest)[upper, 0, 1] -= 0.045
+    sim.step(480)
+    assert bool(sim.wall_penetrated[0]) == (reach == 3)
+    beyond = sim.colon.data.nodal_pos_w[0, upper, 1].min() - scope.data.body_pos_w[0, -1, 1]
+    assert (beyond > 0.0) == (reach == 12)
 
 
 def test_what_it_needs_is_said(sim_in: HairpinSim) -> None:
