@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draw what the policy sees in each variant of a task that spoils its picture.
 
-python scripts/tools/robustness_plot.py docs/images/robustness.png
+python scripts/tools/robustness_plot.py docs/images/robustness.jpg
 """
 
 from __future__ import annotations
