@@ -12,7 +12,7 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.experts import PullExpert, make_expert
+from arcgym.experts import PullExpert, make_expert, pull_expert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
@@ -38,16 +38,27 @@ def test_a_tip_rolls_to_and_fro_where_it_is_told_to(scene: InteractiveScene) -> 
     assert slow[9] == pytest.approx(6.0, abs=1.0e-5)
 
 
-def test_a_tip_rests_for_a_share_of_the_time_where_it_is_told_to(scene: InteractiveScene) -> None:
+def test_a_tip_rolls_and_rests_where_enough_of_its_tether_is_inside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Worlds that never rest, that rest for half of 2 s, 10 of 20 control steps, and below 0; nothing is pulled yet."""
-    expert = PullExpert(scene, rest=torch.tensor([0.0, 0.5, -0.5]))
-    drawn = []
-    for _ in range(20):
-        expert.act()
-        drawn.append(wp.to_torch(scene["endoscope"].actuators["tip"].linear)[:, 2].tolist())
-    rested = [abs(rest - 0.03 * 0.3) < 1.0e-6 for _, rest, _ in drawn]
-    assert rested == [False] * 10 + [True] * 10
-    assert all(never == below > 0.01 for never, _, below in drawn)
+    tube = TinySim(tmp_path)
+    cfg = InteractiveSceneCfg(num_envs=3, colon=tube.colon_cfg(rigid=True), endoscope=tube.scope_cfg("magnetic"))
+    scene = InteractiveScene(cfg, SimulationCfg())
+    inside = float(scene["endoscope"].data.inserted_length[0])
+    expert = PullExpert(scene, roll=6.0, roll_time=2.0, rest=torch.tensor([0.0, 0.5, -0.5]))
+    for tethered, share, times in ((2.0 * inside, 0.5, 0), (inside, 1.0, 10)):
+        monkeypatch.setattr(pull_expert, "TETHERED", tethered)
+        expert.reset(torch.arange(3))
+        forward, roll = [], []
+        for _ in range(20):
+            expert.act()
+            forward.append(wp.to_torch(scene["endoscope"].actuators["tip"].linear)[:, 2].tolist())
+            roll.append(float(wp.to_torch(scene["endoscope"].actuators["tip"].angular)[0, 2]))
+        assert roll[4] == pytest.approx(6.0 * share, rel=1.0e-4)
+        rested = [abs(rest - 0.03 * 0.3) < 1.0e-6 for _, rest, _ in forward]
+        assert rested == [10 <= step < 10 + times for step in range(20)]
+        assert all(never == below > 0.01 for never, _, below in forward)
 
 
 def test_a_view_circles_around_the_way_while_the_tip_is_pulled_back(scene: InteractiveScene) -> None:

@@ -20,6 +20,9 @@ CONTROL_STEP = 0.1
 REST_TIME, REST_PULL, REST_SPEED = 2.0, 0.3, 0.03
 """Time from one rest of the pull to the next [s], pull along the tip's axis meanwhile [N], and speed at which it gets
 there, where the pull is off by 1 N or more [m/s]."""
+TETHERED = 0.6
+"""Length of tether inside from which it rolls and rests as told [m]; a shorter one rolls by that much less, so that the
+torque is left for steering."""
 SWEEP_RATE = 2.0
 """Rate at which a view circles around the way back [rad/s]: at a sweep of 0.8 rad it turns by 1.4 rad/s, of 1.5 that
 actions allow."""
@@ -69,11 +72,12 @@ class PullExpert(ExpertBase):
             axis: Share of the tip's own axis in the direction of the pull: a long head passes a bend lengthwise.
             slide: How much of the pull into what the tip touches is turned along it.
             back: How much the tip moves back along its axis while its front stands against a wall.
-            roll: Amplitude of rolling the tip to and fro [rad/s]: a tether that rolls has less friction along its way.
-                How far the tip turns is limited by its torque: more than that lets it turn as fast as it can.
+            roll: Amplitude of rolling the tip to and fro [rad/s], with 0.6 m of tether inside; less with less. A tether
+                that rolls has less friction along its way. How far the tip turns is limited by its torque: more than
+                that lets it turn as fast as it can.
             roll_time: Time of one roll to and fro [s]: a slower one goes farther down the tether.
-            rest: Share of the time in which the tip hardly pulls, once in 2 s; none below 0. A tether that rolls
-                without tension rolls farther down, and slides after.
+            rest: Share of the time in which a tip with 0.6 m of tether inside hardly pulls, once in 2 s; none below 0.
+                A tether that rolls without tension rolls farther down, and slides after.
             sweep: Angle between the view and the way ahead while the tip is pulled back [rad]: it circles around the
                 way, and sees what lies behind folds. 0 looks straight along the way.
         """
@@ -82,6 +86,7 @@ class PullExpert(ExpertBase):
         self.axis, self.slide, self.back = self.each(axis), self.each(slide), self.each(back)
         self.roll, self.roll_time = self.each(roll), self.each(roll_time)
         self.rest, self.sweep = self.each(rest), self.each(sweep)
+        self._has_tether = scene["endoscope"].stage.root == "slide_roll"
         self._way = LumenWay(scene)
         self._retreat = Retreat(scene.num_envs, scene.device, patience=20, first=6, longest=40)
         self._side = torch.zeros(scene.num_envs, 3, device=scene.device)
@@ -108,7 +113,7 @@ class PullExpert(ExpertBase):
         turn = self.turn_gain[:, None] * turn
         turn = torch.where((withdraws & (self.sweep > 0.0))[:, None], self._circle(gaze), turn)
         self._steps += 1.0
-        turn[:, 2] += self.roll * (2.0 * math.pi * CONTROL_STEP / self.roll_time * self._steps).sin()
+        turn[:, 2] += self.roll * self._tether() * (2.0 * math.pi * CONTROL_STEP / self.roll_time * self._steps).sin()
         self.scene["endoscope"].set_tip_velocity_command(velocity, turn)
 
     def reset(self, env_ids: torch.Tensor) -> None:
@@ -131,7 +136,13 @@ class PullExpert(ExpertBase):
         pull = quat_apply_inverse(data.tip_quat_w, data.tip_pull_force_w)[:, 2]
         eased = torch.nn.functional.pad(REST_SPEED * (REST_PULL - pull).clamp(-1.0, 1.0)[:, None], (2, 0))
         part = self._steps * CONTROL_STEP / REST_TIME
-        return torch.where((part - part.floor() >= 1.0 - self.rest)[:, None], eased, velocity)
+        rests = (part - part.floor() >= 1.0 - self.rest) & (self._tether() == 1.0)
+        return torch.where(rests[:, None], eased, velocity) if self._has_tether else velocity
+
+    def _tether(self) -> torch.Tensor:
+        """Return how much of :data:`TETHERED` lies inside, at most all, shape (N,); all without a tether."""
+        inside = (self.scene["endoscope"].data.inserted_length / TETHERED).clamp(0.0, 1.0)
+        return inside if self._has_tether else torch.ones_like(inside)
 
     def _circle(self, gaze: torch.Tensor) -> torch.Tensor:
         """Return the angular velocity that leads the view around ``gaze`` at the angle of the sweep, shape (N, 3).
