@@ -13,9 +13,7 @@ from tiny_sim import TinySim
 from arcgym.sim import Simulation
 from arcgym.sim.contact import carried_kernels, lumen_kernels
 from arcgym.sim.contact.contact_search import SPHERE_SLACK
-from arcgym.sim.wall import shell_cuda_kernels, shell_kernels
 from arcgym.sim.wall.kept_rings import UNMOVED, KeptRings
-from arcgym.utils.warp_vote_kernels import GROUP
 
 
 @pytest.fixture(scope="module")
@@ -146,28 +144,3 @@ def test_a_fine_surface_is_near_links_as_ever(sim: Simulation) -> None:
         assert near.numpy().any() and (ever.numpy() >= near.numpy()).all()
         moved.zero_()
         wp.to_torch(sim.nodal_pos)[...] += 2.0e-5
-
-
-@wp.kernel
-def sum_parts(
-    shell: shell_kernels.ShellElements,
-    x: wp.array2d[wp.vec3],
-    moduli: wp.vec3,
-    parts: wp.array3d[shell_cuda_kernels.Sums],
-    sums: wp.array2d[shell_cuda_kernels.Sums],
-):
-    i, w, lane = wp.tid()
-    parts[i, w, lane] = shell_cuda_kernels.element_part(shell, x, i, w, moduli, lane)
-    if lane == 0:
-        sums[i, w] = shell_cuda_kernels.element_sums(shell, x, i, w, moduli)
-
-
-def test_parts_of_a_vertex_add_up(sim: Simulation) -> None:
-    wall = sim.wall
-    wall.elements.measure(sim.nodal_pos, wall.tissue)
-    parts = wp.zeros((wall.vertex_count, 2, GROUP), dtype=shell_cuda_kernels.Sums, device=sim.device)
-    sums = wp.zeros(parts.shape[:2], dtype=shell_cuda_kernels.Sums, device=sim.device)
-    inputs = [wall.elements.data, sim.nodal_pos, wp.vec3(*wall.tissue.moduli.numpy()[0])]
-    wp.launch(sum_parts, parts.shape, inputs=inputs, outputs=[parts, sums], device=sim.device)
-    scale = np.abs(sums.numpy()).max()
-    np.testing.assert_allclose(parts.numpy().sum(axis=2), sums.numpy(), rtol=0.0, atol=2e-6 * scale)

@@ -25,7 +25,6 @@ from arcgym.sim.wall.wall_kernels import ContactForce, MeasuredContacts, VertexB
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.four_store_kernels import joined, leading, load_four, store_four
 from arcgym.utils.warp_setup import FAST
-from arcgym.utils.warp_vote_kernels import GROUP
 
 FOURS = 9
 """Vectors of four that a packed contact takes."""
@@ -178,33 +177,6 @@ def add_packed(block: VertexBlock, contacts: WallContacts, x: wp.array2d[wp.vec3
             out.force += weight * (f.normal_force * f.normal - f.friction * f.slip)
             out.hessian += (weight * weight) * (f.stiffness * along + f.friction * (eye - along))
         out.force += weight * c.owed
-        entry = following
-    return out
-
-
-@wp.func
-def add_packed_part(
-    block: VertexBlock, contacts: WallContacts, x: wp.array2d[wp.vec3], i: int, w: int, lane: int
-) -> VertexBlock:
-    """Add those contacts of ``add_packed`` that are for one of ``GROUP`` threads, ``lane``."""
-    out = block
-    eye = wp.identity(n=3, dtype=float)
-    entry = contacts.records.vertex_head[i, w]
-    turn = int(0)
-    while entry >= 0:
-        following = contacts.records.vertex_next[entry]
-        if turn == lane:
-            slot = entry / 4
-            c = load_contact(contacts.packed, slot)
-            k = entry - 4 * slot
-            weight = wp.where(k < 2, wp.where(k == 0, c.bary[0], c.bary[1]), wp.where(k == 2, c.bary[2], c.bary[3]))
-            f = packed_force(contacts.law, contacts.dt, contacts.friction[w], c, x, w)
-            if f.normal_force > 0.0:
-                along = wp.outer(f.normal, f.normal)
-                out.force += weight * (f.normal_force * f.normal - f.friction * f.slip)
-                out.hessian += (weight * weight) * (f.stiffness * along + f.friction * (eye - along))
-            out.force += weight * c.owed
-        turn = wp.where(turn == wp.static(GROUP - 1), 0, turn + 1)
         entry = following
     return out
 

@@ -13,7 +13,6 @@ import warp as wp
 from arcgym.sim.wall.shell_kernels import SMALLEST, STIFFENING, ShellElements
 from arcgym.sim.wall.wall_kernels import VertexBlock
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.warp_vote_kernels import GROUP
 
 Sums = wp.types.vector(length=9, dtype=float)
 """Force [N], then the Hessian's diagonal and its entries xy, xz and yz [N/m]."""
@@ -53,7 +52,7 @@ _ADD = """
     const int begin = shell.fan_start.data[i], end = shell.fan_start.data[i + 1];
     int last = -1;  // triangle before, and where its other vertices are from here
     vec3 last_first(0.0f, 0.0f, 0.0f), last_second(0.0f, 0.0f, 0.0f), last_normal(0.0f, 0.0f, 0.0f);
-    for (int k = begin + LANE; k < end; k += LANES) {
+    for (int k = begin; k < end; ++k) {
         const auto& t = shell.fan.data[k];
         const float* const own = (const float*)(shell.fan_rest.data + ((long long)k * patients + p));
         const vec4 rest = four(own), rim = four(own + 4), spoke = four(own + 8);
@@ -71,7 +70,7 @@ _ADD = """
         const vec3 normal = at(normals, t.index), rim_normal = at(normals, t.rim_triangle);
         const float rim_moment = rim[3] > 0.0f ? moments[(long long)t.rim * worlds] : 0.0f;
         const float spoke_moment = spoke[3] > 0.0f ? moments[(long long)t.spoke * worlds] : 0.0f;
-        last = LANES == 1 ? t.index : -1;
+        last = t.index;
         last_first = d1;
         last_second = d2;
         last_normal = normal;
@@ -118,7 +117,7 @@ _ADD = """
 """.replace("SMALLEST", f"{float(SMALLEST)}f").replace("STIFFENING", f"{float(STIFFENING)}f")
 
 
-@wp.func_native(_ADD.replace("LANES", "1").replace("LANE", "0"))
+@wp.func_native(_ADD)
 def element_sums(shell: ShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3) -> Sums:
     """Return the sums over the triangles and hinges around vertex ``i`` of world ``w``."""
     ...
@@ -130,24 +129,6 @@ def add_elements(
 ) -> VertexBlock:
     """Add the terms of the triangles and hinges around vertex ``i`` of world ``w``."""
     sums = element_sums(shell, x, i, w, moduli)
-    out = block
-    out.force += wp.vec3(sums[0], sums[1], sums[2])
-    out.hessian += wp.mat33(sums[3], sums[6], sums[7], sums[6], sums[4], sums[8], sums[7], sums[8], sums[5])
-    return out
-
-
-@wp.func_native(_ADD.replace("LANES", str(GROUP)).replace("LANE", "lane"))
-def element_part(shell: ShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3, lane: int) -> Sums:
-    """Return the part of :func:`element_sums` that is for one of ``GROUP`` threads, ``lane``."""
-    ...
-
-
-@wp.func
-def add_element_part(
-    block: VertexBlock, shell: ShellElements, x: wp.array2d[wp.vec3], i: int, w: int, moduli: wp.vec3, lane: int
-) -> VertexBlock:
-    """Add the part of :func:`add_elements` that is for one of ``GROUP`` threads, ``lane``."""
-    sums = element_part(shell, x, i, w, moduli, lane)
     out = block
     out.force += wp.vec3(sums[0], sums[1], sums[2])
     out.hessian += wp.mat33(sums[3], sums[6], sums[7], sums[6], sums[4], sums[8], sums[7], sums[8], sums[5])

@@ -29,9 +29,8 @@ class Shell:
     size = 1.0
     memory: dict[str, torch.Tensor] = {}
     _laws = (shell_kernels.ShellElements, shell_kernels.add_elements, shell_kernels.add_forces)
-    _faster = {"on_gpu": shell_cuda_kernels.add_elements, "in_groups": shell_cuda_kernels.add_element_part}
-    plain = sweep_kernels(*_laws, **_faster)
-    surrounded = sweep_kernels(*_laws, surrounded=True, **_faster)
+    plain = sweep_kernels(*_laws, on_gpu=shell_cuda_kernels.add_elements)
+    surrounded = sweep_kernels(*_laws, surrounded=True, on_gpu=shell_cuda_kernels.add_elements)
     measure_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle)
     measure_changed_bands = band_kernel(shell_kernels.ShellElements, shell_kernels.add_band_triangle, True)
 

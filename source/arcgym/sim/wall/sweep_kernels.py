@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import warp as wp
 
-from arcgym.sim.wall.packed_contact_kernels import add_packed, add_packed_part
+from arcgym.sim.wall.packed_contact_kernels import add_packed
 from arcgym.sim.wall.wall_kernels import (
     MeasuredContacts,
     Tissue,
@@ -24,7 +24,6 @@ from arcgym.sim.wall.wall_kernels import (
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.math_kernels import clamp_length
 from arcgym.utils.warp_setup import FAST
-from arcgym.utils.warp_vote_kernels import group_sum_matrix, group_sum_vector
 
 
 class SweepKernels(NamedTuple):
@@ -36,8 +35,6 @@ class SweepKernels(NamedTuple):
     """Total force on every vertex."""
     sweep_packed: wp.Kernel
     """Does as ``sweep_color``, on a GPU, with contacts that were packed, see :mod:`.packed_contact_kernels`."""
-    sweep_in_groups: wp.Kernel | None = None
-    """Does as ``sweep_packed``, by a group of threads a vertex, for few worlds."""
 
 
 def sweep_kernels(
@@ -46,7 +43,6 @@ def sweep_kernels(
     add_forces: wp.Function,
     surrounded: bool = False,
     on_gpu: wp.Function | None = None,
-    in_groups: wp.Function | None = None,
 ) -> SweepKernels:
     """Make the kernels for one kind of elements.
 
@@ -60,13 +56,11 @@ def sweep_kernels(
         add_forces: Adds the forces alone, where the elements were measured; takes the same.
         surrounded: Whether to add ``contacts.outer``.
         on_gpu: Does as ``add_elements``, faster on a GPU, if there is such.
-        in_groups: Does a thread's part of it, of a group of threads a vertex, if there is such.
     """
     return SweepKernels(
         _sweep_kernel(elements_type, add_elements, surrounded, add_contact, {}),
         _residual_kernel(elements_type, add_forces, surrounded),
         _sweep_kernel(elements_type, on_gpu or add_elements, surrounded, add_packed, FAST),
-        None if in_groups is None else _group_sweep_kernel(elements_type, in_groups, surrounded),
     )
 
 
@@ -118,59 +112,6 @@ def _sweep_kernel(
         x[i, w] = x[i, w] + clamp_length(wp.inverse(block.hessian) * block.force, largest_move)
 
     return sweep_color
-
-
-def _group_sweep_kernel(elements_type: type, add_elements: wp.Function, surrounded: bool) -> wp.Kernel:
-    @wp.kernel(module="unique", module_options=FAST)
-    def sweep_in_groups(
-        color: wp.array[int],
-        nodes: WallNodes,
-        elements: elements_type,
-        tissue: Tissue,
-        inertial: wp.array2d[wp.vec3],
-        contacts: WallContacts,
-        largest_move: float,
-        rounding: float,
-        force: wp.array2d[wp.vec3],
-        vertices: int,
-        x: wp.array2d[wp.vec3],
-    ):
-        """Do as ``sweep_color``. Launch (C', W, ``GROUP``), C' such that warps are whole.
-
-        Args:
-            color: Vertices that share no element, shape (C,).
-            nodes: Vertices of all patients.
-            elements: Elements of all patients.
-            tissue: Values of each world.
-            inertial: Positions that inertia pulls to [m], shape (V, W).
-            contacts: Contacts of this step.
-            largest_move: Longest displacement of a vertex [m].
-            rounding: Force over shear modulus that is rounding alone [m], of a solid [m^2].
-            force: Residual of each vertex [N], shape (V, W).
-            vertices: Vertices of the colour, C; the groups beyond them do nothing.
-            x: Positions [m], shape (V, W); moved in place.
-        """
-        k, w, lane = wp.tid()
-        i = color[wp.min(k, vertices - 1)]
-        noise = rounding * tissue.moduli[w][0]
-        moves = k < vertices and tissue.rigid[w] == 0
-        moves = moves and not converged(force[i, w], x[i, w] - inertial[i, w], noise)
-        block = VertexBlock()
-        if moves:
-            block = add_elements(block, elements, x, i, w, tissue.moduli[w], lane)
-            block = add_packed_part(block, contacts, x, i, w, lane)
-        forces = group_sum_vector(block.force)
-        hessian = group_sum_matrix(block.hessian)
-        if moves and lane == 0:
-            block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))
-            block.force += forces
-            block.hessian += hessian
-            block = add_self_contact(block, contacts.self_contact, x[i, w], i, w)
-            if wp.static(surrounded):
-                block = add_outer_force(block, contacts.outer, x[i, w], i, w)
-            x[i, w] = x[i, w] + clamp_length(wp.inverse(block.hessian) * block.force, largest_move)
-
-    return sweep_in_groups
 
 
 def _residual_kernel(elements_type: type, add_forces: wp.Function, surrounded: bool) -> wp.Kernel:

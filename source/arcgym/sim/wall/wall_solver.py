@@ -33,7 +33,6 @@ from arcgym.sim.wall.wall_topology import ring_mean
 from arcgym.sim.wall.wall_weight import WallWeight
 from arcgym.utils.stages import in_parts, in_sequence, launch_rows
 from arcgym.utils.warp_setup import GPU_BLOCK
-from arcgym.utils.warp_vote_kernels import GROUP, LANES
 
 REGULARISATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
@@ -42,10 +41,6 @@ ROUNDING = 2.0e-7
 to 6e-8 (colon 1 at rest, every vertex swept, ``paper`` and ``in_situ``). A fixed 1 mN, as before, is 4e-6 in
 ``in_situ``, whose wall trembled at 0.5 mm/s; with less than this, 5 % of a CPU's physics step go into vertices that
 hardly move."""
-
-
-FEW_WORLDS = 64
-"""Worlds up to which several threads of a GPU share the elements of a vertex in a sweep: more keep it busy anyway."""
 
 
 def wall_contacts(
@@ -130,8 +125,6 @@ class WallSolver:
         self.measured = self._measured_contacts(contact_slots)
         self.on_gpu = wp.get_device(device).is_cuda
         """Whether contacts are packed, see :mod:`.packed_contact_kernels`."""
-        self.in_groups = self.on_gpu and num_envs <= FEW_WORLDS
-        """Whether a group of threads moves each vertex in a sweep."""
         self.packed = wp.zeros(FOURS * contact_slots if self.on_gpu else 1, dtype=wp.vec4, device=device)
         """The packed contacts."""
         self._prepared = self._begun = False
@@ -296,12 +289,7 @@ class WallSolver:
         sweep = self._kernels.sweep_packed if self.on_gpu else self._kernels.sweep_color
         inputs = [self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
         inputs += [self.cfg.largest_move, ROUNDING * self.elements.size, self.force]
-        in_groups = self._kernels.sweep_in_groups if self.in_groups else None
         for color in self.colors:
-            if in_groups is not None:
-                shape = (len(color) + -len(color) % (LANES // GROUP), self.num_envs, GROUP)
-                self._launch(in_groups, shape, [color, *inputs, len(color)], [x])
-                continue
 
             def move(first: int, rows: int, color: wp.array = color) -> None:
                 part = color[first : first + rows]
