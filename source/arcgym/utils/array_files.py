@@ -17,6 +17,9 @@ import numpy as np
 
 _SKELETON = "skeleton"
 _PACKAGE = "arcgym."
+_READING = threading.Lock()
+"""One file at a time: NumPy parses its headers as Python, which Python 3.11 cannot do in two threads at once
+(github.com/python/cpython/issues/106905)."""
 
 
 def save_arrays(value: Any, path: Path) -> None:
@@ -44,7 +47,7 @@ def save_arrays(value: Any, path: Path) -> None:
 def load_arrays(path: Path) -> Any:
     """Return the value in a file written by :func:`save_arrays`; None if it is missing or cannot be read."""
     try:
-        with np.load(path) as file:
+        with _READING, np.load(path) as file:
             return _put_together(json.loads(str(file[_SKELETON])), file)
     except (OSError, EOFError, ValueError, KeyError, TypeError, AttributeError, ImportError, zipfile.BadZipFile):
         return None
