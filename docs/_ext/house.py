@@ -12,7 +12,7 @@ Stop = tuple[int, str, int]
 """Floor, words and indent [px] of a stop."""
 
 FLOORS: tuple[tuple[tuple[str, str], ...], ...] = (
-    (("cli", "the command"), ("teleop", "the page"), ("recordings", "replay, data")),
+    (("cli", "the command"), ("teleop", "the page"), ("studies", "grids"), ("recordings", "replay, data")),
     (("rl", "rsl_rl"), ("evaluation", "trials"), ("arcgym_tasks", "config"), ("benchmarks", "arcgym bench")),
     (("envs", "ManagerBasedRLEnv, its terms in envs.mdp"),),
     (("managers", "observation, action, reward, ..."), ("viewers", "pictures, videos")),

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.statistics import wilson
-from arcgym.rl.studies.cell import Cell, read_cells
-from arcgym.rl.studies.curves import read_curves
-from arcgym.rl.studies.table import cell_rows
+from arcgym.studies.cell import Cell, read_cells
+from arcgym.studies.curves import read_curves
+from arcgym.studies.table import cell_rows
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE = DOCS / "learning.md"

@@ -156,7 +156,7 @@ def _write_curve(run: Path, given: Path | None, out: Path) -> None:
     if given:
         shutil.copy(given, out)
     elif list(run.glob("events.*")):
-        from arcgym.rl.studies.curves import read_log
+        from arcgym.studies.curves import read_log
 
         rows = [{"iteration": iteration, **row} for iteration, row in sorted(read_log(run).items())]
         names = list(dict.fromkeys(name for row in rows for name in row))

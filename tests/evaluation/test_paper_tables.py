@@ -100,7 +100,7 @@ def test_tasks_that_were_evaluated_one_by_one_share_a_table(tmp_path: Path, caps
 def test_a_study_has_a_table_of_its_cells(tmp_path: Path) -> None:
     """Two cells of the ablation: constrained PPO with all of the reward has the paper's figure beside it."""
     from arcgym.rl.first_episodes import write_rows
-    from arcgym.rl.studies.cell import Cell
+    from arcgym.studies.cell import Cell
 
     for algorithm, s_c in (("ppo", 0.5), ("ppo_lagrangian", 0.75)):
         cell = Cell(tmp_path, "ARC-Splenic-Magnetic", algorithm, 1, {"env.reward": "paper"})

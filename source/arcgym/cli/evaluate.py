@@ -122,10 +122,11 @@ def _evaluate_in_processes(args: EvaluateArguments, conditions: Conditions, num_
 def _write_reports(folder: ResultFolder) -> None:
     """Write summary and Parquet of a folder, and print the summary and where they are."""
     from arcgym.evaluation.parquet import write_parquet
+    from arcgym.evaluation.result_folder import SUMMARY_FILE
     from arcgym.evaluation.summary import report
 
     table = report(folder.rows)
-    (folder.path / "summary.md").write_text(table)
+    (folder.path / SUMMARY_FILE).write_text(table)
     print(table)
     print(f"rows: {folder.path / 'trials.csv'}")
     parquet = write_parquet(folder.path)

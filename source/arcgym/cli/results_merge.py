@@ -21,10 +21,11 @@ def run(namespace: argparse.Namespace) -> None:
     """Write the folder, its summary and its Parquet."""
     from arcgym.evaluation.merge import merge
     from arcgym.evaluation.parquet import write_parquet
+    from arcgym.evaluation.result_folder import SUMMARY_FILE
     from arcgym.evaluation.summary import report
 
     folder = merge([Path(part) for part in namespace.parts], Path(namespace.out))
     table = report(folder.rows)
-    (folder.path / "summary.md").write_text(table)
+    (folder.path / SUMMARY_FILE).write_text(table)
     print(table)
     write_parquet(folder.path)

@@ -58,8 +58,8 @@ def _rows(folder: Path) -> list[dict[str, Any]]:
 
 def study_rows(folder: Path) -> list[dict[str, Any]]:
     """Return the episodes of a study as rows of trials; those of a policy without its rules are left out."""
-    from arcgym.rl.studies.cell import read_cells
-    from arcgym.rl.studies.table import all_episodes
+    from arcgym.studies.cell import read_cells
+    from arcgym.studies.table import all_episodes
 
     cells = {cell.name: cell for cell in read_cells(folder)}
     rows = []

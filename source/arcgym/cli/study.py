@@ -7,8 +7,8 @@
     arcgym study my_study.yaml seed=1,2,3 --launcher submitit_slurm hydra.launcher.partition=gpu
 
 CONFIG is a YAML file, or the name of a study that comes with the package. The study goes to logs/studies/<name>.
-Called again, it leaves finished cells alone and goes on with the others from their checkpoints. A study with a suite
-runs its trials too, in trials/. Other arguments are overrides in Hydra's grammar: fields of the study, and
+Called again, it leaves finished cells alone and goes on with the others from their checkpoints. A study with suites
+runs their trials too, in trials/. Other arguments are overrides in Hydra's grammar: fields of the study, and
 hydra.launcher.… for the launcher.
 """
 
@@ -59,8 +59,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(namespace: argparse.Namespace) -> int:
     """Run the study and return the exit status: 0 when all cells are finished, 1 when one failed, 3 when some wait."""
-    from arcgym.rl.studies.launch import LaunchOptions, all_cells, check_cells, launch
-    from arcgym.rl.studies.study_cfg import find_study, read_study
+    from arcgym.studies.launch import LaunchOptions, all_cells, check_cells, launch
+    from arcgym.studies.study_cfg import find_study, read_study
 
     args = read_fields(StudyArguments, namespace)
     cfg = read_study(find_study(namespace.config, SHIPPED))
@@ -71,33 +71,33 @@ def run(namespace: argparse.Namespace) -> int:
     if args.dry_run:
         for cell in cells:
             print(f"{cell.name}: {cell.read_state()['state']}")
-        report_trials(cells, cfg.suite, each=True)
+        report_trials(cells, each=True)
         return 0
     devices = _devices(args.devices) if args.launcher == "pool" else ()
     print(f"study {cfg.name}: {len(cells)} cells, {folder}", flush=True)
     options = LaunchOptions(args.launcher, devices, args.per_device, args.stop_after, changes)
     launch(cfg, folder, options)
     status = report(folder, cells)
-    return max(status, report_trials(cells, cfg.suite)) if status != 1 else 1
+    return max(status, report_trials(cells)) if status != 1 else 1
 
 
-def report_trials(cells: list[Any], suite: str | None, each: bool = False) -> int:
-    """Say in which state the trials of the study's suite are, and return 0 if all have ended, else 3.
+def report_trials(cells: list[Any], each: bool = False) -> int:
+    """Say in which state the trials of the study's suites are, and return 0 if all have ended, else 3.
 
     Args:
         cells: Cells of the study.
-        suite: The suite; None has no trials.
         each: Whether to name each result folder.
     """
-    from arcgym.rl.studies.suite_trials import all_trials
+    from arcgym.studies.suite_trials import all_trials
 
-    found = {trials.name: trials.state() for trials in all_trials(cells, suite)} if suite else {}
-    for name, state in found.items():
+    found = [(trials, trials.state()) for trials in all_trials(cells)]
+    for trials, state in found:
         if each or state == "of other policies":
-            print(f"trials/{name}: {state}")
-    if found:
-        print(f"trials of {suite}: {', '.join(f'{count} {state}' for state, count in Counter(found.values()).items())}")
-    return 0 if set(found.values()) <= {"finished"} else 3
+            print(f"trials/{trials.suite}/{trials.name}: {state}")
+    for suite in dict.fromkeys(trials.suite for trials, _ in found):
+        states = Counter(state for trials, state in found if trials.suite == suite)
+        print(f"trials of {suite}: {', '.join(f'{count} {state}' for state, count in states.items())}")
+    return 0 if {state for _, state in found} <= {"finished"} else 3
 
 
 def report(folder: Path, cells: list[Any]) -> int:
@@ -105,9 +105,9 @@ def report(folder: Path, cells: list[Any]) -> int:
 
     Table and pictures show the folder's other cells too, which an earlier call with other settings has left.
     """
-    from arcgym.rl.studies.cell import read_cells
-    from arcgym.rl.studies.curves import make_curves
-    from arcgym.rl.studies.table import write_table
+    from arcgym.studies.cell import read_cells
+    from arcgym.studies.curves import make_curves
+    from arcgym.studies.table import write_table
 
     shown = list({cell.name: cell for cell in [*cells, *read_cells(folder)]}.values())
     for cell in shown:
@@ -132,7 +132,7 @@ def draw(folder: Path, cells: list[Any]) -> list[Path]:
     if importlib.util.find_spec("matplotlib") is None:
         print("pictures: none, they need matplotlib (pip install 'arcgym[study]')")
         return []
-    from arcgym.rl.studies.figures import draw_curves, draw_pareto
+    from arcgym.studies.figures import draw_curves, draw_pareto
 
     paths = [folder / "curves.png", folder / "pareto.png"]
     draw_curves(cells, paths[0], folder.name)

@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(namespace: argparse.Namespace) -> int:
     """Write curves, table and pictures, and return 0 when all cells are finished."""
     from arcgym.cli.study import report
-    from arcgym.rl.studies.cell import read_cells
+    from arcgym.studies.cell import read_cells
     from arcgym.utils.errors import UsageError
 
     folder = Path(namespace.folder).resolve()

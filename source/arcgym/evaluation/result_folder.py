@@ -30,6 +30,8 @@ PACKED_FILE = f"{TRIALS_FILE}.gz"
 """The same rows, packed, in small copies of result folders."""
 RUN_FILE = "run.json"
 """Agent, checkpoint, suite, conditions, versions."""
+SUMMARY_FILE = "summary.md"
+"""Tables of all trials, written when they have ended."""
 PARTS = "parts"
 """Folder of the shares of several processes, in that of all rows."""
 IDENTITY = ("agent", "checkpoint_sha256", "suite", "conditions_sha256", "overrides")

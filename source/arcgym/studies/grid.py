@@ -10,8 +10,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.study_cfg import AXES, StudyCfg
+from arcgym.studies.cell import Cell
+from arcgym.studies.study_cfg import AXES, StudyCfg
 
 NAMED = ("algorithm", "task", "robot", "seed")
 """Axes that every cell's name has; others are appended."""
@@ -56,9 +56,9 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
             ``fixed``, budgets that the command line gives as one value.
         study: Folder of the study.
     """
-    task = f"ARC-{str(values['task']).capitalize()}-{values['robot']}" if values.get("robot") else values["task"]
+    task = _full_name(str(values["task"]), values["robot"]) if values.get("robot") else values["task"]
     groups = [values["tasks"].get(task, {}), values["algorithms"].get(values["algorithm"], {})]
-    merged = {name: values[name] for name in ("num_envs", "minutes", "max_iterations")}
+    merged = {name: values[name] for name in ("num_envs", "minutes", "max_iterations", "suites")}
     overrides: dict[str, Any] = {}
     whole: list[str] = []
     for group in ({"env": values["env"], "agent": values["agent"]}, *groups):
@@ -72,10 +72,16 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
         if name not in NAMED:
             axes[name] = _value(values, name)
             (merged if name in AXES else overrides)[name] = axes[name]
+    merged["suites"] = tuple(merged["suites"])
     texts = (*(f"{path}={hydra_value(value)}" for path, value in overrides.items()), *whole)
     return Cell(
         study, task, values["algorithm"], values["seed"], axes, evaluate=values["evaluate"], overrides=texts, **merged
     )
+
+
+def _full_name(segment: str, robot: str) -> str:
+    """Return the registered name of a task: ``rectum`` and ``LeftColon`` stand for ARC-Rectum-… and ARC-LeftColon-…"""
+    return f"ARC-{segment[:1].upper()}{segment[1:]}-{robot}"
 
 
 def _value(values: Mapping[str, Any], name: str) -> Any:

@@ -12,9 +12,9 @@ import time
 
 import pytest
 
-from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.job_signals import start_child
-from arcgym.rl.studies.run_cell import _run
+from arcgym.studies.cell import Cell
+from arcgym.studies.job_signals import start_child
+from arcgym.studies.run_cell import _run
 
 CHILD = """
 import pathlib, signal, sys, time

@@ -11,9 +11,9 @@ import pytest
 
 from arcgym.cli.study import SHIPPED
 from arcgym.cli.task import agent_key
-from arcgym.rl.studies.grid import hydra_value
-from arcgym.rl.studies.launch import all_cells, check_cells
-from arcgym.rl.studies.study_cfg import StudyCfg, find_study, read_study
+from arcgym.studies.grid import hydra_value
+from arcgym.studies.launch import all_cells, check_cells
+from arcgym.studies.study_cfg import StudyCfg, find_study, read_study
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import load_cfg_from_registry

@@ -17,11 +17,11 @@ from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
 
-from arcgym.rl.studies.cell import LOG_FILE, Cell
-from arcgym.rl.studies.grid import is_left_out, make_cell
-from arcgym.rl.studies.job_signals import JobEndedError, start_child
-from arcgym.rl.studies.stopping import was_stopped
-from arcgym.rl.studies.suite_trials import SuiteTrials, trials_of
+from arcgym.studies.cell import LOG_FILE, Cell
+from arcgym.studies.grid import is_left_out, make_cell
+from arcgym.studies.job_signals import JobEndedError, start_child
+from arcgym.studies.stopping import was_stopped
+from arcgym.studies.suite_trials import SuiteTrials, trials_of
 
 TAIL = 15
 """Lines of the log that are kept of a cell that failed."""
@@ -37,7 +37,7 @@ def run_cell(cfg: DictConfig) -> dict[str, Any]:
     """Run a cell, or go on with it, and return its name and state; what is finished is left alone.
 
     Args:
-        cfg: Fields of :class:`arcgym.rl.studies.study_cfg.StudyCfg` with one value for each name of the grid, and
+        cfg: Fields of :class:`arcgym.studies.study_cfg.StudyCfg` with one value for each name of the grid, and
             ``axes``, ``folder``, ``device`` and ``stop_at``.
     """
     values: Any = OmegaConf.to_container(cfg, resolve=True)
@@ -50,9 +50,9 @@ def run_cell(cfg: DictConfig) -> dict[str, Any]:
         except Exception:  # of this process: the other cells go on
             state = "failed"
             cell.write_state(state, status="none", log=traceback.format_exc())
-    if state == "finished" and values.get("suite"):
-        trials = trials_of(cell, values["suite"], values["seeds"][cell.name_with("")])
-        _run_trials(trials, values["device"], values["stop_at"])
+    if state == "finished":
+        for trials in trials_of(cell, values["seeds"][cell.name_with("")]):
+            _run_trials(trials, values["device"], values["stop_at"])
     return {"name": cell.name, "state": state}
 
 

@@ -9,9 +9,9 @@ import pytest
 from torch.utils.tensorboard import SummaryWriter
 
 from arcgym.rl.first_episodes import write_rows
-from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.curves import COLUMNS, make_curves
-from arcgym.rl.studies.figures import _curve, draw_curves, draw_pareto
+from arcgym.studies.cell import Cell
+from arcgym.studies.curves import COLUMNS, make_curves
+from arcgym.studies.figures import _curve, draw_curves, draw_pareto
 
 pytest.importorskip("matplotlib")
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import yaml
 
+from arcgym.evaluation.suites import read_suites
 from arcgym.utils.coerce import from_dict
 from arcgym.utils.configclass import configclass, validate
 from arcgym.utils.errors import UsageError
@@ -19,7 +20,7 @@ from arcgym.utils.validation import FieldError, require_at_least, require_positi
 AXES = ("algorithm", "task", "robot", "seed", "num_envs", "minutes", "max_iterations")
 """Names that the grid may vary, beside paths ``env.…`` and ``agent.…``."""
 
-GROUP_FIELDS = ("num_envs", "minutes", "max_iterations", "env", "agent", "after", "like", "overrides")
+GROUP_FIELDS = ("num_envs", "minutes", "max_iterations", "env", "agent", "after", "like", "overrides", "suites")
 """Names that the settings of one algorithm or one task may have."""
 
 
@@ -54,9 +55,10 @@ class StudyCfg:
     evaluate: bool = True
     """Whether each world's first episode is run with the last policy. The table needs it."""
 
-    suite: str | None = None
-    """Suite of :mod:`arcgym.evaluation` whose trials the last policies run once all seeds of a cell are finished, each
-    seed its group of them; the results go to ``trials/`` in the study's folder. None runs no trials."""
+    suites: list[str] = []
+    """Suites of :mod:`arcgym.evaluation` whose trials the last policies run once all seeds of a cell are finished, each
+    seed its group of them, such as ``["left_colon", "ct"]``. A cell takes part in those that have its task; the results
+    go to ``trials/<suite>/`` in the study's folder. None runs no trials."""
 
     env: dict[str, Any] = {}
     """Overrides of the environment's configuration in all cells, by path, such as ``{"lumen": "metric"}``."""
@@ -66,7 +68,7 @@ class StudyCfg:
 
     tasks: dict[str, dict[str, Any]] = {}
     """Settings of single tasks by full name, on top of the above: ``num_envs``, ``minutes``, ``max_iterations``,
-    ``env``, ``agent``."""
+    ``env``, ``agent``, ``suites``."""
 
     algorithms: dict[str, dict[str, Any]] = {}
     """Settings of single algorithms, on top of those. ``after`` names an algorithm of the grid that must be finished
@@ -99,6 +101,11 @@ class StudyCfg:
                 raise FieldError(self, "grid", f"varies '{name}', expected {paths} or one of: {', '.join(AXES)}.")
             if not values:
                 raise FieldError(self, "grid", f"gives '{name}' no values, expected one or more.")
+        own = [one.get("suites", ()) for one in (*self.tasks.values(), *self.algorithms.values())]
+        known = read_suites()
+        for name in [*self.suites, *(name for names in own for name in names)]:
+            if name not in known:
+                raise FieldError(self, "suites", f"has '{name}'. {did_you_mean(name, known)}")
         for name in (name for names in self.skip for name in names):
             if name not in ("algorithm", "task", "robot", "seed") and name not in self.grid:
                 raise FieldError(self, "skip", f"names '{name}', expected names of the grid: {', '.join(self.grid)}.")

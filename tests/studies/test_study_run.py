@@ -12,11 +12,11 @@ from omegaconf import OmegaConf
 
 from arcgym.cli.study import report
 from arcgym.rl.first_episodes import read_rows
-from arcgym.rl.studies.cell import Cell, read_cells
-from arcgym.rl.studies.launch import LaunchOptions, all_cells, launch
-from arcgym.rl.studies.run_cell import run_cell
-from arcgym.rl.studies.study_cfg import StudyCfg
-from arcgym.rl.studies.table import cell_rows
+from arcgym.studies.cell import Cell, read_cells
+from arcgym.studies.launch import LaunchOptions, all_cells, launch
+from arcgym.studies.run_cell import run_cell
+from arcgym.studies.study_cfg import StudyCfg
+from arcgym.studies.table import cell_rows
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 

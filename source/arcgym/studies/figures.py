@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.curves import read_curves
-from arcgym.rl.studies.table import cell_rows
+from arcgym.studies.cell import Cell
+from arcgym.studies.curves import read_curves
+from arcgym.studies.table import cell_rows
 
 PANELS = (
     ("transitions", 1.0e-6, "transitions [million]", "success", "success in training"),

@@ -67,6 +67,9 @@ class Cell:
     like: str | None = None
     """Registered agent, where ``algorithm`` is a name of the study's own."""
 
+    suites: tuple[str, ...] = ()
+    """Suites whose trials the last policy runs, those of them that have the task."""
+
     @property
     def name(self) -> str:
         """Name of the cell, which is that of its folder."""
@@ -101,7 +104,7 @@ class Cell:
 
     def settings(self) -> dict[str, Any]:
         """Return what makes two cells the same run, as plain values."""
-        plain = {name: value for name, value in asdict(self).items() if name not in ("study", "evaluate")}
+        plain = {name: value for name, value in asdict(self).items() if name not in ("study", "evaluate", "suites")}
         return json.loads(json.dumps(plain))
 
     def command(self, device: str | None) -> list[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.rl.first_episodes import read_rows, write_rows
-from arcgym.rl.studies.cell import Cell
+from arcgym.studies.cell import Cell
 
 CURVES_FILE = "curves.csv"
 """A row an iteration of the cell."""

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Trials of a suite for the policies of a study: ``trials/<cell>/``, all seeds of a cell in one folder.
+"""Trials of suites for the policies of a study: ``trials/<suite>/<cell>/``, all seeds of a cell in one folder.
 
 Each is a run of ``arcgym evaluate`` with its condition file, and its folder is a result folder as of that command.
 """
@@ -14,14 +14,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from arcgym.evaluation.result_folder import RUN_FILE, SUMMARY_FILE, TRIALS_FILE
+from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.rl.checkpoint import file_sha256
-from arcgym.rl.studies.cell import LOG_FILE, Cell
+from arcgym.studies.cell import LOG_FILE, Cell
 
 FOLDER = "trials"
 """Folder of the result folders, in that of the study."""
-
-RUN_FILE, TRIALS_FILE, SUMMARY_FILE = "run.json", "trials.csv", "summary.md"
-"""What ``arcgym evaluate`` writes: what is run, a row a trial, and the summary when all have ended."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,7 @@ class SuiteTrials:
     @property
     def folder(self) -> Path:
         """Result folder."""
-        return self.cells[0].study / FOLDER / self.name
+        return self.cells[0].study / FOLDER / self.suite / self.name
 
     @property
     def log(self) -> Path:
@@ -85,13 +84,19 @@ def seeds_of(cells: Sequence[Cell]) -> dict[str, list[int]]:
     return {name: sorted(seeds) for name, seeds in found.items()}
 
 
-def trials_of(cell: Cell, suite: str, seeds: Sequence[int]) -> SuiteTrials:
-    """Return the trials that a cell takes part in, beside those with the other seeds."""
-    return SuiteTrials(suite, tuple(replace(cell, seed=seed) for seed in seeds))
+def trials_of(cell: Cell, seeds: Sequence[int]) -> list[SuiteTrials]:
+    """Return the trials that a cell takes part in, beside those with the other seeds: of its suites with its task."""
+    known, robot = read_suites(), cell.task.rpartition("-")[2]
+    own = tuple(replace(cell, seed=seed) for seed in seeds)
+    return [
+        SuiteTrials(suite, own)
+        for suite in cell.suites
+        if cell.task in {split_task(task)[0] for task in known[suite].tasks(robot)}
+    ]
 
 
-def all_trials(cells: Sequence[Cell], suite: str) -> list[SuiteTrials]:
+def all_trials(cells: Sequence[Cell]) -> list[SuiteTrials]:
     """Return the trials of all cells, each once."""
     seeds = seeds_of(cells)
     first = {cell.name_with(""): cell for cell in reversed(cells)}
-    return [trials_of(first[name], suite, seeds[name]) for name in seeds]
+    return [trials for name in seeds for trials in trials_of(first[name], seeds[name])]

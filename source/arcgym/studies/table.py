@@ -13,8 +13,8 @@ from typing import Any
 from arcgym.rl.evaluation import EPISODES_FILE, WITHOUT_RULES
 from arcgym.rl.first_episodes import read_rows, write_rows
 from arcgym.rl.run_folder import write_whole
-from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.curves import read_curves
+from arcgym.studies.cell import Cell
+from arcgym.studies.curves import read_curves
 
 MEANS = {
     "progress": "progress",

@@ -19,12 +19,12 @@ import yaml
 
 from arcgym.rl.agent_checks import check_installed
 from arcgym.rl.run_folder import write_whole
-from arcgym.rl.studies.cell import Cell
-from arcgym.rl.studies.grid import NAMED, is_left_out, make_cell, sweep_overrides
-from arcgym.rl.studies.run_cell import run_cell
-from arcgym.rl.studies.stopping import stopping_on_signals, was_stopped
-from arcgym.rl.studies.study_cfg import AXES, StudyCfg
-from arcgym.rl.studies.suite_trials import seeds_of
+from arcgym.studies.cell import Cell
+from arcgym.studies.grid import NAMED, is_left_out, make_cell, sweep_overrides
+from arcgym.studies.run_cell import run_cell
+from arcgym.studies.stopping import stopping_on_signals, was_stopped
+from arcgym.studies.study_cfg import AXES, StudyCfg
+from arcgym.studies.suite_trials import seeds_of
 from arcgym.utils.coerce import from_dict, to_plain
 from arcgym.utils.configclass import validate
 from arcgym.utils.errors import UsageError
