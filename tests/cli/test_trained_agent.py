@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.arguments import RunArguments
+from arcgym.cli.evaluate import _load
 from arcgym.cli.main import main
 from arcgym.cli.task import load_run_cfgs
 from arcgym.envs.mdp import rgb
@@ -52,6 +53,23 @@ def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -
     other, _, _ = load_run_cfgs(RunArguments(task="ARC-Sigmoid-Capsule", checkpoint=str(tmp_path / "model_0.pt")))
     assert other.observations.policy.terms["rgb_20"].delay_min_lag == 20
     assert other.observations.policy.rgb.history_length == 5
+
+
+def test_trials_are_drawn_by_the_task_however_the_training_drew(tmp_path: Path) -> None:
+    env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
+    own = tuple(env_cfg.events.friction.params["friction"])
+    env_cfg.events.friction.params["friction"] = (0.0, 0.01)
+    env_cfg.observations.policy.rgb.history_length = 3
+    agent_cfg = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
+    write_params(tmp_path, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    (tmp_path / "model_0.pt").write_bytes(b"")
+    played, _, _ = load_run_cfgs(RunArguments(task=TASK, checkpoint=str(tmp_path / "model_0.pt")))
+    judged, _ = _load(TASK, tmp_path / "model_0.pt", ())
+    assert tuple(played.events.friction.params["friction"]) == (0.0, 0.01)
+    assert tuple(judged.events.friction.params["friction"]) == own != (0.0, 0.01)
+    assert judged.observations.policy.rgb.history_length == 3
+    asked, _ = _load(TASK, tmp_path / "model_0.pt", ("env.events.friction.params.friction=[0.2,0.3]",))
+    assert tuple(asked.events.friction.params["friction"]) == (0.2, 0.3)
 
 
 def test_a_run_that_goes_on_from_a_checkpoint_says_which_agent_it_has(tmp_path: Path, monkeypatch) -> None:

@@ -179,13 +179,17 @@ def _check_tasks(tasks: list[str]) -> None:
 
 
 def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
-    """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top."""
+    """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top.
+
+    Events stay the task's: they draw the trials, which are the same for all agents, however a training drew its own.
+    """
     from arcgym.cli.arguments import RunArguments, TaskArguments
     from arcgym.cli.task import load_cfgs, load_run_cfgs
 
     if checkpoint is None:
         return load_cfgs(TaskArguments(task=task, overrides=list(overrides)))
     env_cfg, agent_cfg, _ = load_run_cfgs(
-        RunArguments(task=task, checkpoint=str(_checkpoint(str(checkpoint)).resolve()), overrides=list(overrides))
+        RunArguments(task=task, checkpoint=str(_checkpoint(str(checkpoint)).resolve()), overrides=list(overrides)),
+        as_registered=("events",),
     )
     return env_cfg, agent_cfg

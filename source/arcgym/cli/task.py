@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -56,11 +57,15 @@ def agent_names(task: str) -> list[str]:
     return sorted([*names, "ppo"] if DEFAULT_AGENT in cfg_keys(task) else names)
 
 
-def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
+def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tuple[Any, Any, Path]:
     """Return configurations as a run had them, changed by overrides and arguments, and the checkpoint of that run.
 
     Prints where they come from and what the command line changes. A run of another task gives the agent alone. With the
     path of a checkpoint and no agent named, the agent is the one that its run was trained with.
+
+    Args:
+        args: Task, checkpoint and overrides.
+        as_registered: Paths of the environment's configuration that stay as the task is registered, such as ``events``.
 
     Raises:
         UsageError: The task, an override, the checkpoint or the run's parameters are wrong.
@@ -88,7 +93,8 @@ def load_run_cfgs(args: RunArguments) -> tuple[Any, Any, Path]:
         task, trained = plain_task(args.task), plain_task(saved.task)
         if task == trained:
             plain, _ = _registered(task, args.agent)
-            restore(env_cfg, saved.env, "env", keep=list(differences(to_plain(plain), to_plain(env_cfg))))
+            kept = [*differences(to_plain(plain), to_plain(env_cfg)), *as_registered]
+            restore(env_cfg, saved.env, "env", keep=kept)
             print(f"params: {saved.folder}")
         else:
             restore(env_cfg, _further_terms(saved.env, agent_cfg), "env")
