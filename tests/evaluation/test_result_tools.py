@@ -188,6 +188,24 @@ def test_what_is_the_agents_own_is_no_reason_to_refuse(tmp_path: Path) -> None:
     assert problems(result(tmp_path / "mine", run=run)) == []
 
 
+def test_a_setting_that_a_policy_brings_along_may_be_put_back(tmp_path: Path) -> None:
+    """The reach of the contact search was 3 when it was trained, and the task's is 12."""
+    back, brought = "env.sim.contact.search_reach=12", changed(TASKS[0], **{"sim.contact.search_reach": [12, 3]})
+    assert problems(result(tmp_path / "back", run={**RUN, "overrides": [back]})) == []
+    (found,) = problems(result(tmp_path / "brought", run=brought))
+    assert found == f"{TASKS[0]} was run with sim.contact.search_reach = 3, which changes the task (12)"
+    (found,) = problems(result(tmp_path / "other", run={**RUN, "overrides": ["env.sim.contact.search_reach=3"]}))
+    assert "change the task" in found
+
+
+def test_a_setting_of_the_suite_may_not_be_put_back(tmp_path: Path) -> None:
+    suite = read_suites()["left_colon_in_situ"]
+    run = {**RUN, "suite": "left_colon_in_situ", "changes": {suite.tasks("Magnetic")[0]: {}}}
+    for override, refused in ("env.scene.colon.material=paper", True), ("env.sim.contact.search_reach=12", False):
+        folder = ResultFolder(tmp_path / override.rpartition(".")[2], {**run, "overrides": [override]})
+        assert any("change the task" in line for line in problems(folder.path)) == refused
+
+
 def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
     """A new effect of the environment is part of the task until it is said to be the agent's."""
     from arcgym.utils.coerce import to_plain

@@ -43,7 +43,6 @@ def switches(cfg: Any) -> list[bool]:
         colon.abdomen.enabled,
         colon.mesentery.enabled,
         sim.loops.enabled,
-        sim.contact.search_reach == 12,
         camera.latency == 0.08,
         camera.exposure.shutter == (1 / 200, 1 / 60) and camera.exposure.lag == 0.6,
         camera.lighting.concentration == 2.77 and camera.lighting.lamp is not None and camera.exposure.gamma == 2.2,

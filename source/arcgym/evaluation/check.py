@@ -76,7 +76,8 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
     found += _seen_in_training(run, str(run.get("suite")))
-    more = [text for text in run.get("overrides", []) if text not in suite.overrides and not text.startswith("agent.")]
+    given = [text for text in run.get("overrides", []) if text not in suite.overrides and not text.startswith("agent.")]
+    more = [text for text in given if not _is_as_registered(text, list(run.get("changes", {})), suite)]
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
     for task, changes in run.get("changes", {}).items():
@@ -94,6 +95,24 @@ def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
     if conditions.name == suite.conditions:
         return []
     return [f"trials are of {conditions.name}, an earlier version of {suite.conditions}: evaluate again"]
+
+
+def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool:
+    """Return whether an override, ``env.path=value``, gives a field that the suite leaves alone its registered value.
+
+    A policy brings along the settings of its training, and needs it where a default has changed since then.
+    """
+    from arcgym.utils.registry import load_cfg_from_registry
+
+    path, _, value = override.removeprefix("env.").partition("=")
+    for task in tasks:
+        found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
+        for name in path.split("."):
+            found = getattr(found, name, "")
+        of_suite = [text.removeprefix("env.").partition("=")[0] for text in suite.overrides_of(task)]
+        if path in of_suite or str(found).lower() != value.lower():
+            return False
+    return bool(tasks)
 
 
 def _is_of_nothing(task: str, path: str, changed: set[str]) -> bool:

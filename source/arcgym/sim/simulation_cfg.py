@@ -69,9 +69,12 @@ class ContactCfg:
     search_gap: float = 0.001
     """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
     that link and wall close in one physics step."""
-    search_reach: int = 3
-    """Rings on either side of a link's own whose faces may touch it from outside, too: a link that was pushed into the
-    wall there is pushed back. Elsewhere faces touch a link from the lumen alone."""
+    search_reach: int = 12
+    """Rings on either side of a link's own, 13 cm at rest in a colon of the usual length, whose faces hold it off from
+    outside, too: a link that was pushed into the wall there is pushed back, and so is the wall of a hairpin's other
+    limb where it has come through the link's own. Faces farther along the colon touch a link from the lumen alone, so
+    that a loop beside the tube is not taken for its wall. Raise it where rings lie much nearer together than 1 cm;
+    with 3, the default once, the other limb came through to a link's axis."""
     capacity: int = 24
     """Contacts kept a link, on average over the links of a world, which share them. A link that a gathered wall lies
     around has up to 50, a link outside the anus none; 45 links in gathered tissue had 1143 altogether. Contacts that

@@ -10,10 +10,7 @@ from arcgym.envs import mdp
 from arcgym.managers import EventTermCfg
 from arcgym.utils.validation import FieldError
 
-PHYSICS = (
-    *("tissue", "relaxation", "gas", "tension", "weight", "scope", "friction", "abdomen", "mesentery", "loops"),
-    "hairpins",
-)
+PHYSICS = ("tissue", "relaxation", "gas", "tension", "weight", "scope", "friction", "abdomen", "mesentery", "loops")
 """Effects on what is simulated."""
 CAMERA = ("latency", "exposure", "light", "preparation")
 """Effects on what the camera sees."""
@@ -34,9 +31,6 @@ PLAY, LAG = 0.26, 0.05
 """Play of the wheels [rad] and lag of the bending section [s]; choices, see ``BendingDriveCfg``."""
 FRICTION, STATIC_FRICTION = 0.12, 1.4
 """Friction on human mucosa (Watanabe 2024), and that at rest over it (a choice)."""
-HAIRPIN_REACH = 12
-"""Rings on either side of a link's own, 11 to 13 cm, whose walls hold it off from outside, too: soft tissue is drawn to
-hairpins, and the wall of the other limb, which may come through the link's own, else reaches the link's axis."""
 LATENCY = 0.08
 """Age of a picture when it is seen [s]; of robots' video chains 62 ms were measured, and 147 through a computer."""
 SHUTTER, EXPOSURE_LAG = (1.0 / 200.0, 1.0 / 60.0), 0.6
@@ -143,10 +137,6 @@ def _loops(cfg: Any) -> None:
     cfg.sim.loops.enabled = True
 
 
-def _hairpins(cfg: Any) -> None:
-    _where_default(cfg.sim.contact, "search_reach", type(cfg.sim.contact)().search_reach, HAIRPIN_REACH)
-
-
 def _latency(cfg: Any) -> None:
     _where_default(cfg.scene.camera, "latency", 0.0, LATENCY)
 
@@ -188,7 +178,6 @@ _SWITCHES = {
     "abdomen": _abdomen,
     "mesentery": _mesentery,
     "loops": _loops,
-    "hairpins": _hairpins,
     "latency": _latency,
     "exposure": _exposure,
     "light": _light,
