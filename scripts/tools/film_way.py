@@ -7,7 +7,8 @@
         env.scene.colon.usd_path=ct_1 env.scene.endoscope.length=2.4
 
 Each state is held for a control step without commands, so that the forces drawn are those of that place: the worlds of
-a drive take over from one another, and what lies between two frames is not one episode.
+a drive take over from one another, and what lies between two frames is not one episode. With ``--held 4`` the robot's
+own expert goes on from the last state for 4 s, an episode of its own: what holds a scope that does not get on.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,8 @@ from make_gallery import shrink
 
 FPS = 4.0
 """States shown in a second."""
+EVERY = 2
+"""Control steps from one frame to the next where the expert goes on."""
 
 
 def main() -> int:
@@ -33,6 +37,7 @@ def main() -> int:
     parser.add_argument("way", type=Path, help="folder of the states")
     parser.add_argument("film", type=Path, help="file to write, .mp4")
     parser.add_argument("--task", required=True, help="task of the robot")
+    parser.add_argument("--held", type=float, default=0.0, help="time that the expert goes on from the last state [s]")
     parser.add_argument("--device", default="cpu", help="device of the run")
     args, overrides = parser.parse_known_args()
     from arcgym.benchmarks.experts.ways import read_way
@@ -47,6 +52,8 @@ def main() -> int:
         with VideoRecorder(raw, FPS) as video:
             for state in states.values():
                 video.write(picture(env, state))
+            for frame in going_on(env, args.held):
+                video.write(frame)
         env.close()
         shrink(raw, args.film, 1, FPS)
     print(f"{args.film}: {len(states)} states, {args.film.stat().st_size / 1e3:.0f} kB")
@@ -54,7 +61,7 @@ def main() -> int:
 
 
 def environment(task: str, device: str, overrides: list[str]) -> Any:
-    """Return one world of a task that begins at rest and whose episodes do not end."""
+    """Return one world of a task that begins at rest, in the tissue as configured, and whose episodes do not end."""
     import gymnasium as gym
 
     from arcgym.benchmarks.worlds import load_env_cfg
@@ -63,6 +70,8 @@ def environment(task: str, device: str, overrides: list[str]) -> Any:
     cfg = load_env_cfg(task, words, 0, device=device)
     for name in vars(cfg.terminations):
         setattr(cfg.terminations, name, None)
+    for name in ("aim", "stiffness", "friction"):  # drawn anew for every episode, and no part of the states
+        setattr(cfg.events, name, None)
     env: Any = gym.make(task, cfg=cfg, render_mode="rgb_array").unwrapped
     env.reset()
     return env
@@ -76,6 +85,17 @@ def picture(env: Any, state: Any) -> Any:
     sim.forward()
     env.step(torch.zeros(1, env.action_manager.total_action_dim, device=sim.device))
     return env.render()
+
+
+def going_on(env: Any, seconds: float) -> Iterator[Any]:
+    """Yield pictures of the robot's own expert, which goes on from the state that the environment is in."""
+    from arcgym.rl.expert_policy import ExpertPolicy
+
+    policy = ExpertPolicy(env)
+    for step in range(round(seconds / env.step_dt)):
+        env.step(policy())
+        if step % EVERY == EVERY - 1:
+            yield env.render()
 
 
 if __name__ == "__main__":

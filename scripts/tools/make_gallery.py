@@ -6,7 +6,8 @@
     python scripts/tools/make_gallery.py --processes 4
     python scripts/tools/make_gallery.py --only sigmoid_magnetic
 
-Videos are half the size of those that ``arcgym play`` writes. A scene whose run fails is listed, the others go on.
+A scene with a ``way`` is filmed from the states in that folder, which its command ``before`` has kept. Videos are half
+the size of those that ``arcgym play`` writes. A scene whose run fails is listed, the others go on.
 """
 
 from __future__ import annotations
@@ -64,7 +65,10 @@ def film(scene: Scene, device: str) -> str | None:
         if result.returncode or not videos:
             print(f"{scene['name']}: {(result.stdout + result.stderr).strip()[-600:]}", flush=True)
             return str(scene["name"])
-        shrink(videos[0], video_of(scene), 1 if "recording" in scene else scene.get("every", 1))
+        if "way" in scene:  # made small by its tool
+            video_of(scene).write_bytes(videos[0].read_bytes())
+        else:
+            shrink(videos[0], video_of(scene), 1 if "recording" in scene else scene.get("every", 1))
         video_of(scene).with_suffix(".json").write_text(json.dumps(record(result.stdout, device), indent=1) + "\n")
     print(f"{scene['name']}: {video_of(scene).stat().st_size / 1e6:.1f} MB", flush=True)
     return None
@@ -72,6 +76,10 @@ def film(scene: Scene, device: str) -> str | None:
 
 def command(scene: Scene, device: str, root: Path = Path()) -> list[str]:
     """Return the command line that plays a scene, with files below a folder."""
+    if "way" in scene:
+        words = [str(root / "scripts/tools/film_way.py"), str(root / scene["way"]), f"{scene['name']}.mp4"]
+        words += ["--held", str(scene["held"])] if "held" in scene else []
+        return [sys.executable, *words, "--task", scene["task"], *scene.get("overrides", [])]
     if "recording" in scene:
         file = str(root / scene["recording"])
         words = ["replay", file, "--video", f"{scene['name']}.mp4", "--every", str(scene.get("every", 1))]
@@ -130,11 +138,12 @@ def outcome(figures: dict[str, Any]) -> str:
 def entry(scene: Scene) -> str:
     """Return one scene's part of the page."""
     made = json.loads(video_of(scene).with_suffix(".json").read_text())
-    said = " ".join(["arcgym", *command(scene, made["device"])[3:]])
+    words = command(scene, made["device"])
+    said = " ".join(["python", *words[1:]] if "way" in scene else ["arcgym", *words[3:]])
     file = f"_static/videos/{scene['name']}.mp4"
     tag = f'<video controls loop muted preload="metadata" width="100%" src="{file}"></video>'
     commit = made["versions"].get("arcgym commit", "unknown")[:7]
-    when = f"Filmed on {made['day']}, commit {commit}.{outcome(made['figures'])}"
+    when = f"Filmed on {made['day']}, commit {commit}{scene.get('note', '')}.{outcome(made['figures'])}"
     shown = f"```{{raw}} html\n{tag}\n```\n\n{when} [{scene['name']}.mp4]({file})"
     first = f"{scene['before']}\n" if "before" in scene else ""
     return f"\n## {scene['title']}\n\n{shown}\n\n```bash\n{first}{said}\n```\n"
