@@ -13,7 +13,7 @@ from arcgym.sim.coupling.two_level_coupling import TwoLevelCoupling
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.beside import Beside
 from arcgym.utils.cpu_threads import Pace, cpu_threads
-from arcgym.utils.stages import Stages
+from arcgym.utils.stages import Stages, at_the_same_time
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -53,17 +53,24 @@ class PhysicsStep:
 
     def _launch(self) -> None:
         coupling = self._sim.coupling
-        if isinstance(coupling, TwoLevelCoupling) and self._beside.on_gpu:
-            coupling.move()
+        if not isinstance(coupling, TwoLevelCoupling):
+            coupling.step()
+            self._sim.scope_readout.collect()
+            self._read_wall()
+            return
+        coupling.move()
+        if self._beside.on_gpu:
             with self._beside.work():
                 self._read_wall()
-            coupling.finish_contacts()
-            self._sim.scope_readout.collect()
+            self._finish_contacts(coupling)
             self._beside.join()
             return
-        coupling.step()
+        at_the_same_time(functools.partial(self._finish_contacts, coupling), self._read_wall)
+
+    def _finish_contacts(self, coupling: TwoLevelCoupling) -> None:
+        """End what concerns scope and contacts; the wall is read, as by :meth:`_read_wall`."""
+        coupling.finish_contacts()
         self._sim.scope_readout.collect()
-        self._read_wall()
 
     def _read_wall(self) -> None:
         sim = self._sim

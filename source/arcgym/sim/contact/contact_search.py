@@ -31,7 +31,7 @@ MAX_RING_SHIFT = 4
 
 
 SPHERE_SLACK = 1.0e-4
-"""How far the wall may move until a GPU encloses its faces anew [m]: the spheres around them are larger by as much."""
+"""How far the wall may move until its faces are enclosed anew [m]: the spheres around them are larger by as much."""
 
 
 class ContactSearch:
@@ -95,7 +95,7 @@ class ContactSearch:
         self.bounds.patch_of_world = wp.zeros((worlds, patches), dtype=wp.vec4, device=device)
         self._beside = Beside(device)
         rings_apart = np.ptp(vertex_ring[topology.faces], axis=1).max() if carried is None else 1
-        self._follows = wp.get_device(device).is_cuda and rings_apart <= 1
+        self._follows = rings_apart <= 1
         if self._follows:
             self._place = wp.full((self.vertex_count, num_envs), lumen_kernels.FAR, dtype=wp.vec3, device=device)
             self._moved = wp.ones((self.ring_count, num_envs), dtype=int, device=device)
@@ -286,7 +286,6 @@ class ContactSearch:
 
     def _find(self, body_q: wp.array) -> None:
         """Find the patches near each link."""
-        links = (self.num_envs, self.link_count)
         of_links = [body_q, self.links, self.surface, self.bounds, self.law]
         if self.device != "cpu":
             threads = self.records.threads
@@ -301,9 +300,9 @@ class ContactSearch:
                 block_dim=threads,
             )
             return
-        self._launch(kernels.count_patches, links, [*of_links, self.ring_distance], [self.candidates])
         outputs = [self.candidates, self.records.dropped]
-        self._launch(kernels.list_patches, links, [*of_links, self.ring], outputs)
+        inputs = [*of_links, self.ring, self.ring_distance]
+        self._launch(kernels.list_patches, (self.num_envs,), inputs, outputs)
 
     def _record(self, x: wp.array, points: wp.array, body_q: wp.array) -> None:
         """Record the faces near each link, and what friction held where it touched the same face before."""
@@ -340,5 +339,5 @@ class ContactSearch:
             block_dim=records.threads,
         )
 
-    def _launch(self, kernel: wp.Kernel, shape: tuple[int, int], inputs: list[object], outputs: list[object]) -> None:
+    def _launch(self, kernel: wp.Kernel, shape: tuple[int, ...], inputs: list[object], outputs: list[object]) -> None:
         wp.launch(kernel, shape, inputs=inputs, outputs=outputs, device=self.device, block_dim=GPU_BLOCK)

@@ -15,6 +15,7 @@ from arcgym.sim.geometry_kernels import segment_parameter, segment_triangle, tri
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.block_queue_kernels import clear_queue, queue_entry, queue_length, queued, wait_for_block
 from arcgym.utils.block_store_kernels import store_points, stored_point
+from arcgym.utils.on_cpu_kernels import on_cpu
 
 
 @wp.struct
@@ -83,6 +84,21 @@ def slab_reached(a: wp.vec3, b: wp.vec3, c: wp.vec3, axis: wp.vec3, limit: float
     return wp.min(one, wp.min(two, three)) <= reach and wp.max(one, wp.max(two, three)) >= -reach
 
 
+@wp.func
+def beyond_reach(a: wp.vec3, b: wp.vec3, c: wp.vec3, axis: wp.vec3, limit: float) -> bool:
+    """Return whether triangle ``abc`` is all farther than ``limit`` from the segment from ``-axis`` to ``axis``.
+
+    Told by the plane across the way from the segment to the triangle's middle, if it lies between them; a two
+    thousandth farther, so that rounding rejects nothing that is near.
+    """
+    middle = (a + b + c) / 3.0
+    t = wp.clamp(wp.dot(middle, axis) / wp.max(wp.length_sq(axis), 1.0e-12), -1.0, 1.0)
+    away = middle - t * axis
+    nearest = wp.min(wp.dot(away, a), wp.min(wp.dot(away, b), wp.dot(away, c)))
+    gap = nearest - wp.abs(wp.dot(away, axis))
+    return gap > 0.0 and gap * gap > 1.001 * limit * limit * wp.length_sq(away)
+
+
 @wp.struct
 class LinkReach:
     """Axis of a link and how far its contacts reach."""
@@ -102,7 +118,10 @@ def face_corner(surface: LumenSurface, face: int, k: int, x: wp.array2d[wp.vec3]
 def face_may_be_near(
     surface: LumenSurface, face: int, x: wp.array2d[wp.vec3], w: int, link: LinkReach, both_sides: bool
 ) -> bool:
-    """Return whether a face may have a :func:`face_distance` from the link, by quick tests of its plane and extent."""
+    """Return whether a face may have a :func:`face_distance` from the link, by quick tests of its plane and extent.
+
+    On a CPU one test more spares three quarters of the distances that are measured in vain.
+    """
     a = face_corner(surface, face, 0, x, w, link.center)
     b = face_corner(surface, face, 1, x, w, link.center)
     c = face_corner(surface, face, 2, x, w, link.center)
@@ -110,7 +129,9 @@ def face_may_be_near(
     behind = wp.dot(normal, a) + wp.abs(wp.dot(normal, link.axis)) <= 0.0
     if behind and not both_sides:
         return False
-    return plane_reached(a, normal, link.axis, link.limit) and slab_reached(a, b, c, link.axis, link.limit)
+    if not plane_reached(a, normal, link.axis, link.limit) or not slab_reached(a, b, c, link.axis, link.limit):
+        return False
+    return not (on_cpu() and beyond_reach(a, b, c, link.axis, link.limit))
 
 
 @wp.func
@@ -147,46 +168,11 @@ def sum_before(counts: wp.array2d[int], w: int, link: int) -> int:
     return total
 
 
-@wp.kernel
-def count_patches(
-    body_q: wp.array[wp.transform],
-    links: LinkShapes,
-    surface: LumenSurface,
-    bounds: Bounds,
-    law: ContactLaw,
-    ring_distance: wp.array2d[float],
-    candidates: Candidates,
-):
-    """Count the patches near each link, wherever along the colon they are. Launch (W, L).
-
-    Args:
-        body_q: Link poses, shape (W*L,).
-        links: Capsules of one world.
-        surface: Inner faces of one world.
-        bounds: Spheres around rings and patches.
-        law: Contact law.
-        ring_distance: Distance from the center of the link's ring, FAR for links outside the anus [m], shape (W, L).
-        candidates: ``patches`` and ``rings`` are written.
-    """
-    w, link = wp.tid()
-    n = int(0)
-    first = int(0)
-    last = int(0)
-    if ring_distance[w, link] < FAR:
-        row = w * ring_distance.shape[1] + link
-        center = wp.transform_get_translation(body_q[row])
-        axis = link_axis(body_q, row, links.half_length[link])
-        limit = links.radius[link] + law.wall_radius + law.search_gap
-        for r in range(bounds.ring.shape[0]):
-            if sphere_reached(bounds.ring[r, w], center, axis, limit):
-                if last == 0:
-                    first = r
-                last = r + 1
-                for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if sphere_reached(bounds.patch[p, w], center, axis, limit):
-                        n += 1
-    candidates.rings[w, link] = wp.vec2i(first, last)
-    candidates.patches[w, link] = n
+@wp.func
+def surely_beyond(sphere: wp.vec4, center: wp.vec3, half_length: float, limit: float) -> bool:
+    """Return whether a sphere is so far from ``center`` that it is not :func:`sphere_reached`, whatever the axis."""
+    reach = half_length + limit + sphere[3]
+    return wp.length_sq(wp.vec3(sphere[0], sphere[1], sphere[2]) - center) > 1.001 * reach * reach
 
 
 @wp.kernel
@@ -197,10 +183,11 @@ def list_patches(
     bounds: Bounds,
     law: ContactLaw,
     ring: wp.array2d[int],
+    ring_distance: wp.array2d[float],
     candidates: Candidates,
     dropped: wp.array[int],
 ):
-    """List the patches near each link, in ascending order. Launch (W, L).
+    """List the patches near each link, wherever along the colon they are, in ascending order. Launch (W,).
 
     Args:
         body_q: Link poses, shape (W*L,).
@@ -209,33 +196,38 @@ def list_patches(
         bounds: Spheres around rings and patches.
         law: Contact law.
         ring: Ring of each link, shape (W, L).
-        candidates: ``start``, ``link`` and ``patch`` are written.
+        ring_distance: Distance from the center of the link's ring, FAR for links outside the anus [m], shape (W, L).
+        candidates: ``patches``, ``rings``, ``start``, ``link`` and ``patch`` are written.
         dropped: Contacts that found no room, shape (W,); the faces of patches that found none are added to it.
     """
-    w, link = wp.tid()
-    wanted = candidates.patches[w, link]
-    before = sum_before(candidates.patches, w, link)
-    k = wp.min(before, candidates.capacity)
-    end = wp.min(before + wanted, candidates.capacity)
-    candidates.start[w, link] = k
-    if link == ring.shape[1] - 1:
-        candidates.start[w, link + 1] = end
-        if before + wanted > end:
-            wp.atomic_add(dropped, w, (before + wanted - end) * candidates.patch_faces)
-    if k < end:
-        row = w * ring.shape[1] + link
-        center = wp.transform_get_translation(body_q[row])
-        axis = link_axis(body_q, row, links.half_length[link])
-        limit = links.radius[link] + law.wall_radius + law.search_gap
-        rings = candidates.rings[w, link]
-        for r in range(rings[0], rings[1]):
-            if sphere_reached(bounds.ring[r, w], center, axis, limit):
-                both_sides = int(wp.abs(r - ring[w, link]) <= surface.reach)
-                for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
-                    if k < end and sphere_reached(bounds.patch[p, w], center, axis, limit):
-                        candidates.link[w, k] = link
-                        candidates.patch[w, k] = 2 * p + both_sides
-                        k += 1
+    w = wp.tid()
+    wanted = int(0)
+    for link in range(ring.shape[1]):
+        before = int(wanted)
+        rings = wp.vec2i(0, 0)
+        if ring_distance[w, link] < FAR:
+            row = w * ring.shape[1] + link
+            center = wp.transform_get_translation(body_q[row])
+            axis = link_axis(body_q, row, links.half_length[link])
+            limit = links.radius[link] + law.wall_radius + law.search_gap
+            for r in range(bounds.ring.shape[0]):
+                around = bounds.ring[r, w]
+                if not surely_beyond(around, center, links.half_length[link], limit):
+                    if sphere_reached(around, center, axis, limit):
+                        rings = wp.vec2i(wp.where(rings[1] == 0, r, rings[0]), r + 1)
+                        both_sides = int(wp.abs(r - ring[w, link]) <= surface.reach)
+                        for p in range(surface.ring_patch[r], surface.ring_patch[r + 1]):
+                            if sphere_reached(bounds.patch[p, w], center, axis, limit):
+                                if wanted < candidates.capacity:
+                                    candidates.link[w, wanted] = link
+                                    candidates.patch[w, wanted] = 2 * p + both_sides
+                                wanted += 1
+        candidates.rings[w, link] = rings
+        candidates.patches[w, link] = wanted - before
+        candidates.start[w, link] = wp.min(before, candidates.capacity)
+    end = wp.min(wanted, candidates.capacity)
+    candidates.start[w, ring.shape[1]] = end
+    dropped[w] = dropped[w] + (wanted - end) * candidates.patch_faces
 
 
 @wp.func

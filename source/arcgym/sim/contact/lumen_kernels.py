@@ -84,15 +84,15 @@ def follow_rings(
     r, w = wp.tid()
     n = surface.rings.shape[1]
     total = wp.vec3(0.0)
-    farthest = float(0.0)
+    stays = bool(True)
     for k in range(n):
         i = surface.rings[r, k]
         here = x[i, w]
         total += here
-        farthest = wp.max(farthest, wp.length_sq(here - place[i, w]))
+        stays = stays and wp.length_sq(here - place[i, w]) <= slack * slack  # not of places that are no numbers
     centers[w, r] = total / float(n)
-    moved[r, w] = int(farthest > slack * slack)
-    if farthest > slack * slack:
+    moved[r, w] = int(not stays)
+    if not stays:
         for k in range(n):
             i = surface.rings[r, k]
             place[i, w] = x[i, w]

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Patches near each link on a GPU: what ``count_patches`` and ``list_patches`` do, by a warp a link.
+"""Patches near each link on a GPU: what ``list_patches`` does, by a warp a link.
 
 One thread a link leaves most of a GPU idle, and each waits for the spheres of all rings, one after the other. The
 threads of a warp test as many spheres at a time; their votes tell where each has to write.

@@ -80,11 +80,12 @@ class TwoLevelCoupling:
 
     def move_scope(self) -> None:
         """Find the contacts and advance the scope by a physics step."""
+        sim, contact = self.sim, self.sim.contact
         if self._scope_stream is None:
             self.find_contacts()
+            sim.wall.begin_contacts(sim.nodal_pos, contact, self.body_q_prev)
             self._move_scope()
             return
-        sim, contact = self.sim, self.sim.contact
         wp.copy(self.body_q_prev, sim.state.body_q)
         contact.follow(sim.nodal_pos, sim.state.body_q)
         with self._drives.work():

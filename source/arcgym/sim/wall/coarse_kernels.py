@@ -25,6 +25,7 @@ from arcgym.sim.wall.row_store_kernels import store_row, store_row_if
 from arcgym.sim.wall.wall_kernels import MeasuredContacts, Tissue
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.math_kernels import clamp_length
+from arcgym.utils.on_cpu_kernels import on_cpu
 from arcgym.utils.warp_setup import FAST
 
 
@@ -146,6 +147,27 @@ def measure_fields(rings: Rings, records: ContactRecords, measured: MeasuredCont
         slot += records.threads
 
 
+@wp.kernel
+def list_touching(records: ContactRecords, measured: MeasuredContacts):
+    """Leave in the lists by ring what touches alone, in ascending order, for the equations of the rings. Launch (W,).
+
+    Args:
+        records: Contacts; ``ring_head`` and ``ring_next`` are written.
+        measured: The same, measured.
+    """
+    w = wp.tid()
+    first = w * records.capacity
+    count = records.start[w, records.start.shape[1] - 1]
+    for k in range(count):
+        records.ring_head[records.ring[first + k], w] = -1
+    for k in range(count):
+        slot = first + count - 1 - k
+        if measured.stiffness[slot][0] > 0.0:
+            r = records.ring[slot]
+            records.ring_next[slot] = records.ring_head[r, w]
+            records.ring_head[r, w] = slot
+
+
 @wp.func
 def anchor_row(
     rings: Rings, loads: RingLoads, shift: wp.vec3, r: int, field: wp.vec3, along: wp.vec3, p: int
@@ -187,6 +209,32 @@ def self_contact_row(
                 fields = ring_fields(rings, v, rings.patient[w])
                 out = add_share(out, fields, (stiffness * wp.dot(fields, field) * wp.dot(n, along)) * n)
     return out
+
+
+@wp.kernel
+def sum_forces(
+    first: int,
+    force: wp.array2d[wp.vec3],
+    rings: Rings,
+    loads: RingLoads,
+    tissue: Tissue,
+    rhs: wp.array3d[float],
+):
+    """Sum up the force on each unknown of a ring, on a CPU, which has all of them at hand. Launch (R, W).
+
+    Arguments as of ``assemble``.
+    """
+    r, w = wp.tid()
+    r += first
+    p = rings.patient[w]
+    total = Unknowns()
+    if rings.moves[r, p] == 1 and tissue.rigid[w] == 0:
+        for j in range(loads.members.shape[1]):
+            v = wp.max(loads.members[r, j], 0)
+            fields = float(loads.members[r, j] >= 0) * ring_fields(rings, v, p)
+            total = add_share(total, fields, force[v, w])
+    for a in range(MODES):
+        rhs[r, w, a] = total[a]
 
 
 @wp.func
@@ -243,7 +291,7 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
             kept: Rows of which only the right-hand side is written, if ``keeps``.
             diagonal: Blocks of the rings [N/m], shape (R, W, M, M); written.
             upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
-            rhs: Force on each unknown [N], shape (R, W, M); written.
+            rhs: Force on each unknown [N], shape (R, W, M); written, on a CPU by ``sum_forces``.
         """
         r, w, a = wp.tid()
         r += first
@@ -279,7 +327,7 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
                     own_row[i] = own_row[i] * (1.0 + regularisation) + 1.0e-6
             if self_contact.in_contact[r, w] == 1:
                 own_row += self_contact_row(rings, loads, self_contact, r, field, along, w)
-        if free:
+        if free and not on_cpu():
             for j in range(loads.members.shape[1]):
                 v = loads.members[r, j]
                 fields = ring_fields(rings, wp.max(v, 0), p)
@@ -309,7 +357,8 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
         if not free:
             for i in range(MODES):
                 own_row[i] = wp.where(i == a, 1.0, 0.0)
-        rhs[r, w, a] = total
+        if not on_cpu():
+            rhs[r, w, a] = total
         if wp.static(keeps):
             store_row_if(diagonal, r, w, a, own_row, r < light)
             store_row_if(upper, r, w, a, next_row, r < light - 1)

@@ -123,7 +123,8 @@ class WallSolver:
         self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
         self.bands = wp.zeros((self.ring_count, ENTRIES, ENTRIES, num_envs), dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
-        self.on_gpu = wp.get_device(device).is_cuda
+        self._on_cpu = wp.get_device(device).is_cpu
+        self.on_gpu = not self._on_cpu
         """Whether contacts are packed, see :mod:`.packed_contact_kernels`."""
         self.packed = wp.zeros(FOURS * contact_slots if self.on_gpu else 1, dtype=wp.vec4, device=device)
         """The packed contacts."""
@@ -351,13 +352,15 @@ class WallSolver:
         measured = self.measured
         measure = packed_contact_kernels.measure_packed if self.on_gpu else wall_kernels.measure_contacts
         self._launch(measure, shape, [contacts, x], [measured])
+        if self.cfg.coarse_correction and self._on_cpu:
+            self._launch(coarse_kernels.list_touching, (self.num_envs,), [contacts.records], [measured])
         inputs = [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x]
         self._launch_rows(self._kernels.residual, x.shape, inputs, [force])
 
     def _correct_rings(self, start: wp.array, x: wp.array, contacts: wall_kernels.WallContacts, repeat: int) -> None:
         """Solve for the modes of all rings and move every vertex with its ring, from ``start`` to ``x``."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
-        if self.surroundings is None and self.gas_rings is None and wp.get_device(self.device).is_cpu:
+        if self.surroundings is None and self.gas_rings is None and self._on_cpu:
             in_sequence(self.ring_count, lambda *rows: self._assemble(contacts, *rows), system.eliminate)
             system.substitute()
         else:
@@ -380,6 +383,9 @@ class WallSolver:
     def _assemble(self, contacts: wall_kernels.WallContacts, first: int, rows: int) -> None:
         """Write some rows of the rings' equations."""
         system = self.ring_system
+        if self._on_cpu:
+            inputs = [first, self.force, self.rings, self.loads, self.tissue]
+            self._launch(coarse_kernels.sum_forces, (rows, self.num_envs), inputs, [system.rhs])
         inputs = [first, self.force, self.rings, self.loads, self.bands, self.shift, self.tissue, 1.0 / self.dt**2]
         kernel, kept = coarse_kernels.assemble, KeptRows()
         if self.kept is not None:
