@@ -6,6 +6,7 @@
 import numpy as np
 import pytest
 
+from arcgym.sim.contact.contact_search_kernels import beyond_reach
 from arcgym.sim.geometry_kernels import closest_on_triangle, segment_parameter, segment_segment, segment_triangle
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
@@ -78,3 +79,23 @@ def test_parallel_segments_stay_within_their_ends() -> None:
 )
 def test_touch_of_a_segment_with_a_triangle(p: tuple, q: tuple, expected: tuple) -> None:
     np.testing.assert_allclose(measured(p, q)[2], expected, atol=1e-6)
+
+
+@wp.kernel
+def reach_triangles(corners: wp.array2d[wp.vec3], axis: wp.vec3, limit: float, out: wp.array[wp.vec2]):
+    k = wp.tid()
+    a, b, c = corners[k, 0], corners[k, 1], corners[k, 2]
+    distance = segment_triangle(-axis, axis, a, b, c)[3]
+    out[k] = wp.vec2(distance, float(beyond_reach(a, b, c, axis, limit)))
+
+
+def test_what_is_beyond_reach_is_no_contact() -> None:
+    """Triangles of 8 mm, up to 3 cm from a link of 12.5 mm: most of those beyond 9 mm are told at once."""
+    rng, limit = np.random.default_rng(3), 0.009
+    corners = rng.uniform(-0.03, 0.03, (20000, 1, 3)) + rng.uniform(-0.004, 0.004, (20000, 3, 3))
+    out = wp.zeros(len(corners), dtype=wp.vec2, device="cpu")
+    inputs = [wp.array(corners, dtype=wp.vec3, device="cpu"), wp.vec3(0.0, 0.0, 0.00625), limit]
+    wp.launch(reach_triangles, len(corners), inputs=inputs, outputs=[out], device="cpu")
+    distance, beyond = out.numpy().T
+    assert distance[beyond > 0.0].min() >= limit
+    assert (beyond[distance > limit] > 0.0).mean() > 0.95

@@ -145,13 +145,16 @@ def test_a_shell_is_measured_as_ever(tiny_sim: TinySim) -> None:
     x = wp.to_torch(sim.nodal_pos)
     x += 1.0e-3 * (torch.rand(x.shape, generator=generator) - 0.5)
     found = []
-    for kernels in (shell_kernels, shell_measure_cuda_kernels):
-        shell.kernels = kernels
+    for kernels, in_lanes in ((shell_kernels, False), (shell_measure_cuda_kernels, False), (shell_kernels, True)):
+        shell.kernels, shell.in_lanes = kernels, in_lanes
         shell.measure(sim.nodal_pos, sim.wall.tissue)
         names = ("angle_change", "moment", "scaled_normal", "corner_force")
         found.append([getattr(shell.data, name).numpy().copy() for name in names])
-    for one, other in zip(*found, strict=True):
-        np.testing.assert_allclose(other, one, rtol=0.0, atol=1.0e-5 * np.abs(one).max())
+        for array in (getattr(shell.data, name) for name in names):
+            array.fill_(7.0)
+    for one, other, lanes in zip(*found, strict=True):
+        for that in (other, lanes):
+            np.testing.assert_allclose(that, one, rtol=0.0, atol=1.0e-5 * np.abs(one).max())
 
 
 @CUDA

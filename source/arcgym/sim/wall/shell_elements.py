@@ -13,14 +13,20 @@ import warp as wp
 
 from arcgym.assets.shell_geometry import ShellGeometry
 from arcgym.sim.patient_arrays import patient_array
-from arcgym.sim.wall import gas_shell_kernels, shell_cuda_kernels, shell_kernels, shell_measure_cuda_kernels
+from arcgym.sim.wall import (
+    gas_shell_kernels,
+    shell_cuda_kernels,
+    shell_kernels,
+    shell_lanes_kernels,
+    shell_measure_cuda_kernels,
+)
 from arcgym.sim.wall.band_kernels import band_kernel
 from arcgym.sim.wall.gas_kernels import GasLoads
 from arcgym.sim.wall.shell_fans import ordered_corners, own_hinges, triangle_rest, vertex_triangles
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_topology import vertex_entries
-from arcgym.utils.stages import launch_rows
+from arcgym.utils.stages import in_parts, launch_rows
 
 
 class Shell:
@@ -47,6 +53,8 @@ class Shell:
         self.data = data = shell_kernels.ShellElements()
         self.kernels: ModuleType = shell_kernels
         """Module of the kernels that measure."""
+        self.in_lanes = wp.get_device(device).is_cpu
+        """Whether those of :mod:`.shell_lanes_kernels` do it."""
         if wp.get_device(device).is_cuda:
             self.kernels = shell_measure_cuda_kernels
         first = geometries[0]
@@ -90,9 +98,27 @@ class Shell:
     def measure(self, x: wp.array, tissue: Tissue) -> None:
         """Measure normals and corner forces of the triangles and angles of the hinges."""
         data, kernels = self.data, self.kernels
+        if self.in_lanes:
+            self._measure_in_lanes(x, tissue)
+            return
         launch_rows(kernels.measure_hinges, data.angle_change.shape, [x], [data], self.device)
         launch_rows(kernels.measure_moments, data.angle_change.shape, [tissue], [data], self.device)
         launch_rows(kernels.measure_triangles, data.scaled_normal.shape, [x, tissue], [data], self.device)
+
+    def _measure_in_lanes(self, x: wp.array, tissue: Tissue) -> None:
+        for kernel, out in (
+            (shell_lanes_kernels.measure_hinges, self.data.angle_change),
+            (shell_lanes_kernels.measure_moments, self.data.moment),
+            (shell_lanes_kernels.measure_triangles, self.data.scaled_normal),
+        ):
+            count, worlds = out.shape
+
+            def launch(first: int, rows: int, kernel: wp.Kernel = kernel, worlds: int = worlds) -> None:
+                blocks, inputs = -(-rows // shell_lanes_kernels.LANES), [first, rows, x, tissue]
+                shape = (blocks, worlds)
+                wp.launch(kernel, shape, inputs=inputs, outputs=[self.data], device=self.device)
+
+            in_parts(count, launch)
 
 
 class GasShell:
