@@ -120,7 +120,7 @@ def face_may_be_near(
 ) -> bool:
     """Return whether a face may have a :func:`face_distance` from the link, by quick tests of its plane and extent.
 
-    On a CPU one test more spares three quarters of the distances that are measured in vain.
+    On a CPU one test more spares distances that would be measured in vain.
     """
     a = face_corner(surface, face, 0, x, w, link.center)
     b = face_corner(surface, face, 1, x, w, link.center)
