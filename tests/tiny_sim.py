@@ -19,6 +19,11 @@ from arcgym.sim import Simulation, SimulationCfg
 SCOPES = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL_CFG}
 
 
+def steps(sim: Simulation, seconds: float) -> int:
+    """Physics steps in ``seconds``, however long one is."""
+    return round(seconds / sim.physics_dt)
+
+
 class TinySim:
     """Writes the stages once into a folder and builds simulations with them."""
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import torch
 import warp as wp
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import ActuatorBaseCfg, BaseDriveCfg, BendingDriveCfg, EndoscopeCfg, TipPullCfg
 from arcgym.assets.actuators import ActuatorBase
@@ -33,14 +33,18 @@ def pull(
     dt: float,
     body_f: wp.array[wp.spatial_vector],
     wound: wp.array[float],
-    mean: wp.array[wp.vec3],
 ):
     w = wp.tid()
     force = wp.vec3(0.0, 0.0, tension[w])
     tip = (w + 1) * links - 1
     body_f[tip] = body_f[tip] + wp.spatial_vector(force, wp.vec3(0.0))
     wound[w] = wound[w] + dt * tension[w]
-    mean[w] = mean[w] + force
+
+
+@wp.kernel
+def add_pull(tension: wp.array[float], weight: float, mean: wp.array[wp.vec3]):
+    w = wp.tid()
+    mean[w] = mean[w] + weight * wp.vec3(0.0, 0.0, tension[w])
 
 
 class Thread(ActuatorBase):
@@ -55,7 +59,10 @@ class Thread(ActuatorBase):
 
     def apply(self, state: newton.State, control: newton.Control, resistance: wp.array, dt: float) -> None:
         inputs = [self.endoscope.num_bodies, self.tension, dt]
-        wp.launch(pull, len(self.tension), inputs=inputs, outputs=[state.body_f, self.impulse, self.mean])
+        wp.launch(pull, len(self.tension), inputs=inputs, outputs=[state.body_f, self.impulse])
+
+    def record(self, drive_force: wp.array, acceleration: wp.array, weight: float) -> None:
+        wp.launch(add_pull, len(self.tension), inputs=[self.tension, weight], outputs=[self.mean])
 
 
 @configclass
@@ -105,8 +112,8 @@ def test_its_action_moves_the_scope(tiny: TinySim) -> None:
     term.process_actions(torch.tensor([[0.0], [1.0]]))
     term.apply_actions()
     sim.step(2)
-    # 2 mN on 5 g for 2 / 480 s: 1.67 mm/s.
-    assert sim.endoscope.data.tip_lin_vel_w[:, 2].tolist() == pytest.approx([0.0, 0.002 / 0.005 * 2 / 480], rel=1e-3)
+    speed = 0.002 / 0.005 * 2 * sim.physics_dt  # 2 mN on 5 g for two steps
+    assert sim.endoscope.data.tip_lin_vel_w[:, 2].tolist() == pytest.approx([0.0, speed], rel=1e-3)
     assert sim.endoscope.data.tip_pull_force_w[:, 2].tolist() == pytest.approx([0.0, 0.002])
 
 
@@ -119,7 +126,7 @@ def test_its_configuration_limits_it(tiny: TinySim) -> None:
 def test_start_states_keep_what_it_remembers(tiny: TinySim) -> None:
     sim = threaded(tiny)
     sim.endoscope.actuator("thread").set_command(torch.tensor([0.002, 0.002]))
-    sim.step(48)
+    sim.step(steps(sim, 0.1))
     sim.load_snapshots(SnapshotSet(("pulled",), (sim.read_snapshot(0),), fingerprint(sim)))
     sim.write_snapshot(-1, [0])
     assert sim.world_arrays()["thread.impulse"][:, 0].tolist() == pytest.approx([0.0, 0.0002])
@@ -135,7 +142,7 @@ def test_two_drives_act_together(tiny: TinySim) -> None:
     for name in ("first", "second"):
         sim.endoscope.actuator(name).set_command(torch.tensor([0.001]))
     sim.step(1)
-    assert sim.endoscope.data.tip_lin_vel_w[0, 2].item() == pytest.approx(0.002 / 0.005 / 480, rel=1e-3)
+    assert sim.endoscope.data.tip_lin_vel_w[0, 2].item() == pytest.approx(0.002 / 0.005 * sim.physics_dt, rel=1e-3)
 
 
 class SilentThread(Thread):
@@ -187,6 +194,6 @@ def test_drives_are_overridden_from_command_line_and_file(tiny: TinySim) -> None
 
 def test_a_scope_without_drives_stays_where_it_is(tiny: TinySim) -> None:
     sim = tiny("proximal", scope={"actuators": {}})
-    sim.step(48)
+    sim.step(steps(sim, 0.1))
     assert not np.any(sim.endoscope.data.base_force.numpy())
     assert sim.endoscope.data.bending.shape == (1, 2)

@@ -11,14 +11,13 @@ import pytest
 import torch
 import warp as wp
 from tiny import TINY_SEGMENTS
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import AbdomenCfg
 from arcgym.sim import Simulation, WeightCfg
 from arcgym.sim.wall.abdomen import fit, vertex_area
 
 FREE = dict.fromkeys(TINY_SEGMENTS, 0.0)
-STEP = 1.0 / 480.0
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +41,7 @@ def make_ball(sim: Simulation, radius: float, center: tuple[float, float, float]
 
 def forces(sim: Simulation) -> np.ndarray:
     """Return the force of the surroundings on every vertex of the first world where it is [N], shape (V, 3)."""
-    sim.surroundings.measure(sim.nodal_pos, sim.wall.tissue, STEP)
+    sim.surroundings.measure(sim.nodal_pos, sim.wall.tissue, sim.physics_dt)
     force, x = sim.surroundings.force, sim.nodal_pos.numpy()[:, 0]
     return force.push.numpy()[:, 0] - np.einsum("vij,vj->vi", force.stiffness.numpy()[:, 0], x)
 
@@ -121,12 +120,12 @@ def test_a_dent_ends_at_twice_the_radius_of_the_hand(tube: TinySim) -> None:
 def test_a_hand_on_an_empty_belly_presses_it_in_by_its_stiffness(tube: TinySim) -> None:
     sim = inside(tube, gap=0.2, hand_stiffness=2000.0, hand_time=0.1)
     sim.colon.set_hand_pressure(torch.tensor([40.0]))
-    sim.step(48)  # one time constant
+    sim.step(steps(sim, 0.1))  # one time constant
     assert sim.colon.data.hand_dent.item() == pytest.approx(0.02 * (1.0 - np.exp(-1.0)), rel=0.02)
-    sim.step(480)
+    sim.step(steps(sim, 1.0))
     assert sim.colon.data.hand_dent.item() == pytest.approx(0.02, rel=1.0e-3)
     sim.colon.set_hand_pressure(torch.tensor([-40.0]))
-    sim.step(480)
+    sim.step(steps(sim, 1.0))
     assert sim.colon.data.hand_dent.item() == pytest.approx(0.0, abs=1.0e-5)
 
 
@@ -137,7 +136,7 @@ def test_it_stops_a_wall_that_falls(tube: TinySim) -> None:
         colon = {"anchor_stiffness": FREE, "youngs_modulus": 100.0, "abdomen": AbdomenCfg(enabled=enabled, gap=0.002)}
         sim = tube("magnetic", colon=colon, weight=weight)
         inner = 0.0 if sim.surroundings is None else sim.surroundings.abdomen.shape.tight.numpy()[0, 1] + 0.002
-        sim.step(96)
+        sim.step(steps(sim, 0.2))
         front.append(sim.colon.data.nodal_pos_w[0, :, 1].max().item() - inner)
     # From 21 mm, without an abdomen by gravity for 0.2 s; with one to its front, where 0.3 N/mm^2 a metre bear foam.
     assert front[0] > 0.08 and -0.001 < front[1] < 0.002
@@ -147,7 +146,7 @@ def test_worlds_have_abdomens_and_hands_of_their_own(tube: TinySim) -> None:
     sim = inside(tube, num_envs=3, hand_place=(0.0, 0.0))
     sim.colon.write_abdomen_to_sim(stiffness=torch.tensor([1.0e4]), env_ids=[1])
     sim.colon.set_hand_pressure(torch.tensor([40.0, 40.0]), torch.tensor([[0.0, 0.0], [0.0, 0.02]]), env_ids=[1, 2])
-    sim.step(96)
+    sim.step(steps(sim, 0.2))
     dent, moved = sim.colon.data.hand_dent, sim.colon.data.nodal_displacement.max(dim=1).values
     assert dent[0] == 0.0 and moved[0] < 1.0e-6
     assert dent[1] > dent[2] > 0.01 and moved[2] > 1.0e-4

@@ -7,14 +7,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import torch
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import IntroducerCfg, TipPullCfg
 from arcgym.sim import Simulation
 from arcgym.utils.math import quat_apply
-
-CONTROL = 48
-"""Physics steps in a control step of 0.1 s."""
 
 
 def values(sim: Simulation, *numbers: float) -> list[torch.Tensor]:
@@ -23,12 +20,12 @@ def values(sim: Simulation, *numbers: float) -> list[torch.Tensor]:
 
 def push(sim: Simulation, velocity: float = 0.0, roll_rate: float = 0.0, seconds: float = 0.1) -> None:
     sim.endoscope.set_insertion_command(*values(sim, velocity, roll_rate))
-    sim.step(round(seconds / sim.physics_dt))
+    sim.step(steps(sim, seconds))
 
 
 def bend(sim: Simulation, pitch: float, yaw: float, seconds: float) -> None:
     sim.endoscope.set_bending_command(*values(sim, pitch, yaw))
-    sim.step(round(seconds / sim.physics_dt))
+    sim.step(steps(sim, seconds))
 
 
 def inside(tiny_sim: TinySim) -> Simulation:
@@ -152,9 +149,9 @@ def test_pulled_tip_follows_the_commanded_speed(tiny_sim: TinySim, kind: str) ->
     sim = tiny_sim(kind)
     velocity = torch.tensor([[0.0, 0.0, 0.05]])
     sim.endoscope.set_tip_velocity_command(velocity, torch.zeros(1, 3))
-    sim.step(2 * CONTROL)
+    sim.step(steps(sim, 0.2))
     before = sim.endoscope.data.tip_pos_w.clone()
-    sim.step(4 * CONTROL)
+    sim.step(steps(sim, 0.4))
     moved = (sim.endoscope.data.tip_pos_w - before)[0]
     torch.testing.assert_close(moved, torch.tensor([0.0, 0.0, 0.02]), rtol=0.05, atol=1e-4)
 
@@ -164,7 +161,7 @@ def test_pulled_capsule_turns_at_the_commanded_rate(tiny_sim: TinySim) -> None:
     sim.endoscope.data.joint_pos[0, 2] = 0.1
     sim.forward()
     sim.endoscope.set_tip_velocity_command(torch.zeros(1, 3), torch.tensor([[0.0, 0.5, 0.0]]))
-    sim.step(10 * CONTROL)
+    sim.step(steps(sim, 1.0))
     x, y, _ = forward(sim)
     assert x.item() == pytest.approx(0.4794, abs=0.03) and abs(y.item()) < 0.01  # sin 0.5
 
@@ -173,8 +170,8 @@ def test_pull_never_exceeds_its_limit(tiny_sim: TinySim) -> None:
     sim = tiny_sim("magnetic", colon={"mobile_until": 0.0})
     block(sim)
     sim.endoscope.set_tip_velocity_command(torch.tensor([[0.0, 0.0, 0.05]]), torch.zeros(1, 3))
-    sim.step(15 * CONTROL)
-    sim.step(CONTROL)
+    sim.step(steps(sim, 1.5))
+    sim.step(steps(sim, 0.1))
     pull = torch.linalg.vector_norm(sim.endoscope.data.tip_pull_force_w).item()
     assert 3.5 < pull <= 4.0 + 1e-4
 
@@ -207,7 +204,7 @@ def test_gravity_weighs_the_real_masses(tiny_sim: TinySim) -> None:
     sim.step(1)
     # The weight is real, the inertia three times as large: a third of g.
     speed = sim.endoscope.data.body_lin_vel_w[0, 0, 2].item()
-    assert speed == pytest.approx(-9.81 / 3.0 / 480.0, rel=0.01)
+    assert speed == pytest.approx(-9.81 / 3.0 * sim.physics_dt, rel=0.01)
 
 
 @pytest.mark.parametrize(("lower", "lift"), [(0.005, 0.0), (0.03, 20.0), (0.08, 0.0)])
@@ -223,7 +220,7 @@ def test_a_loop_that_comes_out_of_the_anus_is_lifted(tiny_sim: TinySim, lower: f
 def test_a_capsule_does_not_fall_out(tiny_sim: TinySim) -> None:
     sim = tiny_sim("capsule")
     sim.endoscope.set_tip_velocity_command(torch.tensor([[0.0, 0.0, -0.05]]), torch.zeros(1, 3))
-    sim.step(480)
+    sim.step(steps(sim, 1.0))
     # A pull of 1 N against 40 kN/m^2 * 20 mm = 800 N/m below half its cylinder's length, 5 mm.
     assert sim.endoscope.data.root_pos_w[0, 2].item() == pytest.approx(0.005 - 0.00125, abs=2e-4)
 

@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 import torch
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import TipPullCfg
 from arcgym.sim import ContactCfg, Simulation
@@ -143,7 +143,7 @@ def test_a_capsule_that_has_just_gone_through_the_wall_is_pushed_back_in(sim: Si
 def test_a_capsule_outside_comes_back(tiny_sim: TinySim) -> None:
     sim = tiny_sim("capsule")
     place(sim, depth=REACH + 0.002)
-    sim.step(96)
+    sim.step(steps(sim, 0.2))
     dent = np.abs(sim.nodal_pos.numpy()[:, 0] - sim.colon.wall.points).max()  # its drive may press it on the wall
     assert sim.endoscope.data.body_pos_w[0, 0].numpy() @ SIDE < APOTHEM - REACH + 5e-4 + dent
 
@@ -161,9 +161,9 @@ def test_a_capsule_that_slides_feels_coulomb_friction(sim: Simulation) -> None:
 
 
 def test_friction_holds_elastically_before_it_slides(sim: Simulation) -> None:
-    # Two full contacts at 10 um depth bear 0.02 N each; 0.5 um along the wall at 2000 N/m is half of 0.1 * 0.02 N.
-    force = slid(sim, by=5.0e-7)
-    assert force[2] == pytest.approx(-2000.0 * 5.0e-7 * touching(sim), rel=3e-3)  # positions are floats
+    # Two full contacts at 10 um depth bear 0.02 N each; half of 0.1 * 0.02 N along the wall, of its springs.
+    force = slid(sim, by=0.001 / sim.cfg.contact.friction_stiffness)
+    assert force[2] == pytest.approx(-0.001 * touching(sim), rel=3e-3)  # positions are floats
     assert abs(force[2]) < 0.1 * abs(force @ SIDE)
 
 
@@ -229,7 +229,7 @@ def resting(tiny_sim: TinySim, along: float) -> Simulation:
     rigid = {"mobile_until": 0.0, "wall_model": "solid"}
     sim = tiny_sim("capsule", gravity=pull, colon=rigid, scope={"actuators": {"tip": loose}})
     place(sim, depth=1.0e-5)
-    sim.step(120)
+    sim.step(steps(sim, 0.25))
     return sim
 
 

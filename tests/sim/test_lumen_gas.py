@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 from tiny import TINY_SEGMENTS
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import GasCfg
 from arcgym.sim import Simulation, SnapshotSet
@@ -35,9 +35,9 @@ def filled(tube: TinySim, num_envs: int = 1, colon: dict[str, Any] | None = None
     return tube(links=3, num_envs=num_envs, colon=cfg)
 
 
-def flow_for(sim: Simulation, litres_per_minute: float, steps: int) -> None:
+def flow_for(sim: Simulation, litres_per_minute: float, seconds: float) -> None:
     sim.colon.set_gas_flow(torch.full((sim.num_envs,), litres_per_minute / 60000.0))
-    sim.step(steps)
+    sim.step(steps(sim, seconds))
 
 
 def radii(sim: Simulation, ring: int) -> torch.Tensor:
@@ -64,8 +64,8 @@ def test_without_gas_nothing_of_it_is_there(tube: TinySim) -> None:
 def test_pressure_times_volume_is_what_was_blown_in(tube: TinySim) -> None:
     sim = filled(tube, leak_conductance=0.0)
     before = (AMBIENT + IMAGED) * sim.colon.data.lumen_volume.item()
-    flow_for(sim, 0.6, 240)  # 0.01 l/s for half a second
-    flow_for(sim, 0.0, 240)
+    flow_for(sim, 0.6, 0.5)  # 0.01 l/s for half a second
+    flow_for(sim, 0.0, 0.5)
     data = sim.colon.data
     after = (AMBIENT + data.lumen_pressure.item()) * data.lumen_volume.item()
     assert after - before == pytest.approx(AMBIENT * 5.0e-6, rel=0.01)
@@ -75,8 +75,8 @@ def test_pressure_times_volume_is_what_was_blown_in(tube: TinySim) -> None:
 def test_a_tube_widens_as_thin_walls_do(tube: TinySim) -> None:
     sim = filled(tube, leak_conductance=0.0)
     at_rest = radii(sim, MIDDLE).mean().item()
-    flow_for(sim, 0.6, 240)
-    flow_for(sim, 0.0, 480)
+    flow_for(sim, 0.6, 0.5)
+    flow_for(sim, 0.0, 1.0)
     pressure = sim.colon.data.lumen_pressure.item() - IMAGED
     modulus, ratio = sim.colon.elasticity()
     # Plane strain, since the ends are held: dr = p r^2 (1 - nu^2) / (E t).
@@ -87,8 +87,8 @@ def test_a_tube_widens_as_thin_walls_do(tube: TinySim) -> None:
 def test_a_tube_narrows_alike_below_the_imaging_pressure(tube: TinySim) -> None:
     sim = filled(tube)
     at_rest = radii(sim, MIDDLE).mean().item()
-    flow_for(sim, -0.6, 120)
-    flow_for(sim, 0.0, 480)
+    flow_for(sim, -0.6, 0.25)
+    flow_for(sim, 0.0, 1.0)
     pressure = sim.colon.data.lumen_pressure.item() - IMAGED
     assert -IMAGED + sim.colon.cfg.gas.abdominal_pressure < pressure < -100.0  # the gas still holds the wall
     modulus, ratio = sim.colon.elasticity()
@@ -103,25 +103,25 @@ def test_a_jump_of_the_amount_is_followed_without_swinging(tube: TinySim, materi
     sim.step(1)
     sim.world_arrays()["gas.amount"].mul_(1.01)  # 1040 Pa in a rigid tube
     seen = []
-    for _ in range(300):
+    for _ in range(steps(sim, 0.625)):
         sim.step(1)
         seen.append(sim.colon.data.lumen_pressure.item())
     last, way = seen[-1], seen[-1] - IMAGED
     assert way > 50.0 and max(seen) < last + 0.2 * way and min(seen) > IMAGED - 1.0
-    assert max(abs(value - last) for value in seen[8:]) < 0.01 * way  # there after 17 ms
+    assert max(abs(value - last) for value in seen[steps(sim, 0.017) :]) < 0.01 * way
 
 
 def test_suction_collapses_the_lumen_and_insufflation_opens_it(tube: TinySim) -> None:
     sim = filled(tube)
     at_rest = sim.colon.data.lumen_volume.item()
     sim.colon.data.nodal_pos_w[0, :, 0] *= 0.99  # a perfect cylinder does not know where to
-    flow_for(sim, -6.0, 960)
+    flow_for(sim, -6.0, 2.0)
     shut = sim.colon.data.lumen_volume.item()
     assert shut < 0.5 * at_rest and radii(sim, MIDDLE).min() < 0.5 * radii(sim, MIDDLE).max()
     across = sim.colon.data.lumen_pressure.item() - sim.colon.cfg.gas.abdominal_pressure
     assert -1.05 * sim.colon.cfg.gas.suction_depth < across < 0.0
-    flow_for(sim, 6.0, 960)
-    flow_for(sim, 0.0, 960)
+    flow_for(sim, 6.0, 2.0)
+    flow_for(sim, 0.0, 2.0)
     assert sim.colon.data.lumen_volume.item() > 0.97 * at_rest
     assert not sim.non_finite.any()
 
@@ -130,8 +130,8 @@ def test_a_soft_tube_that_folds_does_not_swing(tube: TinySim) -> None:
     # Without tension at rest: at 100 Pa below, stiffness is nearly lost, and a pressure that lags would swing.
     sim = filled(tube, leak_conductance=0.0, imaging_pressure=IMAGED, abdominal_pressure=IMAGED)
     sim.colon.data.nodal_pos_w[0, :, 0] *= 0.99
-    flow_for(sim, -0.12, 2400)  # 10 ml
-    flow_for(sim, 0.0, 240)
+    flow_for(sim, -0.12, 5.0)  # 10 ml
+    flow_for(sim, 0.0, 0.5)
     assert radii(sim, MIDDLE).min() < 0.9 * radii(sim, MIDDLE).max()
     assert sim.colon.data.nodal_vel_w.abs().max() < 2.0e-3
 
@@ -139,8 +139,8 @@ def test_a_soft_tube_that_folds_does_not_swing(tube: TinySim) -> None:
 def test_gas_beyond_its_opening_pressure_leaks(tube: TinySim) -> None:
     sim = filled(tube, colon={"rigid": True}, start_pressure=IMAGED + 1000.0)
     before = sim.world_arrays()["gas.amount"].item()
-    sim.step(24)
-    lost = 5.1e-9 * 1000.0 * 0.05 * (AMBIENT + IMAGED + 1000.0)  # conductance, pressure, 24 steps of 1/480 s
+    sim.step(steps(sim, 0.05))
+    lost = 5.1e-9 * 1000.0 * 0.05 * (AMBIENT + IMAGED + 1000.0)  # conductance, pressure, time
     assert before - sim.world_arrays()["gas.amount"].item() == pytest.approx(lost, rel=0.1)
 
 
@@ -168,7 +168,7 @@ def test_states_without_gas_are_filled_at_the_start_pressure(tube: TinySim) -> N
     plain = tube(links=3, colon={"material": "in_situ", "anchor_stiffness": FREE})
     states = SnapshotSet(("rest",), (plain.read_snapshot(0),), fingerprint(plain))
     sim = filled(tube, num_envs=2)
-    flow_for(sim, -1.0, 96)
+    flow_for(sim, -1.0, 0.2)
     sim.load_snapshots(states)
     sim.colon.write_gas_to_sim(start_pressure=torch.tensor([1000.0]), env_ids=[1])
     sim.write_snapshot(0, [1])
@@ -181,7 +181,7 @@ def test_states_without_gas_are_filled_at_the_start_pressure(tube: TinySim) -> N
 
 def test_a_reset_leaves_the_other_worlds_readings_alone(tube: TinySim) -> None:
     sim = filled(tube, num_envs=2)
-    flow_for(sim, 1.0, 48)
+    flow_for(sim, 1.0, 0.1)
     names = ("lumen_pressure", "lumen_pressure_mean", "lumen_pressure_peak", "lumen_volume")
     before = [getattr(sim.colon.data, name)[0].item() for name in names]
     sim.write_snapshot(-1, [1])
@@ -193,7 +193,7 @@ def test_a_reset_leaves_the_other_worlds_readings_alone(tube: TinySim) -> None:
 def test_a_rigid_wall_has_gas_too(tube: TinySim) -> None:
     sim = filled(tube, colon={"rigid": True}, leak_conductance=0.0)
     volume = sim.colon.data.lumen_volume.item()
-    flow_for(sim, 0.06, 240)  # 0.5 ml
+    flow_for(sim, 0.06, 0.5)  # 0.5 ml
     risen = sim.colon.data.lumen_pressure.item() - IMAGED
     assert risen == pytest.approx(AMBIENT * 0.5e-6 / volume, rel=0.01)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 from tiny import write_tiny_colon
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import AbdomenCfg, MesenteryCfg
 from arcgym.sim import Simulation, SnapshotSet
@@ -36,13 +36,14 @@ def paths(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [str(write_tiny_colon(folder / name, **tube)) for name, tube in TUBES.items()]
 
 
-def push(sim: Simulation, steps: int = 20) -> Simulation:
-    """Push the capsule of every world into its wall."""
-    pose = torch.tensor([0.0145, 0.0015, 0.05, 0.0, 0.0, 0.0, 1.0])
-    sim.endoscope.data.joint_pos[:] = pose
+def push(sim: Simulation, x: float = 0.011) -> Simulation:
+    """Push the capsule of every world from ``x`` [m] into its wall for 1/24 s."""
+    sim.endoscope.data.joint_pos[:] = torch.tensor([x, 0.0015, 0.05, 0.0, 0.0, 0.0, 1.0])
     sim.endoscope.data.joint_vel.zero_()
     sim.forward()
-    sim.step(steps)
+    aside = torch.tensor([[0.2, 0.0, 0.0]]).repeat(sim.num_envs, 1)
+    sim.endoscope.set_tip_velocity_command(aside, torch.zeros_like(aside))
+    sim.step(steps(sim, 1.0 / 24.0))
     return sim
 
 
@@ -57,7 +58,7 @@ def assert_same(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> Non
 
 @pytest.fixture(scope="module")
 def alone(tiny: TinySim, paths: list[str]) -> list[Simulation]:
-    """Each patient in a simulation of its own, after 20 steps."""
+    """Each patient in a simulation of its own, pushed."""
     return [push(tiny("capsule", colon={"usd_path": path})) for path in paths]
 
 
@@ -79,9 +80,9 @@ def test_a_world_goes_on_as_with_its_patient_alone(
 
 def test_a_solid_wall_has_patients_too(tiny: TinySim, paths: list[str]) -> None:
     colon = {"wall_model": "solid", "youngs_modulus": 0.5e6}
-    both = push(tiny("capsule", num_envs=2, colon={"usd_path": paths, **colon}))
+    both = push(tiny("capsule", num_envs=2, colon={"usd_path": paths, **colon}), x=0.0145)
     for world, path in enumerate(paths):
-        one = push(tiny("capsule", colon={"usd_path": path, **colon}))
+        one = push(tiny("capsule", colon={"usd_path": path, **colon}), x=0.0145)
         assert_same(state(both, world), state(one, 0))
 
 

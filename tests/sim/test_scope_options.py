@@ -9,13 +9,11 @@ import math
 import numpy as np
 import pytest
 import torch
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import GradingCfg
 from arcgym.sim import Simulation, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
-
-STEP = 1.0 / 480.0
 
 
 def stiffness(sim: Simulation) -> np.ndarray:
@@ -26,7 +24,7 @@ def wheel(sim: Simulation, pitch: float, seconds: float) -> float:
     """Turn the first wheel towards an angle for a while; return the bending that the section is driven to."""
     zero = torch.zeros(sim.num_envs)
     sim.endoscope.set_bending_command(zero + pitch, zero)
-    sim.step(round(seconds / STEP))
+    sim.step(steps(sim, seconds))
     return float(sim.endoscope.actuator("bending").angle.numpy()[0, 0])
 
 
@@ -78,7 +76,7 @@ def test_a_state_without_play_fits_and_begins_in_the_middle(tiny_sim: TinySim) -
     sim.load_snapshots(SnapshotSet(("bent",), (plain.read_snapshot(0),), fingerprint(plain)))
     sim.write_snapshot(0)
     sim.forward()
-    sim.step(48)  # the wheels stay
+    sim.step(steps(sim, 0.1))  # the wheels stay
     assert sim.endoscope.actuator("bending").angle.numpy()[0, 0] == pytest.approx(0.2, abs=1.0e-6)
     assert wheel(sim, 0.25, 0.5) == pytest.approx(0.2, abs=1.0e-6)
     assert wheel(sim, 0.35, 0.5) == pytest.approx(0.25, abs=1.0e-6)

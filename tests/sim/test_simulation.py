@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 import torch
 import warp as wp
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.sensors.camera_view import CameraView
 from arcgym.sim import Simulation, SimulationCfg
@@ -85,15 +85,15 @@ def test_same_inputs_give_the_same_result(narrow: TinySim) -> None:
 
 
 def test_a_camera_looks_between_the_steps_of_a_call_and_changes_none(narrow: TinySim) -> None:
-    """7 ms are three steps of 1/480 s, rounded: what five steps have left, of eight."""
+    """It looks as many whole steps before the end of the call as are nearest to 7 ms."""
     seen, plain = build(narrow), build(narrow)
-    view = CameraView(SceneOf(seen), 0.007)
+    view, ago = CameraView(SceneOf(seen), 0.007), steps(seen, 0.007)
     drive(seen, [8])
-    drive(plain, [5])
+    drive(plain, [8 - ago])
     late = wp.to_torch(view.shot.pose).clone()
     assert torch.equal(late, wp.to_torch(plain.endoscope.camera_pose_wp))
     assert torch.equal(wp.to_torch(view.shot.wall), wp.to_torch(plain.nodal_pos))
-    plain.step(3)
+    plain.step(ago)
     assert not differing(seen.world_arrays(), plain.world_arrays())
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import torch
 from tiny import TINY_SEGMENTS
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import GasCfg, WallLawCfg
 from arcgym.sim import Simulation, SnapshotSet
@@ -119,7 +119,7 @@ def test_a_held_stretch_loses_its_pull(tube: TinySim) -> None:
     first = pull(sim)
     seen = []
     for _ in range(4):
-        sim.step(60)  # an eighth of a second
+        sim.step(steps(sim, 0.125))
         seen.append(pull(sim) / first)
     series = [1.0 - 0.3 * (1.0 - math.exp(-t / 0.1)) - 0.2 * (1.0 - math.exp(-t)) for t in (0.125, 0.25, 0.375, 0.5)]
     assert seen == pytest.approx(series, rel=1.0e-3)
@@ -131,7 +131,7 @@ def test_a_moving_wall_feels_what_has_faded(tube: TinySim) -> None:
     for sim in sims:
         sim.colon.data.nodal_pos_w[0, sim.colon.wall.ring == BAND, :2] *= 1.3
         sim.colon.write_rigid_to_sim(torch.ones(1, dtype=torch.bool))
-        sim.step(240)
+        sim.step(steps(sim, 0.5))
         sim.colon.write_rigid_to_sim(torch.zeros(1, dtype=torch.bool))
         before = sim.colon.data.nodal_pos_w[0, sim.colon.wall.ring == BAND, :2].norm(dim=1).mean().item()
         sim.step(3)

@@ -12,7 +12,7 @@ import pytest
 import torch
 from scipy.spatial import Delaunay, cKDTree
 from tiny import tiny_colon_stage
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.anatomy import ColonStage, VisualMesh, WallMesh, inner_faces, segment_index, write_colon
 from arcgym.sim import Simulation, WallSolverCfg
@@ -96,11 +96,11 @@ def scattered_sim(tmp_path_factory: pytest.TempPathFactory) -> TinySim:
     return sims
 
 
-def press(sim: Simulation, seconds: float) -> None:
-    """Hold a capsule 3 mm deep in the wall, half way along the tube."""
+def press(sim: Simulation, count: int) -> None:
+    """Hold a capsule 3 mm deep in the wall, half way along the tube, for ``count`` steps."""
     sim.endoscope.data.joint_pos[0] = torch.tensor([0.0179, 0.0018, 0.1, 0.0, 0.0, 0.0, 1.0])
     sim.forward()
-    for _ in range(round(seconds / sim.physics_dt)):
+    for _ in range(count):
         sim.contact.detect(sim.nodal_pos, sim.state.body_q)
         sim.wall.step(sim.nodal_pos, sim.nodal_vel, sim.contact, sim.state.body_q, sim.state.body_q)
 
@@ -121,7 +121,7 @@ def test_one_sweep_a_step_follows_a_scattered_wall(scattered_sim: TinySim, model
     moved = []
     for cfg in (WallSolverCfg(), WallSolverCfg(repeats=8)):
         sim = scattered_sim("capsule", colon=soft, wall=cfg)
-        press(sim, 0.1)
+        press(sim, steps(sim, 0.1))
         moved.append(sim.colon.data.nodal_displacement.max().item())
     assert moved[1] > 1.0e-3
     assert moved[0] == pytest.approx(moved[1], rel=0.05)
@@ -129,11 +129,11 @@ def test_one_sweep_a_step_follows_a_scattered_wall(scattered_sim: TinySim, model
 
 def test_the_coarse_correction_helps_a_scattered_wall(scattered_sim: TinySim) -> None:
     def error(coarse: bool) -> float:
-        """Share of the converged displacement that is missing after 50 ms."""
+        """Share of the converged displacement that is missing after 24 sweeps, one a step."""
         moved = []
         for cfg in (WallSolverCfg(coarse_correction=coarse), WallSolverCfg(repeats=8)):
             sim = scattered_sim("capsule", colon={"youngs_modulus": 5.0e6}, wall=cfg)
-            press(sim, 0.05)
+            press(sim, 24)
             moved.append(sim.colon.data.nodal_displacement)
         return ((moved[0] - moved[1]).norm() / moved[1].norm()).item()
 

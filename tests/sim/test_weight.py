@@ -9,13 +9,12 @@ from typing import Any
 import pytest
 import torch
 from tiny import TINY_SEGMENTS
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.envs import mdp
 from arcgym.sim import Simulation, WeightCfg
 
 FREE = dict.fromkeys(TINY_SEGMENTS, 0.0)
-STEP = 1.0 / 480.0
 DOWN = {"supine": (1, -1.0), "prone": (1, 1.0), "left_lateral": (0, -1.0), "right_lateral": (0, 1.0)}
 
 
@@ -54,7 +53,7 @@ def test_a_wall_that_nothing_held_would_fall(tube: TinySim, posture: str) -> Non
     sim.step(1)
     axis, sign = DOWN[posture]
     # In the first step nothing half way along feels the held ends yet: g times the step.
-    assert speed(sim)[axis].item() == pytest.approx(sign * 9.81 * STEP, rel=0.01)
+    assert speed(sim)[axis].item() == pytest.approx(sign * 9.81 * sim.physics_dt, rel=0.01)
 
 
 def test_share_and_contents_add_up(tube: TinySim) -> None:
@@ -63,7 +62,7 @@ def test_share_and_contents_add_up(tube: TinySim) -> None:
     ring = torch.tensor(sim.colon.wall.ring) == 8
     mass = sim.wall.nodes.mass.numpy()[ring.numpy(), 0].sum()
     load = 0.25 + 0.5 * 0.0125 / mass  # 0.5 kg/m on 12.5 mm of a ring of this mass
-    assert speed(sim)[1].item() == pytest.approx(9.81 * STEP * load, rel=0.01)
+    assert speed(sim)[1].item() == pytest.approx(9.81 * sim.physics_dt * load, rel=0.01)
 
 
 def test_turning_takes_off_the_weight_of_the_imaging(tube: TinySim) -> None:
@@ -74,7 +73,7 @@ def test_turning_takes_off_the_weight_of_the_imaging(tube: TinySim) -> None:
     sim.step(1)
     assert sim._physics.recorded is graph and graph is not None
     # From (0, -g, 0) to (-g, 0, 0): down is to the left, and what had pulled to the back is gone.
-    torch.testing.assert_close(speed(sim)[:2], torch.tensor([-1.0, 1.0]) * 9.81 * STEP, rtol=0.01, atol=0.0)
+    torch.testing.assert_close(speed(sim)[:2], torch.tensor([-1.0, 1.0]) * 9.81 * sim.physics_dt, rtol=0.01, atol=0.0)
 
 
 def test_springs_bear_the_weight(tube: TinySim) -> None:
@@ -82,7 +81,7 @@ def test_springs_bear_the_weight(tube: TinySim) -> None:
     sim = weighing(
         tube, colon={"anchor_stiffness": held}, posture="prone", imaged="weightless", contents_per_length=0.2
     )
-    sim.step(480)
+    sim.step(steps(sim, 1.0))
     wall = torch.tensor(sim.colon.mobile())
     moved = (sim.colon.data.nodal_pos_w - sim.colon.data.default_nodal_pos_w)[0, :, 1]
     stiffness = torch.tensor(sim.wall.nodes.anchors.stiffness.numpy()[:, 0])
@@ -99,7 +98,7 @@ def test_worlds_lie_as_they_are_told(tube: TinySim) -> None:
     sim.write_gravity(torch.tensor([sim.cfg.weight.gravity("prone")]), env_ids=[1])
     sim.step(1)
     assert speed(sim, 0).norm() < 1.0e-4
-    assert speed(sim, 1)[1].item() == pytest.approx(2 * 9.81 * STEP, rel=0.01)
+    assert speed(sim, 1)[1].item() == pytest.approx(2 * 9.81 * sim.physics_dt, rel=0.01)
     assert sim.world_settings()["gravity"][1].tolist() == pytest.approx([0.0, 9.81, 0.0])
 
 
@@ -107,7 +106,7 @@ def test_a_capsule_weighs(tube: TinySim) -> None:
     weights = []
     for enabled in (False, True):
         sim = tube("capsule", colon={"rigid": True}, weight=WeightCfg(enabled=enabled, posture="left_lateral"))
-        sim.actuation.apply(sim.state, sim.control, sim.contact.ring, STEP)
+        sim.actuation.apply(sim.state, sim.control, sim.contact.ring, sim.physics_dt)
         weights.append(sim.state.body_f.numpy()[0, 0])
     assert weights[1] - weights[0] == pytest.approx(-0.005 * 9.81, rel=1.0e-4)  # 5 g
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import torch
 import warp as wp
-from tiny_sim import TinySim
+from tiny_sim import TinySim, steps
 
 from arcgym.assets import AbdomenCfg, GasCfg, GradingCfg, MesenteryCfg, WallLawCfg
 from arcgym.sim import LoopFrictionCfg, Simulation, WeightCfg
@@ -50,7 +50,7 @@ def pushed(tiny: TinySim, effects: bool) -> Simulation:
     sim.friction.copy_(torch.tensor([0.05, 0.1, 0.15]))
     command(sim, [0, 1, 2])
     for _ in range(10):
-        sim.step(48)
+        sim.step(steps(sim, 0.1))
     return sim
 
 
