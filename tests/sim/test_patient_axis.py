@@ -36,9 +36,9 @@ def paths(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     return [str(write_tiny_colon(folder / name, **tube)) for name, tube in TUBES.items()]
 
 
-def push(sim: Simulation, x: float = 0.011) -> Simulation:
-    """Push the capsule of every world from ``x`` [m] into its wall for 1/24 s."""
-    sim.endoscope.data.joint_pos[:] = torch.tensor([x, 0.0015, 0.05, 0.0, 0.0, 0.0, 1.0])
+def push(sim: Simulation) -> Simulation:
+    """Push the capsule of every world into its wall for 1/24 s."""
+    sim.endoscope.data.joint_pos[:] = torch.tensor([0.011, 0.0015, 0.05, 0.0, 0.0, 0.0, 1.0])
     sim.endoscope.data.joint_vel.zero_()
     sim.forward()
     aside = torch.tensor([[0.2, 0.0, 0.0]]).repeat(sim.num_envs, 1)
@@ -80,9 +80,9 @@ def test_a_world_goes_on_as_with_its_patient_alone(
 
 def test_a_solid_wall_has_patients_too(tiny: TinySim, paths: list[str]) -> None:
     colon = {"wall_model": "solid", "youngs_modulus": 0.5e6}
-    both = push(tiny("capsule", num_envs=2, colon={"usd_path": paths, **colon}), x=0.0145)
+    both = push(tiny("capsule", num_envs=2, colon={"usd_path": paths, **colon}))
     for world, path in enumerate(paths):
-        one = push(tiny("capsule", colon={"usd_path": path, **colon}), x=0.0145)
+        one = push(tiny("capsule", colon={"usd_path": path, **colon}))
         assert_same(state(both, world), state(one, 0))
 
 

@@ -80,7 +80,7 @@ def _sweep_kernel(
         inertial: wp.array2d[wp.vec3],
         contacts: WallContacts,
         largest_move: float,
-        rounding: float,
+        rounding: wp.array[float],
         force: wp.array2d[wp.vec3],
         x: wp.array2d[wp.vec3],
     ):
@@ -94,13 +94,13 @@ def _sweep_kernel(
             inertial: Positions that inertia pulls to [m], shape (V, W).
             contacts: Contacts of this step.
             largest_move: Longest displacement of a vertex [m].
-            rounding: Force over shear modulus that is rounding alone [m], of a solid [m^2].
+            rounding: Force over shear modulus that is rounding alone [m], of a solid [m^2], shape (P,).
             force: Residual of each vertex [N], shape (V, W).
             x: Positions [m], shape (V, W); moved in place.
         """
         k, w = wp.tid()
         i = color[k]
-        noise = rounding * tissue.moduli[w][0]
+        noise = rounding[nodes.patient[w]] * tissue.moduli[w][0]
         if tissue.rigid[w] == 1 or converged(force[i, w], x[i, w] - inertial[i, w], noise):
             return
         block = inertia_and_anchor(nodes, tissue, inertial[i, w], x[i, w], i, w, 1.0 / (contacts.dt * contacts.dt))

@@ -40,8 +40,10 @@ class WallElements(Protocol):
     """Vertices of each element, shape (E, n)."""
     data: Any
     """Struct that those kernels take."""
-    size: float
-    """Length that makes the first modulus a stiffness [m]; 1 for a shell, whose moduli are stiffnesses."""
+
+    @property
+    def size(self) -> float | np.ndarray:
+        """Length that makes the first modulus a stiffness [m], (P,); 1 for shells, whose moduli are stiffnesses."""
 
     @property
     def memory(self) -> dict[str, torch.Tensor]:
@@ -105,7 +107,7 @@ class Solid:
         edges = [(rest[tets[:, 1:]] - rest[tets[:, :1]]).transpose(0, 2, 1) for rest in points]
         start, entry = vertex_entries(tets, len(points[0]))
         volume = [np.linalg.det(one) / 6.0 for one in edges]
-        self.size = float(np.mean(volume)) ** (1.0 / 3.0)
+        self.size = np.array([float(np.mean(one)) ** (1.0 / 3.0) for one in volume])
         self.corners = tets
         self.data = solid_kernels.SolidElements()
         self.data.patient = patient

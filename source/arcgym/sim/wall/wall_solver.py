@@ -106,6 +106,8 @@ class WallSolver:
         self.nodes = wall_nodes(walls, patient, device)
         self.gas, self.weight, self.surroundings = gas, weight, surroundings
         self.elements = wall_elements(walls, patient, dt, device, None if gas is None else gas.loads, law)
+        sizes = np.broadcast_to(self.elements.size, len(walls))
+        self._rounding = wp.array(ROUNDING * sizes, dtype=float, device=device)
         self._kernels = self.elements.plain if surroundings is None else self.elements.surrounded
         self._measure_changed_bands = self.elements.measure_changed_bands if surroundings is None else None
         self.rings, self.loads = self._rings(walls, modes, patient)
@@ -289,7 +291,7 @@ class WallSolver:
         """Move the vertices color by color; those of a color ``together`` where no contact joins two of them."""
         sweep = self._kernels.sweep_packed if self.on_gpu else self._kernels.sweep_color
         inputs = [self.nodes, self.elements.data, self.tissue, self.inertial, contacts]
-        inputs += [self.cfg.largest_move, ROUNDING * self.elements.size, self.force]
+        inputs += [self.cfg.largest_move, self._rounding, self.force]
         for color in self.colors:
 
             def move(first: int, rows: int, color: wp.array = color) -> None:
