@@ -147,27 +147,6 @@ def measure_fields(rings: Rings, records: ContactRecords, measured: MeasuredCont
         slot += records.threads
 
 
-@wp.kernel
-def list_touching(records: ContactRecords, measured: MeasuredContacts):
-    """Leave in the lists by ring what touches alone, in ascending order, for the equations of the rings. Launch (W,).
-
-    Args:
-        records: Contacts; ``ring_head`` and ``ring_next`` are written.
-        measured: The same, measured.
-    """
-    w = wp.tid()
-    first = w * records.capacity
-    count = records.start[w, records.start.shape[1] - 1]
-    for k in range(count):
-        records.ring_head[records.ring[first + k], w] = -1
-    for k in range(count):
-        slot = first + count - 1 - k
-        if measured.stiffness[slot][0] > 0.0:
-            r = records.ring[slot]
-            records.ring_next[slot] = records.ring_head[r, w]
-            records.ring_head[r, w] = slot
-
-
 @wp.func
 def anchor_row(
     rings: Rings, loads: RingLoads, shift: wp.vec3, r: int, field: wp.vec3, along: wp.vec3, p: int
@@ -209,32 +188,6 @@ def self_contact_row(
                 fields = ring_fields(rings, v, rings.patient[w])
                 out = add_share(out, fields, (stiffness * wp.dot(fields, field) * wp.dot(n, along)) * n)
     return out
-
-
-@wp.kernel
-def sum_forces(
-    first: int,
-    force: wp.array2d[wp.vec3],
-    rings: Rings,
-    loads: RingLoads,
-    tissue: Tissue,
-    rhs: wp.array3d[float],
-):
-    """Sum up the force on each unknown of a ring, on a CPU, which has all of them at hand. Launch (R, W).
-
-    Arguments as of ``assemble``.
-    """
-    r, w = wp.tid()
-    r += first
-    p = rings.patient[w]
-    total = Unknowns()
-    if rings.moves[r, p] == 1 and tissue.rigid[w] == 0:
-        for j in range(loads.members.shape[1]):
-            v = wp.max(loads.members[r, j], 0)
-            fields = float(loads.members[r, j] >= 0) * ring_fields(rings, v, p)
-            total = add_share(total, fields, force[v, w])
-    for a in range(MODES):
-        rhs[r, w, a] = total[a]
 
 
 @wp.func
@@ -291,7 +244,8 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
             kept: Rows of which only the right-hand side is written, if ``keeps``.
             diagonal: Blocks of the rings [N/m], shape (R, W, M, M); written.
             upper: Blocks from each ring to the next [N/m], shape (R, W, M, M); written.
-            rhs: Force on each unknown [N], shape (R, W, M); written, on a CPU by ``sum_forces``.
+            rhs: Force on each unknown [N], shape (R, W, M); written, on a CPU by
+                :func:`arcgym.sim.wall.coarse_cpu_kernels.sum_forces`.
         """
         r, w, a = wp.tid()
         r += first

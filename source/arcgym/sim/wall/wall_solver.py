@@ -16,7 +16,7 @@ from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.contact.self_contact import SelfContact
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.simulation_cfg import WallSolverCfg
-from arcgym.sim.wall import coarse_kernels, packed_contact_kernels, wall_kernels, weight_kernels
+from arcgym.sim.wall import coarse_cpu_kernels, coarse_kernels, packed_contact_kernels, wall_kernels, weight_kernels
 from arcgym.sim.wall.band_kernels import RingAxes, Rings
 from arcgym.sim.wall.band_matrix_kernels import ENTRIES
 from arcgym.sim.wall.block_tridiagonal import BlockTridiagonalSolver
@@ -117,16 +117,13 @@ class WallSolver:
         self.tissue.anchor = wp.ones(num_envs, dtype=float, device=device)
         self.tissue.rigid = wp.zeros(num_envs, dtype=int, device=device)
         count, rings = (self.vertex_count, num_envs), (self.ring_count, num_envs)
-        self.x_prev = wp.zeros(count, dtype=wp.vec3, device=device)
-        self.inertial = wp.zeros(count, dtype=wp.vec3, device=device)
-        self.force = wp.zeros(count, dtype=wp.vec3, device=device)
+        self.x_prev, self.inertial, self.force = (wp.zeros(count, dtype=wp.vec3, device=device) for _ in range(3))
         self.shift = wp.zeros(rings, dtype=wp.vec3, device=device)
         self.axes = RingAxes()
         self.axes.p, self.axes.q = (wp.zeros(rings, dtype=wp.vec3, device=device) for _ in range(2))
         self.bands = wp.zeros((self.ring_count, ENTRIES, ENTRIES, num_envs), dtype=float, device=device)
         self.measured = self._measured_contacts(contact_slots)
-        self._on_cpu = wp.get_device(device).is_cpu
-        self.on_gpu = not self._on_cpu
+        self.on_gpu = wp.get_device(device).is_cuda
         """Whether contacts are packed, see :mod:`.packed_contact_kernels`."""
         self.packed = wp.zeros(FOURS * contact_slots if self.on_gpu else 1, dtype=wp.vec4, device=device)
         """The packed contacts."""
@@ -144,11 +141,9 @@ class WallSolver:
 
     def _measured_contacts(self, slots: int) -> wall_kernels.MeasuredContacts:
         measured = wall_kernels.MeasuredContacts()
-        measured.force = wp.zeros(slots, dtype=wp.vec3, device=self.device)
-        measured.normal = wp.zeros(slots, dtype=wp.vec3, device=self.device)
         measured.stiffness = wp.zeros(slots, dtype=wp.vec2, device=self.device)
-        measured.own_fields = wp.zeros(slots, dtype=wp.vec3, device=self.device)
-        measured.next_fields = wp.zeros(slots, dtype=wp.vec3, device=self.device)
+        for name in ("force", "normal", "own_fields", "next_fields"):
+            setattr(measured, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         return measured
 
     def forget(self, world_mask: wp.array) -> None:
@@ -350,19 +345,18 @@ class WallSolver:
         contacts.self_contact = self.self_contact.force
         if self.surroundings is not None:
             contacts.outer = self.surroundings.force
-        shape = (self.num_envs, contacts.records.threads)
-        measured = self.measured
+        shape, measured = (self.num_envs, contacts.records.threads), self.measured
         measure = packed_contact_kernels.measure_packed if self.on_gpu else wall_kernels.measure_contacts
         self._launch(measure, shape, [contacts, x], [measured])
-        if self.cfg.coarse_correction and self._on_cpu:
-            self._launch(coarse_kernels.list_touching, (self.num_envs,), [contacts.records], [measured])
+        if self.cfg.coarse_correction and wp.get_device(self.device).is_cpu:
+            self._launch(coarse_cpu_kernels.list_touching, (self.num_envs,), [contacts.records], [measured])
         inputs = [self.nodes, self.elements.data, self.tissue, inertial, contacts, measured, x]
         self._launch_rows(self._kernels.residual, x.shape, inputs, [force])
 
     def _correct_rings(self, start: wp.array, x: wp.array, contacts: wall_kernels.WallContacts, repeat: int) -> None:
         """Solve for the modes of all rings and move every vertex with its ring, from ``start`` to ``x``."""
         system, rings, tissue = self.ring_system, self.rings, self.tissue
-        if self.surroundings is None and self.gas_rings is None and self._on_cpu:
+        if self.surroundings is None and self.gas_rings is None and wp.get_device(self.device).is_cpu:
             in_sequence(self.ring_count, lambda *rows: self._assemble(contacts, *rows), system.eliminate)
             system.substitute()
         else:
@@ -385,9 +379,9 @@ class WallSolver:
     def _assemble(self, contacts: wall_kernels.WallContacts, first: int, rows: int) -> None:
         """Write some rows of the rings' equations."""
         system = self.ring_system
-        if self._on_cpu:
+        if wp.get_device(self.device).is_cpu:
             inputs = [first, self.force, self.rings, self.loads, self.tissue]
-            self._launch(coarse_kernels.sum_forces, (rows, self.num_envs), inputs, [system.rhs])
+            self._launch(coarse_cpu_kernels.sum_forces, (rows, self.num_envs), inputs, [system.rhs])
         inputs = [first, self.force, self.rings, self.loads, self.bands, self.shift, self.tissue, 1.0 / self.dt**2]
         kernel, kept = coarse_kernels.assemble, KeptRows()
         if self.kept is not None:
