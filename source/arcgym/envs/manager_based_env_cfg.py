@@ -40,8 +40,8 @@ class ManagerBasedEnvCfg:
     viewer: ViewerCfg = ViewerCfg()
     """Picture of ``env.render()`` and of videos: which world, from where, in which colors."""
 
-    decimation: int = 48
-    """Physics steps in a control step. With ``sim.dt`` = 1/480 s, 48 gives control at 10 Hz."""
+    decimation: int = 24
+    """Physics steps in a control step. With ``sim.dt`` = 1/240 s, 24 gives control at 10 Hz."""
 
     seed: int | None = None
     """Seed of all random numbers, set before the scene is built. None leaves the generators as they are, -1 draws

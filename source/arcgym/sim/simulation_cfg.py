@@ -49,9 +49,9 @@ class ContactCfg:
     friction: float = 0.1
     """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
-    friction_stiffness: float = 2000.0
+    friction_stiffness: float = 1000.0
     """Stiffness along the wall of a contact that friction holds [N/m]: a contact of 1 N slides after
-    ``friction * 1 N / friction_stiffness``, 0.05 mm. Softer, and a shaft that stops springs back visibly; stiffer, and
+    ``friction * 1 N / friction_stiffness``, 0.1 mm. Softer, and a shaft that stops springs back visibly; stiffer, and
     it needs a shorter ``SimulationCfg.dt``."""
     static_friction: float = 1.0
     """Static over dynamic friction. 1 for Coulomb's law with one coefficient; above it, contacts that have stopped hold
@@ -66,7 +66,7 @@ class ContactCfg:
     contact surface, which has the folds that they leave out and is carried by the wall (docs/physics.md), or ``rows``,
     the rows of that surface with the wall's columns alone: folds go round the lumen. Choose them where folds and tight
     bends matter; they take three times the room for contacts, and stages made before them have none."""
-    search_gap: float = 0.001
+    search_gap: float = 0.002
     """Distance beyond touching within which contacts are kept for the coming step [m]. It must exceed the way
     that link and wall close in one physics step."""
     search_reach: int = 12
@@ -116,10 +116,10 @@ class WallSolverCfg:
     """Velocity decay of the wall [1/s], standing for the surrounding fat and fluid."""
     largest_move: float = 0.0005
     """Largest displacement that one coarse correction, and one step of a vertex in a sweep, may make [m]. Both
-    overshoot where a soft wall is crumpled: with 10 mm the ``in_situ`` wall blew up. 0.5 mm a step of 1/480 s is still
-    240 mm/s, on top of the wall's velocity."""
+    overshoot where a soft wall is crumpled: with 10 mm the ``in_situ`` wall blew up. 0.5 mm a step of 1/240 s is still
+    120 mm/s, on top of the wall's velocity."""
     largest_speed: float = 0.5
-    """Speed up to which inertia carries a vertex on from step to step [m/s]: in 1/480 s by 1 mm, as far as
+    """Speed up to which inertia carries a vertex on from step to step [m/s]: in 1/240 s by 2 mm, as far as
     ``ContactCfg.search_gap`` looks. 20 N put at once on a link threw the ``in_situ`` wall at 3 m/s; it outran the
     contact, and the link then ran into it. Raise it together with that gap, or with a smaller ``SimulationCfg.dt``,
     where a wall is to swing freely at more."""
@@ -147,9 +147,11 @@ class WallSolverCfg:
 class SimulationCfg:
     """Physics of the scope in the colon."""
 
-    dt: float = 1.0 / 480.0
-    """Physics step: one wall solve [s]. The frozen wall damps contact by stiffness * dt; 1/240 softens fast pushes
-    visibly, smaller steps cost in proportion."""
+    dt: float = 1.0 / 240.0
+    """Physics step: one wall solve [s]. While the scope moves through its substeps the wall stands still. Smaller
+    steps cost in proportion and change pushes by a few percent; with 1/120 s a push through the sigmoid goes another
+    way (docs/physics.md). With it change ``ContactCfg.friction_stiffness``, ``ContactCfg.search_gap`` and the task's
+    ``decimation``."""
     device: str = "cpu"
     """Device of physics, camera and tensors: ``cpu`` or ``cuda:0``."""
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -158,9 +160,10 @@ class SimulationCfg:
     solver: Literal["two_level", "newton"] = "two_level"
     """Wall solver and coupling: ``two_level`` (ring correction + vertex block descent, own coupling loop) or ``newton``
     (plain Newton ``SolverVBD`` under ``SolverCoupledProxy``), a slow reference without the refinements."""
-    scope_substeps: int = 1
+    scope_substeps: int = 4
     """Scope substeps a physics step, at least 1. The scope is solved implicitly and is stable with any number;
-    more of them follow fast contacts more closely. ``solver="newton"`` takes at least 2."""
+    more of them follow fast contacts more closely, and cost little beside the wall. ``solver="newton"`` takes at
+    least 2."""
     scope_iterations: int = 10
     """Constraint iterations of MuJoCo a substep, with ``solver="newton"``."""
     mass_scaling: float = 1.0

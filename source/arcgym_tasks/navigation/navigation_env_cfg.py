@@ -272,7 +272,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     metrics: MetricsCfg = MetricsCfg()
     """Metrics."""
 
-    decimation: int = 48
+    decimation: int = 24
     """Physics steps in a control step: 0.1 s."""
 
     def __post_init__(self) -> None:
