@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.physics_steps import steps_registered
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.trials import read_conditions
@@ -39,6 +40,7 @@ def write_result_folder(
         "overrides": [],
         "versions": {"arcgym commit": "abc1234"},
         "machine": "a machine",
+        "physics_hz": {task: steps_registered(task)},
     }
     out = ResultFolder(path, about | run)
     for trial in conditions.trials[::every]:

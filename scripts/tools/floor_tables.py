@@ -19,8 +19,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from arcgym.evaluation.floors import FIGURES, Floor, floors_of, read_floors, updated, write_floors
+from arcgym.evaluation.physics_steps import as_text
 from arcgym.evaluation.results import find_results
 from arcgym.evaluation.statistics import Interval
+from arcgym.evaluation.suites import read_suites
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE, FLOORS = DOCS / "evaluation.md", DOCS / "data" / "floors.csv"
@@ -79,9 +81,14 @@ def _cell(of: Interval, name: str) -> str:
 def _origin(floors: Sequence[Floor]) -> str:
     """Return commit, machine and trials of the rows, with their names where there are several."""
     groups: dict[tuple[str, str], list[Floor]] = {}
+    suites = read_suites()
     for one in floors:
-        earlier = "" if one.is_current else f"; trials of {one.conditions}, an earlier version"
-        groups.setdefault((one.commit, one.machine + earlier), []).append(one)
+        about = one.machine
+        if one.conditions != suites[one.suite].conditions:
+            about += f"; trials of {one.conditions}, an earlier version"
+        if not one.is_of_present_steps:
+            about += f"; physics steps of {as_text(one.physics_hz)}, an earlier default"
+        groups.setdefault((one.commit, about), []).append(one)
     if len(groups) == 1:
         return "Commit {}; {}.\n".format(*next(iter(groups)))
     several = len({one.task for one in floors}) > 1

@@ -76,6 +76,17 @@ def test_a_row_of_earlier_trials_gives_way_to_fewer_present_ones(tmp_path: Path)
     assert last == "Commit abc1234; a machine; trials of population_v2, an earlier version."
 
 
+def test_a_row_of_another_physics_step_says_so_and_gives_way_to_the_present_one(tmp_path: Path) -> None:
+    """Files without the column are of steps of 1/480 s."""
+    old = floors(folder(tmp_path / "old", "expert", physics_hz={}))
+    new = floors(folder(tmp_path / "new", "expert", every=10))
+    assert updated(old, new) == new == updated(new, old)
+    write_floors(tmp_path / "floors.csv", old)
+    last = "Commit abc1234; a machine; physics steps of 1/480 s, an earlier default."
+    assert tables("--floors", str(tmp_path / "floors.csv"))[-1] == last
+    assert read_floors(tmp_path / "floors.csv")[0].physics_hz == 480.0
+
+
 def test_a_row_gives_way_to_none_without_its_figures(tmp_path: Path) -> None:
     (known,) = floors(folder(tmp_path / "a", "expert", 30))
     (new,) = floors(folder(tmp_path / "b", "expert", 0))

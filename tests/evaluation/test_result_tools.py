@@ -49,6 +49,11 @@ def test_all_that_may_make_a_difference_beside_the_agents_is_told(tmp_path: Path
         f"note: 12 trials are of both, of 120 in {first} and 12 in {second}",
     ]
     assert notes(first, first) == []
+    older, newer = ({"physics_hz": {TASKS[0]: steps}, "changes": {TASKS[0]: {}}} for steps in (480.0, 240.0))
+    first, second = (result(tmp_path / name, run=RUN | of) for name, of in (("c", older), ("d", newer)))
+    assert notes(first, second) == [f"note: {TASKS[0]} physics step is 1/480 s in {first} and 1/240 s in {second}"]
+    with pytest.raises(UsageError, match="'physics_hz' in run.json"):
+        merge([first, second], tmp_path / "both")
 
 
 def test_the_table_says_which_is_subtracted(tmp_path: Path, capsys) -> None:

@@ -37,7 +37,7 @@ def test_a_cell_has_success_interval_and_the_papers_figure_and_the_others_their_
     assert f"| Magnetic | {label} | 90 (74–97) [20] | – [0] | – [40] | – [0] |" in text
     assert "arcgym study paper_table seed=1 algorithm=ppo_paper robot=Magnetic task=sigmoid,descending,splenic" in text
     assert "arcgym study paper_table seed=1 algorithm=ppo robot=Magnetic task=rectum,sigmoid,descending,splenic" in text
-    last = "| ppo_paper | 30 | 6 144 | abcdef012345 | abc1234 | a machine | ours |"
+    last = "| ppo_paper | 30 | 6 144 | abcdef012345 | 1/240 s | abc1234 | a machine | ours |"
     assert f"| paper | paper_v1 | `ARC-Rectum-Magnetic` {last}" in text
 
 
@@ -99,6 +99,31 @@ def test_trials_of_an_earlier_version_say_so_and_give_way_to_the_present_ones(tm
     text = page([old, new], tmp_path)
     assert "| expert | 200 | 10 (7–15) |" in text and "population_v2" not in text
     assert "--suite population --robot Magnetic --agent expert --out" not in text
+
+
+def test_trials_of_another_physics_step_are_marked_and_give_way_to_the_present_ones(tmp_path: Path) -> None:
+    """What does not say its step, all that ran before it was written down, had steps of 1/480 s."""
+    run: dict[str, Any] = {"agent": "expert", "checkpoint_sha256": [], "task": "ARC-LeftColon-Magnetic"}
+    old = write_result_folder(tmp_path / "old", 100, **run, suite="population", physics_hz={})
+    cell = write_result_folder(tmp_path / "cell", 27, physics_hz={})
+    text = page([old, cell], tmp_path)
+    assert "| `ARC-LeftColon-Magnetic` | expert‡ | 200 | 50 (43–57) |" in text
+    assert text.count("‡ ran with physics steps of 1/480 s, an earlier default") == 4
+    assert "| Magnetic | PPO, shipped reward | 90 (74–97)‡ |" in text
+    assert "| 1/480 s | abc1234 | a machine | old |" in text
+    assert "--suite population --robot Magnetic --agent expert --out" in text
+    new = write_result_folder(tmp_path / "new", 20, **run, suite="population")
+    text = page([old, new], tmp_path)
+    assert "| expert | 200 | 10 (7–15) |" in text and "| 1/240 s | abc1234 |" in text and "1/480 s | abc" not in text
+
+
+def test_studies_of_a_fixed_policy_do_not_mix_steps(tmp_path: Path) -> None:
+    task = "ARC-Rectum-Magnetic:dense"
+    old = write_result_folder(tmp_path / "old", 0, task, "anchors", physics_hz={})
+    text = page([old, write_result_folder(tmp_path / "new", 30, task, "anchors")], tmp_path)
+    table = text.partition("ablations: anchors")[2].partition("\n## ")[0]
+    assert "‡" not in table and "success [%], dense | 100 " in table
+    assert "‡ ppo `abcdef01` ran with physics steps of 1/480 s" in page([old], tmp_path)
 
 
 def test_a_copy_that_grew_keeps_no_rows_of_the_smaller_one(tmp_path: Path) -> None:

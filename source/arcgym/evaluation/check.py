@@ -9,6 +9,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from arcgym.evaluation.result_folder import CHANGED, COMMIT, HASH, TEXTS, UNTRAINED, Row, read_run, read_trial_rows
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
@@ -110,7 +112,7 @@ def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool
         for name in path.split("."):
             found = getattr(found, name, "")
         of_suite = [text.removeprefix("env.").partition("=")[0] for text in suite.overrides_of(task)]
-        if path in of_suite or str(found).lower() != value.lower():
+        if path in of_suite or (str(found).lower() != value.lower() and found != yaml.safe_load(value)):
             return False
     return bool(tasks)
 

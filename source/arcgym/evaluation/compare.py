@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from arcgym.evaluation.check import is_agents
+from arcgym.evaluation.physics_steps import as_text, steps_in
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
 from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS
@@ -64,8 +65,9 @@ def notes(first: Path, second: Path) -> list[str]:
 
 
 def _settings(run: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings of each task that are not as registered and not the agent's own, by task and path."""
-    return {
+    """Return the length of a physics step, and all settings that are not as registered and not the agent's own."""
+    steps = {f"{task} physics step": as_text(steps_in(run, task)) for task in run.get("changes", {})}
+    return steps | {
         f"{task} {path}": used
         for task, changes in run.get("changes", {}).items()
         for path, (_, used) in changes.items()

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.physics_steps import ENTRY, UNSAID, steps_registered
 from arcgym.evaluation.result_folder import UNTRAINED
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
@@ -39,7 +40,7 @@ FIGURES = {
 BOUNDS = ("", "_low", "_high")
 """Ends of the columns of an estimate and of its bounds."""
 
-ABOUT = ("suite", "conditions", "task", "agent", "trials", "commit", "machine")
+ABOUT = ("suite", "conditions", "task", "agent", "trials", "commit", "machine", "physics_hz")
 """Columns before those of the figures."""
 
 DIGITS = 4
@@ -64,6 +65,8 @@ class Floor:
     """Commit of the code that ran them."""
     machine: str
     """Processor and accelerator."""
+    physics_hz: float
+    """Physics steps a second."""
     figures: dict[str, Interval]
     """Estimates with their bounds, by name in :data:`FIGURES`."""
 
@@ -74,8 +77,13 @@ class Floor:
 
     @property
     def is_current(self) -> bool:
-        """Whether the trials are those that the suite has now."""
-        return self.conditions == read_suites()[self.suite].conditions
+        """Whether trials and physics steps are those that suite and task have now."""
+        return self.conditions == read_suites()[self.suite].conditions and self.is_of_present_steps
+
+    @property
+    def is_of_present_steps(self) -> bool:
+        """Whether the task has as many physics steps a second now."""
+        return self.physics_hz == steps_registered(self.task)
 
 
 def floors_of(results: Iterable[Result]) -> list[Floor]:
@@ -91,8 +99,8 @@ def updated(known: Sequence[Floor], new: Sequence[Floor]) -> list[Floor]:
     """Return the known rows with new ones in their places, in the order of suites, tasks and agents.
 
     A new row takes a place if it has at least as many trials and every figure of the one before: fewer trials, or a
-    small copy of a folder without some columns, replace nothing. Trials of the suite's present condition file take the
-    place of earlier ones, and earlier ones none of theirs.
+    small copy of a folder without some columns, replace nothing. Trials of the suite's present condition file and
+    of the task's present physics steps take the place of earlier ones, and earlier ones none of theirs.
     """
     rows = {one.key: one for one in known}
     for one in new:
@@ -146,12 +154,13 @@ def _floor(result: Result) -> Floor:
         of["trials"],
         result.commit,
         result.run["machine"],
+        result.steps,
     )
     return Floor(*about, figures)
 
 
 def _cells(one: Floor) -> dict[str, Any]:
-    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT}
+    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT} | {ENTRY: f"{one.physics_hz:g}"}
     for name, of in one.figures.items():
         values = zip(BOUNDS, (of.value, of.low, of.high), strict=True)
         cells |= {name + bound: f"{value:.{DIGITS}g}" for bound, value in values}
@@ -162,5 +171,6 @@ def _read(row: dict[str, str]) -> Floor:
     figures = {
         name: Interval(*(float(row[name + bound]) for bound in BOUNDS)) for name in FIGURES if row.get(name, "") != ""
     }
-    about = {name: row[name] for name in ABOUT}
-    return Floor(**{**about, "trials": int(row["trials"])}, figures=figures)  # type: ignore[arg-type]
+    about: dict[str, Any] = {name: row.get(name) for name in ABOUT}
+    about |= {"trials": int(row["trials"]), ENTRY: float(row.get(ENTRY) or UNSAID)}
+    return Floor(**about, figures=figures)

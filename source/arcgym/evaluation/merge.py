@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.physics_steps import ENTRY
 from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
 from arcgym.utils.errors import UsageError
 
@@ -24,7 +25,7 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
     for part in parts:
         run = read_run(part)
         names = ResultFolder(out, run).names
-        _merge_changes(folder, part, run.get("changes", {}))
+        _merge_settings(folder, part, run)
         for task, inputs in run.get("inputs", {}).items():
             folder.note_inputs(task, inputs)
         for row in read_trial_rows(part):
@@ -41,9 +42,12 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
     return folder
 
 
-def _merge_changes(folder: ResultFolder, part: Path, changes: dict[str, Any]) -> None:
-    before = read_run(folder.path).get("changes", {})
-    for task, of in changes.items():
-        if before.get(task, of) != of:
-            raise UsageError(f"{part} ran {task} with other settings than the folders before: 'changes' in run.json.")
-        folder.note_changes(task, of)
+def _merge_settings(folder: ResultFolder, part: Path, run: dict[str, Any]) -> None:
+    for entry, note in (("changes", folder.note_changes), (ENTRY, folder.note_steps)):
+        before = read_run(folder.path).get(entry, {})
+        for task, of in run.get(entry, {}).items():
+            if before.get(task, of) != of:
+                raise UsageError(
+                    f"{part} ran {task} with other settings than the folders before: '{entry}' in run.json."
+                )
+            note(task, of)

@@ -21,6 +21,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+from arcgym.evaluation.physics_steps import ENTRY
 from arcgym.evaluation.run_shape import fault
 from arcgym.utils.errors import UsageError
 
@@ -93,6 +94,12 @@ class ResultFolder:
         """Write down which fields of a task are not as registered: registered and used value by path."""
         run = read_run(self.path)
         run.setdefault("changes", {})[task] = changes
+        _write_run(self.path / RUN_FILE, run)
+
+    def note_steps(self, task: str, steps: float) -> None:
+        """Write down how many physics steps a second a task was run with."""
+        run = read_run(self.path)
+        run.setdefault(ENTRY, {})[task] = steps
         _write_run(self.path / RUN_FILE, run)
 
     def note_inputs(self, task: str, inputs: dict[str, Any]) -> None:

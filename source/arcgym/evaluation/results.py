@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.check import problems
+from arcgym.evaluation.physics_steps import steps_in, steps_registered
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
 
@@ -71,8 +72,18 @@ class Result:
 
     @property
     def is_current(self) -> bool:
-        """Whether the trials are those that the suite has now, not those of an earlier version."""
-        return self.conditions == read_suites()[self.suite].conditions
+        """Whether trials and physics steps are those that suite and task have now, not those of an earlier version."""
+        return self.conditions == read_suites()[self.suite].conditions and self.is_of_present_steps
+
+    @property
+    def steps(self) -> float:
+        """Physics steps a second."""
+        return steps_in(self.run, self.task)
+
+    @property
+    def is_of_present_steps(self) -> bool:
+        """Whether the task has as many physics steps a second now."""
+        return self.steps == steps_registered(self.task)
 
     @property
     def checkpoints(self) -> list[str]:
@@ -134,7 +145,8 @@ def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list
 def best(results: Sequence[Result]) -> Result | None:
     """Return the result of several of one cell that says most.
 
-    Those of the suite's present trials come first, then training seeds count, trials, and transitions.
+    Those of the suite's present trials and the task's present steps come first, then training seeds count, trials, and
+    transitions.
     """
 
     def weight(one: Result) -> tuple[bool, int, int, float, str]:

@@ -15,11 +15,12 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
+from arcgym.evaluation.physics_steps import as_text
 from arcgym.evaluation.result_folder import Row
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.strengths import strengths_tables
-from arcgym.evaluation.suites import FOLDER
+from arcgym.evaluation.suites import FOLDER, read_suites
 from arcgym.evaluation.summary import summarize
 
 SECTIONS_FILE = FOLDER / "results.yaml"
@@ -46,6 +47,9 @@ TRAINED = "model.pt"
 NOTHING = "–"
 """Stands in a cell for which nothing was run."""
 
+STEP_MARK = "‡"
+"""Stands behind what had another physics step than the task has now."""
+
 FIGURE = "Success in 30 trials of each task, with intervals, and the paper's own figures"
 """What the picture shows."""
 
@@ -55,6 +59,12 @@ EARLIER = (
 )
 """Stands above tables in which some trials are no longer the suite's."""
 
+EARLIER_STEP = (
+    "‡{names} ran with physics steps of {length}, an earlier default: not to be compared with what has none"
+    " ([why](physics.md#a-step-twice-as-long))."
+)
+"""Stands above tables in which some trials had another physics step than the task has now."""
+
 INTRODUCTION = """# Results
 
 Made by `{command}`
@@ -63,7 +73,8 @@ of successful trials [%] with Wilson's interval (95 %), and behind it the number
 suite's; other figures are interquartile means with bootstrap intervals. `–` was not run: the command that would make it
 is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
 this policy and not of the method. † marks rules on actions that read the simulator's depth, which the policy does not
-see. What was run where is in the [last table](#what-was-run).
+see. ‡ marks trials of an earlier physics step, such as 1/480 s. What was run where is in the
+[last table](#what-was-run).
 """
 
 
@@ -89,17 +100,34 @@ def results_page(
         asked |= dict.fromkeys(missing)
         parts.append(f"## {section['title']}\n")
         parts += [f"{section['text']}\n"] if "text" in section else []
-        parts += [f"{note}\n" for note in _earlier(shown)]
+        parts += [f"{note}\n" for note in _earlier(shown, named=section["kind"] in UNMARKED)]
         parts += [text] if text else []
         parts += [f"![{FIGURE}]({figure})\n"] if figure and section is sections[0] else []
         parts += [_commands(missing)] if missing else []
     return "\n".join([*parts, "## What was run\n", _provenance(list(used.values()))])
 
 
-def _earlier(results: Sequence[Result]) -> list[str]:
-    """Return a sentence that names the versions of trials that are no longer the suite's; none if all are."""
-    names = sorted({one.conditions for one in results if not one.is_current})
-    return [EARLIER.format(names=", ".join(f"`{name}`" for name in names))] if names else []
+def _earlier(results: Sequence[Result], named: bool) -> list[str]:
+    """Return sentences on what is of an earlier version, trials or the physics step; none if nothing is.
+
+    Args:
+        results: What the table shows.
+        named: Whether to name the agents of another physics step, which the table does not mark.
+    """
+    suites = read_suites()
+    names = sorted({one.conditions for one in results if one.conditions != suites[one.suite].conditions})
+    found = [EARLIER.format(names=", ".join(f"`{name}`" for name in names))] if names else []
+    old = [one for one in results if not one.is_of_present_steps]
+    for steps in sorted({one.steps for one in old}):
+        agents = dict.fromkeys(_agent(one) for one in old if one.steps == steps)
+        which = f" {', '.join(agents)}" if named else ""
+        found.append(EARLIER_STEP.format(names=which, length=as_text(steps)))
+    return found
+
+
+def _agent(result: Result) -> str:
+    """Return the name of an agent in a table: its method, and the first digits of its checkpoint."""
+    return f"{result.method} `{result.checkpoints[0][:8]}`" if result.checkpoints else result.method
 
 
 def read_sections() -> list[dict[str, Any]]:
@@ -147,7 +175,7 @@ def _agents(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Re
     """Return the results of a table of agents, the table, and the commands of the cells that are missing."""
     wanted = section.get("methods")
     own = [one for one in results if wanted is None or one.method in wanted]
-    own = [one for one in own if one.checkpoints or one is best([same for same in own if _same(same, one)])]
+    own = [one for one in _newest(own) if one.checkpoints or one is best([same for same in own if _same(same, one)])]
     own.sort(key=lambda one: (one.task, _place(one), one.limits, one.folder.name))
     metrics = [name for name in section["metrics"] if any(name in row for one in own for row in one.rows[:1])]
     head = ["task", "agent", "trials", "success [%]", *(METRICS[name][0] for name in metrics)]
@@ -167,8 +195,9 @@ def _same(first: Result, second: Result) -> bool:
 
 
 def _newest(results: Sequence[Result]) -> list[Result]:
-    """Return the results of the suite's present trials, or all where there are none."""
-    return [one for one in results if one.is_current] or list(results)
+    """Return the results without those of earlier trials or steps whose agent has run the present ones."""
+    there = {(one.task, one.method, *one.checkpoints) for one in results if one.is_current}
+    return [one for one in results if one.is_current or (one.task, one.method, *one.checkpoints) not in there]
 
 
 def _place(result: Result) -> int:
@@ -177,10 +206,11 @@ def _place(result: Result) -> int:
 
 def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
     (of,) = summarize(result.rows).values()
-    name = f"{result.method} `{result.checkpoints[0][:8]}`" if result.checkpoints else result.method
+    name = _agent(result)
     figures = [_interval(of[name], METRICS[name][1]) if name in of else _mean(result.rows, name) for name in metrics]
     name += f", limit {result.limits}" if result.limits else ""
-    name += "" if result.is_current else f", {result.conditions}"
+    name += "" if result.conditions == read_suites()[result.suite].conditions else f", {result.conditions}"
+    name += "" if result.is_of_present_steps else STEP_MARK
     return [f"`{result.task}`", name, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
 
 
@@ -199,6 +229,7 @@ def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[lis
 def _paper(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of one of the paper's studies of a fixed policy, a table a method."""
     parts = []
+    results = _newest(results)
     for method in sorted({one.method for one in results}):
         rows = [row for one in results if one.method == method for row in one.rows]
         parts.append(f"`{method}`. {paper_table(rows, section['suite'])}")
@@ -208,30 +239,35 @@ def _paper(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Res
 KINDS = {"methods": _methods, "agents": _agents, "robustness": _robustness, "paper": _paper}
 """What makes the sections of each kind."""
 
+UNMARKED = ("robustness", "paper")
+"""Kinds whose tables have no place for a mark."""
+
 
 def _cell(result: Result | None, metric: str) -> str:
     """Return a cell of a table of methods; † where rules on actions read what the policy does not see."""
     if result is None:
         return NOTHING
     (of,) = summarize(result.rows).values()
+    mark = "" if result.is_of_present_steps else STEP_MARK
     if metric != "success":
-        return _interval(of[metric], METRICS[metric][1])
+        return _interval(of[metric], METRICS[metric][1]) + mark
     seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""
     few = f" of {of['trials']}" if of["trials"] != 30 else ""
-    return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "")
+    return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "") + mark
 
 
 def _provenance(results: Sequence[Result]) -> str:
     """Return a table of the results that are shown, a line a folder and task."""
     head = ["suite", "conditions", "task", "method", "trials", "transitions", "checkpoint (SHA-256)"]
-    head += ["commit", "machine", "folder"]
+    head += ["physics step", "commit", "machine", "folder"]
     lines = [_row(head), _rule(len(head))]
     for one in dict.fromkeys((one.folder, one.task.partition(":")[0]) for one in results):
         of = [result for result in results if (result.folder, result.task.partition(":")[0]) == one]
         hashes = ", ".join(digest[:12] for digest in of[0].checkpoints)
         transitions = f"{of[0].transitions:,.0f}".replace(",", " ") if of[0].transitions else ""
-        about = [str(sum(len(result.rows) for result in of)), transitions, hashes, of[0].commit, of[0].run["machine"]]
-        lines.append(_row([of[0].suite, of[0].conditions, f"`{one[1]}`", of[0].method, *about, one[0].name]))
+        about = [str(sum(len(result.rows) for result in of)), transitions, hashes, as_text(of[0].steps)]
+        about += [of[0].commit, of[0].run["machine"], one[0].name]
+        lines.append(_row([of[0].suite, of[0].conditions, f"`{one[1]}`", of[0].method, *about]))
     return "\n".join(lines) + "\n"
 
 
