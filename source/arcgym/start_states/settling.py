@@ -20,6 +20,10 @@ LONGEST_SETTLING = 10.0
 """Time after which it is kept though its forces still change [s]."""
 STEADY = 0.01, 0.01
 """Change of forces between two looks that counts as none: as a share, and in newtons."""
+ALONE = 3.0
+"""Time without commands over which a kept state is judged [s]."""
+LEAST = 0.1
+"""Force below which changes are compared with it [N]."""
 
 
 def settle(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> list[Snapshot]:
@@ -35,19 +39,54 @@ def settle(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> l
     settled: list[Snapshot | None] = [None] * len(states)
     for first in range(0, len(states), scene.num_envs):
         some = states[first : first + scene.num_envs]
-        worlds = list(range(len(some)))
-        if len(colon.patients) > 1:
-            colon.write_patient_to_sim(torch.tensor([patient for patient, _ in some], device=scene.device), worlds)
-        arrays = {name: np.stack([state.arrays[name] for _, state in some]) for name in now}
-        sim.write_state({name: torch.from_numpy(array).to(scene.device) for name, array in arrays.items()}, worlds)
-        sim.forward()
-        for world, state in _until_steady(scene, worlds):
+        _put(scene, some)
+        for world, state in _until_steady(scene, range(len(some))):
             settled[first + world] = state.at_rest()
     if len(colon.patients) > 1:
         colon.write_patient_to_sim(owner)
     sim.write_state(now)
     sim.forward()
     return [state for state in settled if state is not None]
+
+
+def left_alone(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> np.ndarray:
+    """Return the forces on the scopes while worlds are left alone in states, one world a state.
+
+    Args:
+        scene: Scene with as many worlds as states, or more.
+        states: Patient and state of each, N of them.
+
+    Returns:
+        Largest force on a window and push on the base after every control step [N], float64, shape (T, N, 2).
+    """
+    _put(scene, states)
+    return forces_alone(scene)[:, : len(states)]
+
+
+def forces_alone(scene: InteractiveScene) -> np.ndarray:
+    """Return the same of all worlds from where they are, shape (T, N, 2)."""
+    control = round(CONTROL_STEP / scene.sim.physics_dt)
+    forces = []
+    for _ in range(round(ALONE / CONTROL_STEP)):
+        scene.sim.step(control)
+        forces.append(_forces(scene).cpu().numpy())
+    return np.array(forces, dtype=float)
+
+
+def changes(forces: np.ndarray) -> np.ndarray:
+    """Return how far forces [N] of :func:`left_alone` are from the first ones, as shares, shape (T, N, 2)."""
+    return np.abs(forces - forces[0]) / np.maximum(forces[0], LEAST)
+
+
+def _put(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> None:
+    """Put the first worlds into states, each of a patient."""
+    sim, colon, device = scene.sim, scene.colon, scene.device
+    worlds = list(range(len(states)))
+    if len(colon.patients) > 1:
+        colon.write_patient_to_sim(torch.tensor([patient for patient, _ in states], device=device), worlds)
+    arrays = {name: np.stack([state.arrays[name] for _, state in states]) for name in sim.world_arrays()}
+    sim.write_state({name: torch.from_numpy(array).to(device) for name, array in arrays.items()}, worlds)
+    sim.forward()
 
 
 def _until_steady(scene: InteractiveScene, worlds: Sequence[int]) -> Iterator[tuple[int, Snapshot]]:

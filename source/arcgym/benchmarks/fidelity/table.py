@@ -99,9 +99,9 @@ TABLE: tuple[Check, ...] = (
     line("start_rest_magnetic_in_situ", "resting:start_rest", robot="magnetic", material="in_situ"),
     line("start_rest_proximal_paper", "resting:start_rest", robot="proximal", material="paper"),
     line("start_rest_proximal_in_situ", "resting:start_rest", robot="proximal", material="in_situ"),
-    line("start_rest_capsule_clinical", "resting:start_rest", robot="capsule", material="clinical", until="sigmoid"),
-    line("start_rest_magnetic_clinical", "resting:start_rest", robot="magnetic", material="clinical", until="sigmoid"),
-    line("start_rest_proximal_clinical", "resting:start_rest", robot="proximal", material="clinical", until="sigmoid"),
+    line("start_rest_capsule_clinical", "resting:start_rest_clinical", robot="capsule", until="sigmoid"),
+    line("start_rest_magnetic_clinical", "resting:start_rest_clinical", robot="magnetic", until="sigmoid"),
+    line("start_rest_proximal_clinical", "resting:start_rest_clinical", robot="proximal", until="sigmoid"),
     line(
         "sensitivity_contact_double sensitivity_contact_double_time",
         "sensitivity:sensitivity",
