@@ -27,8 +27,8 @@ def test_the_leaderboard_is_computed_from_the_trials_and_refuses_with_the_reason
     assert "old" not in text and text.endswith("<!-- end of entries -->\nend\n")
     line = next(line for line in text.splitlines() if line.startswith(f"| `{TASKS[0]}`"))
     assert line.startswith(f"| `{TASKS[0]}` | Mine | A. Author | 100 (89–100) | 1.00 (1.00–1.00) |")
-    assert "| 2e+06 | 1.5 | abc, def, fed | ? | reproduced: B. Other 2026-12 |" in text
-    assert "| abc, def, fed | ? | self-reported |" in text
+    assert "| 2e+06 | 1.5 | abc, def, fed | ? | 1/240 s | reproduced: B. Other 2026-12 |" in text
+    assert "| abc, def, fed | ? | 1/240 s | self-reported |" in text
     (result(tmp_path / "all" / "wrong", seed=5) / "entry.yaml").write_text(ENTRY)
     result(tmp_path / "all" / "nameless", progress=0.5)
     (tmp_path / "all" / "nameless" / "entry.yaml").write_text("name: Mine\ncost: 3\n")
@@ -83,7 +83,7 @@ def test_what_an_entry_says_has_its_kind(tmp_path: Path, before: str, after: str
     good, refused = submissions(tmp_path / "all")
     if reason is None:
         lines = [line for line in entries_table(good).splitlines() if line.startswith("| `")]
-        assert len(lines) == len(TASKS) and all("| 2e+06 | 1.5 |" in line and line.count("|") == 15 for line in lines)
+        assert len(lines) == len(TASKS) and all("| 2e+06 | 1.5 |" in line and line.count("|") == 16 for line in lines)
     else:
         assert not good and reason in refused[path][0]
 
@@ -96,6 +96,13 @@ def test_a_folder_that_is_not_there_empties_no_page(tmp_path: Path, capsys) -> N
             main(["results", words[0], str(tmp_path / "nothing"), *words[1:]])
         assert f"There is no folder {tmp_path / 'nothing'}" in capsys.readouterr().err
     assert "old" in page.read_text()
+
+
+def test_an_entry_of_another_physics_step_is_marked_and_stands_last(tmp_path: Path) -> None:
+    for name, run in (("a", {**RUN, "physics_hz": {}}), ("b", RUN)):
+        (result(tmp_path / name, run=run) / "entry.yaml").write_text(ENTRY)
+    lines = [line for line in entries_table(submissions(tmp_path)[0]).splitlines() if TASKS[0] in line]
+    assert "| 1/240 s | self-reported |" in lines[0] and "| 1/480 s‡ | self-reported |" in lines[1]
 
 
 def test_the_floor_is_no_entry(tmp_path: Path) -> None:

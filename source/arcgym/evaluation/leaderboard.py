@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.check import problems
+from arcgym.evaluation.physics_steps import STEP_MARK, as_text, steps_in, steps_registered
 from arcgym.evaluation.result_folder import COMMIT, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
@@ -127,16 +128,20 @@ def _entry_problems(folder: Path) -> list[str]:
 
 
 def entries_table(folders: Sequence[Path]) -> str:
-    """Return a table a suite, best first, computed from the trials of each submission."""
+    """Return a table a suite, computed from the trials of each submission.
+
+    The best comes first, and those of an earlier physics step last.
+    """
     parts = []
     for suite in read_suites():
         own = [folder for folder in folders if read_run(folder)["suite"] == suite]
-        lines = sorted((line for folder in own for line in _lines(folder)), key=lambda line: (line[0], -line[1]))
+        lines = sorted((line for folder in own for line in _lines(folder)), key=lambda line: line[:3])
         if lines:
             columns = ["task", "method", "by", "success [%]", *(heading for heading, _ in METRICS.values())]
-            columns += ["sees", "trained on", "transitions", "GPU hours", "checkpoint", "ARCGym", "marked"]
+            columns += ["sees", "trained on", "transitions", "GPU hours", "checkpoint", "ARCGym"]
+            columns += ["physics step", "marked"]
             head = [f"| {' | '.join(columns)} |", f"|{'---|' * len(columns)}"]
-            parts.append("\n".join([f"## {suite}\n", *head, *(text for _, _, text in lines)]))
+            parts.append("\n".join([f"## {suite}\n", *head, *(line[3] for line in lines)]))
     return "\n\n".join(parts) + "\n" if parts else "There is no entry yet.\n"
 
 
@@ -152,8 +157,11 @@ def write_leaderboard(page: Path, folders: Sequence[Path]) -> None:
     page.write_text(f"{text[: text.index(BEGIN) + len(BEGIN)]}\n{entries_table(folders)}{text[text.index(END) :]}")
 
 
-def _lines(folder: Path) -> list[tuple[str, float, str]]:
-    """Return task, success and line of the table of each task of a submission."""
+def _lines(folder: Path) -> list[tuple[str, bool, float, str]]:
+    """Return the line of the table of each task of a submission, and what it is sorted by before it.
+
+    These are the task, whether the physics step is an earlier one, and success, the largest first.
+    """
     entry, run = read_entry(folder), read_run(folder)
     name = f"[{entry.name}]({entry.url})" if entry.url else entry.name
     hashes = ", ".join(digest[:8] for digest in run["checkpoint_sha256"]) or run["agent"]
@@ -165,13 +173,15 @@ def _lines(folder: Path) -> list[tuple[str, float, str]]:
         f"{entry.gpu_hours:g}",
         hashes,
         _version(run),
-        marked,
     ]
     lines = []
     for task, of in summarize(read_trial_rows(folder)).items():
         figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
+        steps = steps_in(run, task)
+        is_present = steps == steps_registered(task)
         cells = [f"`{task}`", name, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
-        lines.append((task, of["success"].value, f"| {' | '.join(cells)} |"))
+        cells += [as_text(steps) + ("" if is_present else STEP_MARK), marked]
+        lines.append((task, not is_present, -of["success"].value, f"| {' | '.join(cells)} |"))
     return lines
 
 

@@ -15,6 +15,9 @@ ENTRY = "physics_hz"
 UNSAID = 480.0
 """Physics steps a second of runs that do not say: the default of all tasks before it was written down."""
 
+STEP_MARK = "‡"
+"""Stands in tables behind what had another physics step than the task has now."""
+
 
 def steps_of(env_cfg: Any) -> float:
     """Return the physics steps a second of an environment's configuration, such as 240."""

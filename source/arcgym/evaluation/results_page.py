@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
-from arcgym.evaluation.physics_steps import as_text
+from arcgym.evaluation.physics_steps import STEP_MARK, as_text
 from arcgym.evaluation.result_folder import Row
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
@@ -47,8 +47,6 @@ TRAINED = "model.pt"
 NOTHING = "–"
 """Stands in a cell for which nothing was run."""
 
-STEP_MARK = "‡"
-"""Stands behind what had another physics step than the task has now."""
 
 FIGURE = "Success in 30 trials of each task, with intervals, and the paper's own figures"
 """What the picture shows."""
