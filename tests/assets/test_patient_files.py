@@ -13,6 +13,7 @@ import pytest
 
 from arcgym.assets.patient_files import find_stages, named_colon
 from arcgym.utils import populations
+from arcgym.utils.paths import assets_dir
 from arcgym.utils.populations import register_population
 
 
@@ -70,6 +71,8 @@ def test_the_first_patients_are_taken(folder: Path) -> None:
 def test_a_split_is_asked_for_as_many_as_wanted(population: list[tuple[str, int | None]]) -> None:
     assert find_stages("people:train", 2) == [Path("train_0.usda"), Path("train_1.usda")]
     assert population == [("train", 2)]
+    assert len(find_stages([str(assets_dir() / "colon_1/colon.usda"), "people:train"], 3)) == 3
+    assert population == [("train", 2)] * 2
     with pytest.raises(ValueError, match="no split 'test'"):
         find_stages("people:test")
 

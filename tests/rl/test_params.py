@@ -61,6 +61,13 @@ def test_foreign_code_is_refused(env_cfg, code):
         restore(env_cfg, saved, "env")
 
 
+def test_a_population_is_no_code(env_cfg):
+    saved = to_plain(env_cfg)
+    saved["scene"]["colon"]["usd_path"] = ["colon_1/colon.usda", "population:train"]
+    restore(env_cfg, saved, "env")
+    assert env_cfg.scene.colon.usd_path == ["colon_1/colon.usda", "population:train"]
+
+
 def test_params_of_another_version_are_refused(env_cfg):
     with pytest.raises(UsageError, match="does not fit this version.*--no_params"):
         restore(env_cfg, {"segmnt": "sigmoid"}, "env")

@@ -28,7 +28,10 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
             fewer stages than asked for.
     """
     entries = _joined([usd_path] if isinstance(usd_path, str) else list(usd_path))
-    paths = [path for entry in entries for path in _stages_of(entry, count)]
+    paths: list[Path] = []
+    for entry in entries:
+        if count is None or len(paths) < count:  # patients of a population that nobody takes would be made
+            paths += _stages_of(entry, None if count is None else count - len(paths))
     if not paths:
         raise ValueError("ColonCfg.usd_path is an empty list, expected at least one stage.")
     if count is not None and len(paths) < count:

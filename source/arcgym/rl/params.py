@@ -29,6 +29,9 @@ NOT_RESTORED = {
 TRUSTED = ("arcgym", "arcgym_tasks", "rsl_rl")
 """Packages whose functions a parameter file may name; those that the task's own configurations name come on top."""
 
+NO_CODE = ("usd_path",)
+"""Fields whose values are no code, though a part of a population looks like it: ``population:train``."""
+
 _CALLABLE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 _DOTTED = re.compile(r"[A-Za-z_]\w*(\.\w+)+")
 
@@ -143,7 +146,8 @@ def _code(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
     """Yield path and text of every value that names a function or a class."""
     if isinstance(value, dict):
         for name, child in value.items():
-            yield from _code(child, f"{path}.{name}" if path else str(name))
+            if name not in NO_CODE:
+                yield from _code(child, f"{path}.{name}" if path else str(name))
     elif isinstance(value, list):
         for index, child in enumerate(value):
             yield from _code(child, f"{path}.{index}")
