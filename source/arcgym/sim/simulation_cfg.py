@@ -75,13 +75,14 @@ class ContactCfg:
     limb where it has come through the link's own. Faces farther along the colon touch a link from the lumen alone, so
     that a loop beside the tube is not taken for its wall. Raise it where rings lie much nearer together than 1 cm;
     with 3, the default once, the other limb came through to a link's axis."""
-    capacity: int = 24
+    capacity: int = 40
     """Contacts kept a link, on average over the links of a world, which share them. A link that a gathered wall lies
-    around has up to 50, a link outside the anus none; 45 links in gathered tissue had 1143 altogether. Contacts that
-    find no room are counted (``Simulation.dropped_contacts``): raise it then."""
-    patch_capacity: int = 24
+    around has more than 50, a link outside the anus none; 126 links in all of ``ct_2`` gathered on the shaft had 4067
+    altogether, 32 a link, with a ``search_gap`` of 2 mm and 2956 with 1 mm. Contacts that find no room are counted
+    (``Simulation.dropped_contacts``): raise it then. A scope that loses them is flung through the wall."""
+    patch_capacity: int = 32
     """Patches of six faces looked at near a link, on average over the links of a world, which share them. The links
-    above had 1048 altogether; raise it with ``capacity``, and where a wall has far smaller faces."""
+    above had 2848 altogether; raise it with ``capacity``, and where a wall has far smaller faces."""
 
     def validate_config(self) -> None:
         """Check bounds.

@@ -11,6 +11,7 @@ import torch
 
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import Snapshot
+from arcgym.sim.snapshot_library import with_room
 
 CONTROL_STEP = 0.1
 """Time over which forces are averaged [s]."""
@@ -84,7 +85,9 @@ def _put(scene: InteractiveScene, states: Sequence[tuple[int, Snapshot]]) -> Non
     worlds = list(range(len(states)))
     if len(colon.patients) > 1:
         colon.write_patient_to_sim(torch.tensor([patient for patient, _ in states], device=device), worlds)
-    arrays = {name: np.stack([state.arrays[name] for _, state in states]) for name in sim.world_arrays()}
+    own = sim.read_snapshot(0)
+    rows = [with_room(state, own).arrays for _, state in states]
+    arrays = {name: np.stack([row[name] for row in rows]) for name in own.arrays}
     sim.write_state({name: torch.from_numpy(array).to(device) for name, array in arrays.items()}, worlds)
     sim.forward()
 

@@ -16,6 +16,7 @@ from arcgym.assets.patient_files import find_stages
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg, Snapshot, SnapshotSet
+from arcgym.sim.snapshot_library import with_room
 from arcgym.start_states import store
 from arcgym.start_states.making import key_of
 from arcgym.start_states.settling import left_alone, settle
@@ -84,4 +85,7 @@ def load(robot: str, tissue: str, colons: Sequence[str], device: str) -> Shipped
     scene = InteractiveScene(cfg, SimulationCfg(device=device))
     for patient, states in enumerate(sets):
         states.check(scene.sim, patient)
+    own = scene.sim.read_snapshot(0)
+    fitted = [tuple(with_room(state, own) for state in states.snapshots) for states in sets]
+    sets = [dataclasses.replace(states, snapshots=fit) for states, fit in zip(sets, fitted, strict=True)]
     return Shipped(scene, files, sets)
