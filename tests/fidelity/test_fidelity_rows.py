@@ -56,7 +56,6 @@ SLOW = [
     "sigmoid_rod_force,sigmoid_rod_tip",
     "wall_motion_stiff,wall_motion_soft",
     "action_reaction,base_force",
-    "action_reaction_moving_in_situ,action_reaction_worst_in_situ",
     "tunnelling",
     "speed_capsule",
     "speed_magnetic",
@@ -65,6 +64,8 @@ SLOW = [
     "parked_drift",
 ]
 """Rows that ``make test-all`` measures as well."""
+OUT = ["action_reaction_moving_in_situ,action_reaction_worst_in_situ"]
+"""Rows of which one is known to be out of its bound, see docs/fidelity.md; ``make test-all`` tells when none is."""
 LONG = [
     "contact_search_missed,contact_search_dropped",
     "sigmoid_deep_force,sigmoid_deep_tip",
@@ -112,8 +113,15 @@ def test_rows_are_within_their_bounds(run: Run, names: str) -> None:
     check_rows(run, names)
 
 
+@pytest.mark.slow
+@pytest.mark.xfail(strict=True)
+@pytest.mark.parametrize("names", OUT)
+def test_rows_known_to_be_out_of_their_bounds(run: Run, names: str) -> None:
+    check_rows(run, names)
+
+
 def test_no_row_is_left_out() -> None:
     quick = [name for check in choose(None, quick=True) for name in check.rows]
     every = [name for check in choose(None, quick=False) for name in check.rows]
     assert sorted(quick) == sorted(",".join(QUICK).split(","))
-    assert sorted(every) == sorted(",".join(QUICK + SLOW + LONG).split(","))
+    assert sorted(every) == sorted(",".join(QUICK + SLOW + OUT + LONG).split(","))

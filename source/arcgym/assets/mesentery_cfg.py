@@ -43,7 +43,7 @@ class MesenteryCfg:
     8.2 times the shear stress. 0 for a sheet that does not stiffen."""
     largest_strain: float = 0.5
     """Strain from which the tension grows linearly. A choice, 54 times as stiff as at first; pigs' tore at 0.8 and
-    more, and a law that went on would not be solved at a time step of 1/480 s."""
+    more, and a law that went on would not be solved at the physics step."""
 
     @property
     def active(self) -> bool:

@@ -15,7 +15,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 SMALLEST_VOLUME = wp.constant(1.0e-6)
 """Least volume of a lumen that is reckoned with [m^3]: a wall that is broken has none."""
 SHUT_SHARE = wp.constant(0.4)
-"""Share of the least opening under which a prop gets no stiffer, so that a step of 1/480 s bears it."""
+"""Share of the least opening under which a prop gets no stiffer, so that the physics step bears it."""
 
 
 @wp.struct
