@@ -105,7 +105,7 @@ def load_above(env: ManagerBasedEnv, kind: str, limit: float | str, reduce: str 
 
     Colon perforated at 14.1 N under a straight tip (tier ``perforation``) and tore at strains near 1.8 (Egorov et al.
     2002, transverse strips); no safe strain or pull in vivo is published. The perforation limit was measured in slow
-    pushes: a ``peak`` of 2 ms is contact noise as well.
+    pushes: a ``peak`` of 4 ms is contact noise as well.
 
     Args:
         kind: One of :data:`LOADS`.
