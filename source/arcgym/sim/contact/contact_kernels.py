@@ -52,6 +52,8 @@ class ContactRecords:
     corners: wp.array[wp.vec4i]  # wall vertices that carry the point; of a wall's face, the last one twice
     bary: wp.array[wp.vec4]  # their weights, of sum 1; of a wall's face, barycentric coordinates and 0
     offset: wp.array[wp.vec3]  # from the point that they carry to the one that is touched; 0 on the wall itself [m]
+    point: wp.array[wp.vec3]  # the point that is touched, where the wall is while the scope moves [m]
+    point_vel: wp.array[wp.vec3]  # velocity of the wall there [m/s]
     distance: wp.array[float]  # of the link's axis from the face [m]
     weight: wp.array[float]  # share of the contact stiffness
     normal: wp.array[wp.vec3]  # outward normal of the wall there at detection, or direction from a link clear of it

@@ -159,7 +159,7 @@ class ContactSearch:
         records.bary = wp.zeros(slots, dtype=wp.vec4, device=self.device)
         for name in ("distance", "weight"):
             setattr(records, name, wp.zeros(slots, dtype=float, device=self.device))
-        for name in ("offset", "normal", "slide", "owed"):
+        for name in ("offset", "point", "point_vel", "normal", "slide", "owed"):
             setattr(records, name, wp.zeros(slots, dtype=wp.vec3, device=self.device))
         records.vertex_head = wp.full((self.vertex_count, self.num_envs), -1, dtype=int, device=self.device)
         records.vertex_next = wp.full(4 * slots, -1, dtype=int, device=self.device)

@@ -121,8 +121,11 @@ def load_at(
     penetrated: wp.array[int],
 ) -> ArticulatedBody:
     """Return the load of the contact in ``slot`` about its link's centre of mass; see :func:`load_contacts`."""
-    wall_v = carried(v, records.corners[slot], records.bary[slot], w)
-    p = touched(records, slot, x, w)
+    if elapsed == 0.0:
+        records.point[slot] = touched(records, slot, x, w)
+        records.point_vel[slot] = carried(v, records.corners[slot], records.bary[slot], w)
+    p = records.point[slot]
+    wall_v = records.point_vel[slot]
     radius = links.radius[link] + law.wall_radius
     c = contact_geometry(p, records.normal[slot], motion.pose, links.half_length[link], radius)
     if c.gap + radius < CLEARANCE * links.radius[link]:
@@ -198,7 +201,7 @@ def load_contacts(
         x: Wall positions [m], shape (V, W).
         v: Wall velocities [m/s], shape (V, W).
         links: Capsules of one world.
-        records: Contacts.
+        records: Contacts; ``point`` and ``point_vel`` are written where ``elapsed`` is 0, and read in later substeps.
         law: Contact law.
         friction: Coulomb coefficient of each world, shape (W,).
         body_q_prev: Link poses at the start of the physics step, shape (W*L,).
@@ -247,7 +250,7 @@ def load_contacts_in_groups(
         x: Wall positions [m], shape (V, W).
         v: Wall velocities [m/s], shape (V, W).
         links: Capsules of one world.
-        records: Contacts.
+        records: Contacts; as in :func:`load_contacts`.
         law: Contact law.
         friction: Coulomb coefficient of each world, shape (W,).
         body_q_prev: Link poses at the start of the physics step, shape (W*L,).

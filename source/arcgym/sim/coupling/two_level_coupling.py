@@ -112,11 +112,11 @@ class TwoLevelCoupling:
         count = sim.cfg.scope_substeps
         dt = sim.cfg.dt / count
         for k in range(count):
+            if k > 0 or not self._on_gpu:
+                with self._drives.work():
+                    self._drive()
             self.load_contacts(k * dt, dt)
-            if k > 0 or self._scope_stream is None:
-                self._drive()
-            else:
-                self._drives.join()
+            self._drives.join()
             self.solver.move(state, state, dt)
             self._record(1.0 / count)
 

@@ -15,8 +15,8 @@ from arcgym.sim.wall.kept_rows_kernels import KeptRows
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.utils.warp_setup import GPU_BLOCK
 
-UNMOVED = 3.0e-5
-"""How far a vertex may move until the stiffness around its ring is measured again [m]: three thousandths of an edge.
+UNMOVED = 6.0e-5
+"""How far a vertex may move until the stiffness around its ring is measured again [m]: six thousandths of an edge.
 The residual, which decides where the wall goes, is always that of its present shape; the way there is off by as much,
 of moves that are shorter than this."""
 
