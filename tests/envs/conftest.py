@@ -35,11 +35,15 @@ class CounterSim:
     def __init__(self, counter: Counter, num_envs: int) -> None:
         self.counter = counter
         self.num_forwards = 0
+        self.shortage: str | None = None
         self._num_envs = num_envs
 
     @property
     def non_finite(self) -> torch.Tensor:
         return ~torch.isfinite(self.counter.position)
+
+    def contact_shortage(self) -> str | None:
+        return self.shortage
 
     def step(self, n: int) -> None:
         self.counter.position += n * self.counter.velocity

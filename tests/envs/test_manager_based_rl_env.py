@@ -130,6 +130,13 @@ def test_non_finite_world_is_terminated_reset_and_counted(env) -> None:
     assert extras["log"]["Episode_Termination/non_finite"].item() == 1.0
 
 
+@pytest.mark.parametrize("shortage", [None, "9 contacts found no room"])
+def test_contacts_without_room_are_told_when_the_environment_closes(env, caplog, shortage: str | None) -> None:
+    env.sim.shortage = shortage
+    env.close()
+    assert [record.getMessage() for record in caplog.records] == ([shortage] if shortage else [])
+
+
 def test_final_observation_is_that_before_the_reset(cfg) -> None:
     cfg.compute_final_obs = True
     env = ManagerBasedRLEnv(cfg)

@@ -77,6 +77,17 @@ def test_parts_of_two_machines_make_a_whole(tmp_path: Path) -> None:
     assert sorted(set(parquet["trial"].to_pylist())) == list(range(30))
 
 
+def test_contacts_without_room_are_added_up_and_refused(tmp_path: Path) -> None:
+    of = [{TASKS[0]: 5}, {TASKS[0]: 2, TASKS[1]: 1}]
+    runs = [{**RUN, "dropped_contacts": counts, "overrides": ["env.sim.contact.capacity=60"]} for counts in of]
+    parts = [result(tmp_path / name, run=run) for name, run in zip("ab", runs, strict=True)]
+    merge(parts, tmp_path / "all")
+    assert problems(tmp_path / "all") == [
+        f"{contacts} contacts of {task} found no room: run it with a larger env.sim.contact.capacity"
+        for task, contacts in ((TASKS[0], 7), (TASKS[1], 1))
+    ]
+
+
 def test_a_checkpoint_has_one_name_wherever_it_lies(tmp_path: Path) -> None:
     """One machine has it in /a, the other in /b: it is one training run, and the trial that both ran is the same."""
     ours = {**RUN, "checkpoint": ["/a/1.pt", "/a/2.pt", "/a/3.pt"]}

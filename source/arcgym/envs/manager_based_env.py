@@ -254,6 +254,8 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     def close_extras(self, **kwargs: Any) -> None:
         """Write the episodes being recorded and let go of the view; called once, by :meth:`close`.
 
+        Warns if contacts found no room.
+
         The simulation is freed with the environment. A GPU ends what it was given first: a process that leaves in the
         middle of a kernel may take others with it that share the GPU by MPS.
         """
@@ -261,6 +263,9 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self._view = None
         if torch.device(self.device).type == "cuda":
             torch.cuda.synchronize(self.device)
+        shortage = self.sim.contact_shortage()
+        if shortage is not None:
+            logger.warning(shortage)
 
     def _init_buffers(self) -> None:
         """Make what terms may read while the managers are built."""

@@ -11,7 +11,17 @@ from typing import Any
 
 import yaml
 
-from arcgym.evaluation.result_folder import CHANGED, COMMIT, HASH, TEXTS, UNTRAINED, Row, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import (
+    CHANGED,
+    COMMIT,
+    DROPPED,
+    HASH,
+    TEXTS,
+    UNTRAINED,
+    Row,
+    read_run,
+    read_trial_rows,
+)
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
@@ -20,6 +30,9 @@ AGENTS_OWN = (
     *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs", "actions.tip.forward_velocity"),
 )
 """Fields of the environment, with all below them, that are the agent's: all others make a task what it is."""
+
+ROOM = ("sim.contact.capacity", "sim.contact.patch_capacity")
+"""Fields of the environment that give contacts room, and change nothing where they had enough."""
 
 FORWARD_VELOCITY, FASTEST = "actions.tip.forward_velocity", 0.045
 """A constant velocity of the tip, and the largest that actions command [m/s]."""
@@ -78,6 +91,8 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     if run.get("agent") == "checkpoint" and not run.get("checkpoint_sha256"):
         found.append("checkpoint_sha256 is missing: the checkpoint cannot be identified")
     found += _seen_in_training(run, str(run.get("suite")))
+    for task, contacts in run.get(DROPPED, {}).items():
+        found.append(f"{contacts} contacts of {task} found no room: run it with a larger env.sim.contact.capacity")
     given = [text for text in run.get("overrides", []) if text not in suite.overrides and not text.startswith("agent.")]
     more = [text for text in given if not _is_as_registered(text, list(run.get("changes", {})), suite)]
     if more:
@@ -107,6 +122,8 @@ def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool
     from arcgym.utils.registry import load_cfg_from_registry
 
     path, _, value = override.removeprefix("env.").partition("=")
+    if path in ROOM:
+        return True
     for task in tasks:
         found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
         for name in path.split("."):
@@ -163,10 +180,13 @@ def _silent(run: dict[str, Any], rows: list[Row]) -> list[str]:
 
 
 def is_agents(path: str, used: Any) -> bool:
-    """Return whether a field of the environment, by its path, is the agent's to choose, with the value used."""
+    """Return whether a field of the environment, by its path, is the agent's to choose, with the value used.
+
+    So is the room for contacts.
+    """
     if path == FORWARD_VELOCITY and used is not None:
         return abs(float(used)) <= FASTEST
-    return any(path == own or path.startswith(f"{own}.") for own in AGENTS_OWN)
+    return path in ROOM or any(path == own or path.startswith(f"{own}.") for own in AGENTS_OWN)
 
 
 def _seen_in_training(run: dict[str, Any], suite: str) -> list[str]:

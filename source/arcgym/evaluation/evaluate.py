@@ -107,6 +107,7 @@ def _run_batch(
                 show(len(folder.rows) - started)
 
             run_trials(env, make_policy, trials, keep, patients)
+            folder.note_dropped(task, folder.dropped(task) + int(env.unwrapped.sim.dropped_contacts.sum()))
 
 
 @contextmanager

@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.physics_steps import ENTRY
-from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.result_folder import DROPPED, ResultFolder, read_run, read_trial_rows
 from arcgym.utils.errors import UsageError
 
 
@@ -21,6 +22,7 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
             task with other settings.
     """
     folder = ResultFolder(out, read_run(parts[0]))
+    dropped: Counter[str] = Counter()
     known = {(row["task"], row["trial"]): row for row in folder.rows}
     for part in parts:
         run = read_run(part)
@@ -28,6 +30,7 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
         _merge_settings(folder, part, run)
         for task, inputs in run.get("inputs", {}).items():
             folder.note_inputs(task, inputs)
+        dropped.update(run.get(DROPPED, {}))
         for row in read_trial_rows(part):
             row["agent"] = names.get(row["agent"], row["agent"])
             key = (row["task"], row["trial"])
@@ -39,6 +42,8 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
                     f"{part} has another result of trial {key[1]} of {key[0]} than the folders before: trials of "
                     "different devices differ in the last digits, run each trial on one."
                 )
+    for task, contacts in dropped.items():
+        folder.note_dropped(task, contacts)
     return folder
 
 

@@ -47,6 +47,9 @@ TEXTS = ("task", "agent", "patient", "end")
 HASH = 12
 """Digits of a checkpoint's hash that stand for it in the rows of small copies."""
 
+DROPPED = "dropped_contacts"
+"""Entry of ``run.json``: contacts that found no room by task, where there were any."""
+
 UNTRAINED = ("zero", "random", "expert")
 """Agents that have no checkpoint: the floor."""
 
@@ -101,6 +104,17 @@ class ResultFolder:
         run = read_run(self.path)
         run.setdefault(ENTRY, {})[task] = steps
         _write_run(self.path / RUN_FILE, run)
+
+    def note_dropped(self, task: str, contacts: int) -> None:
+        """Write down how many contacts of a task found no room, which makes its forces wrong; 0 is not written."""
+        run = read_run(self.path)
+        if contacts > 0:
+            run.setdefault(DROPPED, {})[task] = contacts
+            _write_run(self.path / RUN_FILE, run)
+
+    def dropped(self, task: str) -> int:
+        """Return how many contacts of a task found no room so far."""
+        return read_run(self.path).get(DROPPED, {}).get(task, 0)
 
     def note_inputs(self, task: str, inputs: dict[str, Any]) -> None:
         """Write down what a trained agent sees in a task, see :func:`arcgym.evaluation.agents.inputs_of`."""

@@ -26,6 +26,10 @@ def _is_steps(of: Any) -> bool:
     return all(isinstance(steps, int | float) and steps > 0 for steps in of.values())
 
 
+def _is_counts(of: Any) -> bool:
+    return all(isinstance(count, int) and count > 0 for count in of.values())
+
+
 def _is_any(of: Any) -> bool:
     return True
 
@@ -39,6 +43,7 @@ SHAPES: dict[str, tuple[type, Callable[[Any], bool], str]] = {
     "versions": (dict, _is_any, "versions by name"),
     "changes": (dict, _is_changes, "registered and used value by field, by task"),
     "physics_hz": (dict, _is_steps, "physics steps a second by task"),
+    "dropped_contacts": (dict, _is_counts, "contacts by task"),
     "inputs": (dict, _is_inputs, "'sees' and 'simulator_depth' by task"),
 }
 """Type of entries, a test of what is in them, and what they should be."""

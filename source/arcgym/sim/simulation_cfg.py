@@ -79,7 +79,8 @@ class ContactCfg:
     """Contacts kept a link, on average over the links of a world, which share them. A link that a gathered wall lies
     around has more than 50, a link outside the anus none; 126 links in all of ``ct_2`` gathered on the shaft had 4067
     altogether, 32 a link, with a ``search_gap`` of 2 mm and 2956 with 1 mm. Contacts that find no room are counted
-    (``Simulation.dropped_contacts``): raise it then. A scope that loses them is flung through the wall."""
+    (``Simulation.dropped_contacts``), and the environment warns of them when it closes: raise it then. A scope that
+    loses them is flung through the wall."""
     patch_capacity: int = 32
     """Patches of six faces looked at near a link, on average over the links of a world, which share them. The links
     above had 2848 altogether; raise it with ``capacity``, and where a wall has far smaller faces."""
