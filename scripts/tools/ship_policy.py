@@ -145,7 +145,7 @@ def _began_with(init_policy: str | None) -> dict[str, Any] | None:
     path = Path(init_policy)
     run = read_params(path.parent)
     return {
-        "policy": "/".join(path.parts[-NAMES:]),
+        "policy": without_folders(init_policy),
         "task": None if run is None else run.task,
         "sha256": file_sha256(path) if path.is_file() else None,
     }
