@@ -25,7 +25,7 @@ COLUMNS = tuple(dict.fromkeys((*BASIC, *METRICS, *FIGURES, "centered_rate")))
 DIGITS = 5
 """Significant digits that are kept: a figure of the page has three."""
 
-LONG = 40
+LONG = 20
 """Trials beyond which a file is packed."""
 
 PARTS = 3
