@@ -7,7 +7,9 @@ Rows of a patient, robot and tissue count once, that of the last folder; drives 
 far they came.
 
 python scripts/tools/expert_tables.py logs/experts ...                      # prints the tables
-python scripts/tools/expert_tables.py logs/experts ... --write experts.csv  # and writes the rows
+python scripts/tools/expert_tables.py logs/experts ... --write experts.csv --commit 5aa95b2   # and writes the rows
+
+Rows of other patients, robots and tissues that the file has stay there.
 """
 
 from __future__ import annotations
@@ -33,11 +35,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", type=Path, nargs="+", help="folders with rows.jsonl")
     parser.add_argument("--write", type=Path, help="file of the rows")
+    parser.add_argument("--commit", default="", help="what drove them, for the file's last column")
     args = parser.parse_args()
     rows = gathered(args.folders)
     print(summary(rows), table(rows), failures(rows), sep="\n\n")
     if args.write:
-        write(rows, args.write)
+        write(rows, args.write, args.commit)
 
 
 def gathered(folders: Sequence[Path]) -> list[dict[str, Any]]:
@@ -62,26 +65,33 @@ def summary(rows: Sequence[dict[str, Any]]) -> str:
     return "\n".join(lines)
 
 
-def write(rows: Sequence[dict[str, Any]], path: Path) -> None:
-    """Write one line a patient, robot and tissue."""
+def write(rows: Sequence[dict[str, Any]], path: Path, commit: str = "") -> None:
+    """Write one line a patient, robot and tissue into a file, beside those that it has of others."""
     names = ["patient", "robot", "tissue", "scope_m", "length_m", "reached_m", "time_s", "last_segment"]
-    names += ["tip_peak_N", "window_peak_N", "drive_peak_N", "inserted_m", "problem", "held_by"]
+    names += ["tip_peak_N", "window_peak_N", "drive_peak_N", "inserted_m", "problem", "held_by", "commit"]
+    lines: dict[tuple[str, ...], list[str]] = {}
+    if path.is_file():
+        with path.open(newline="") as file:
+            _, *before = csv.reader(file)
+        lines = {(line[1], line[2], line[0]): line for line in before}
+    for row in rows:
+        line = [*_line(row), commit]
+        lines[line[1], line[2], line[0]] = line
     with path.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
-        for row in rows:
-            segment, entry = list(row["segments"].items())[-1] if row["segments"] else ("rectum", {})
-            forces = [f"{entry[name]:.1f}" if entry else "" for name in FORCES]
-            inserted = f"{entry['inserted']:.2f}" if entry and row["robot"] != "capsule" else ""
-            about = [
-                row["patient"].removeprefix("patient_"),
-                row["robot"],
-                row["tissue"],
-                row.get("scope_length") or "",
-            ]
-            way = [f"{row['length']:.2f}", f"{row['reached']:.2f}", f"{row['time']:.0f}", segment]
-            ended = [row["problem"], row["held_by"] if row["problem"] else ""]
-            writer.writerow([*about, *way, *forces, inserted, *ended])
+        writer.writerows(lines[key] for key in sorted(lines))
+
+
+def _line(row: dict[str, Any]) -> list[str]:
+    segment, entry = list(row["segments"].items())[-1] if row["segments"] else ("rectum", {})
+    forces = [f"{entry[name]:.1f}" if entry else "" for name in FORCES]
+    inserted = f"{entry['inserted']:.2f}" if entry and row["robot"] != "capsule" else ""
+    scope = str(row.get("scope_length") or "")
+    about = [row["patient"].removeprefix("patient_"), row["robot"], row["tissue"], scope]
+    way = [f"{row['length']:.2f}", f"{row['reached']:.2f}", f"{row['time']:.0f}", segment]
+    ended = [row["problem"] or "", row["held_by"] if row["problem"] else ""]
+    return [*about, *way, *forces, inserted, *ended]
 
 
 def _share(rows: Sequence[dict[str, Any]], segment: str) -> str:

@@ -43,8 +43,16 @@ def test_a_drive_that_was_cut_off_counts_with_how_far_it_came(folders: list[Path
     assert "| magnetic of 2.2 m | paper | 100 (34–100) | 50 (9–91) | 30 (30) | 1.0 (1.0) |" in TOOL["summary"](rows)
     TOOL["write"](rows, tmp_path / "rows.csv")
     lines = (tmp_path / "rows.csv").read_text().splitlines()
-    assert lines[1] == "10000,magnetic,paper,2.2,1.90,1.85,40,cecum,1.0,2.0,3.0,1.50,,"
-    assert lines[2].endswith("transverse,1.0,2.0,3.0,1.50,no computing time left,2 N on the tip")
+    assert lines[1] == "10000,magnetic,paper,2.2,1.90,1.85,40,cecum,1.0,2.0,3.0,1.50,,,"
+    assert lines[2].endswith("transverse,1.0,2.0,3.0,1.50,no computing time left,2 N on the tip,")
+
+
+def test_rows_of_a_file_stay_but_for_what_was_driven_again(folders: list[Path], tmp_path: Path) -> None:
+    file = tmp_path / "rows.csv"
+    TOOL["write"](TOOL["gathered"](folders[:1]), file, "abc1234")
+    TOOL["write"](TOOL["gathered"](folders[1:]), file, "def5678")
+    _, first, second = file.read_text().splitlines()
+    assert first.endswith(",abc1234") and second.endswith("cecum,1.0,2.0,3.0,1.50,,,def5678")
 
 
 def test_a_later_end_takes_its_place(folders: list[Path]) -> None:
