@@ -4,7 +4,7 @@
 """Film the scenes of ``docs/data/gallery.yaml``, and write ``docs/gallery.md`` with what came of each.
 
     python scripts/tools/make_gallery.py --processes 4
-    python scripts/tools/make_gallery.py --only rectum_capsule
+    python scripts/tools/make_gallery.py --only splenic_capsule
 
 A scene with a ``way`` is filmed from the states in that folder, which its command ``before`` has kept. Videos are half
 the size of those that ``arcgym play`` writes. A scene whose run fails is listed, the others go on.
