@@ -85,7 +85,7 @@ def _evaluations_are_of_the_shipped_file(tmp_path: Path, about: dict[str, str]) 
             assert done.returncode == 1 and "which is no file in" in done.stderr
         else:
             assert done.returncode == 0, done.stderr
-    assert (tmp_path / "policies" / "rectum-magnetic" / "evaluation" / "shipped" / "trials.csv").is_file()
+    assert (tmp_path / "policies" / "rectum-magnetic" / "evaluation" / "shipped" / "trials.csv.gz").is_file()
 
 
 def test_a_checkpoint_without_its_run_is_refused(tmp_path: Path) -> None:
