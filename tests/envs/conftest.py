@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -36,14 +37,12 @@ class CounterSim:
         self.counter = counter
         self.num_forwards = 0
         self.shortage: str | None = None
+        self.contact = SimpleNamespace(shortage=lambda: self.shortage)
         self._num_envs = num_envs
 
     @property
     def non_finite(self) -> torch.Tensor:
         return ~torch.isfinite(self.counter.position)
-
-    def contact_shortage(self) -> str | None:
-        return self.shortage
 
     def step(self, n: int) -> None:
         self.counter.position += n * self.counter.velocity

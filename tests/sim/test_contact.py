@@ -210,7 +210,7 @@ def test_the_search_finds_every_face_near_a_link_however_the_wall_is_gathered(
     found, limit = records.distance.numpy()[:n], REACH + ContactCfg().search_gap
     expected = brute_force(sim, limit - 2e-4)
     assert len(expected) >= 3 and expected <= set(records.face.numpy()[:n].tolist())
-    assert found.max() < limit and sim.contact_shortage() is None
+    assert found.max() < limit and sim.contact.shortage() is None
 
 
 def test_contacts_beyond_the_capacity_are_counted(tiny_sim: TinySim) -> None:
@@ -218,7 +218,7 @@ def test_contacts_beyond_the_capacity_are_counted(tiny_sim: TinySim) -> None:
     place(sim, depth=5.0e-4)
     assert count(sim) <= 6  # one patch of six faces
     dropped = int(sim.dropped_contacts[0])
-    assert dropped > 0 and sim.contact_shortage() == (
+    assert dropped > 0 and sim.contact.shortage() == (
         f"{dropped} contacts found no room in 1 of 1 worlds, whose forces are wrong: "
         "raise env.sim.contact.capacity (40) and patch_capacity (1)."
     )

@@ -263,7 +263,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self._view = None
         if torch.device(self.device).type == "cuda":
             torch.cuda.synchronize(self.device)
-        shortage = self.sim.contact_shortage()
+        shortage = self.sim.contact.shortage()
         if shortage is not None:
             logger.warning(shortage)
 

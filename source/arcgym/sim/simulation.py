@@ -176,21 +176,6 @@ class Simulation:
         """
         return wp.to_torch(self.contact.records.dropped)
 
-    def contact_shortage(self) -> str | None:
-        """Return a warning if contacts found no room since the simulation was built, None if all did.
-
-        It waits for the device.
-        """
-        dropped = self.dropped_contacts
-        worlds = int((dropped > 0).sum())
-        if worlds == 0:
-            return None
-        cfg = self.cfg.contact
-        return (
-            f"{int(dropped.sum())} contacts found no room in {worlds} of {self.num_envs} worlds, whose forces are "
-            f"wrong: raise env.sim.contact.capacity ({cfg.capacity}) and patch_capacity ({cfg.patch_capacity})."
-        )
-
     @property
     def snapshots(self) -> SnapshotSet | None:
         """The loaded snapshots."""

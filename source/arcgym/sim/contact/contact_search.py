@@ -67,7 +67,7 @@ class ContactSearch:
             device: Warp device.
             carried: Fine surface of the lumen that is touched in place of the wall's faces.
         """
-        self.num_envs, self.device, self.carried = num_envs, device, carried
+        self.num_envs, self.device, self.carried, self._cfg = num_envs, device, carried, cfg
         self.still = False
         """Whether the walls stand still: no contact moves them, and where they are is looked up on request alone."""
         if carried is not None:
@@ -177,6 +177,18 @@ class ContactSearch:
             "contact_slide": wp.to_torch(records.slide).view(n, -1),
             "contact_debt": wp.to_torch(self.debt).view(n, -1),
         }
+
+    def shortage(self) -> str | None:
+        """Return a warning if contacts found no room since the start, None if all did. It waits for the device."""
+        dropped = wp.to_torch(self.records.dropped)
+        worlds = int((dropped > 0).sum())
+        if worlds == 0:
+            return None
+        capacity, patch_capacity = self._cfg.capacity, self._cfg.patch_capacity
+        return (
+            f"{int(dropped.sum())} contacts found no room in {worlds} of {self.num_envs} worlds, whose forces are "
+            f"wrong: raise env.sim.contact.capacity ({capacity}) and patch_capacity ({patch_capacity})."
+        )
 
     def soften(self, moduli: wp.array, share: float) -> None:
         """Have contacts give as the tissue of a shell does; without, the wall counts as hard.
