@@ -21,6 +21,12 @@ def test_tip_velocity_is_scaled_and_clipped(env) -> None:
     assert term.raw_actions[0, 1] == -3.0
 
 
+def test_roll_has_a_scale_of_its_own(env) -> None:
+    term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(angular_scale=2.0, roll_scale=9.0), env)
+    term.process_actions(torch.tensor([[0.0, 0.0, 0.0, 0.5, -0.5, 0.5]] * 2))
+    torch.testing.assert_close(term.processed_actions[0, 3:], torch.tensor([1.0, -1.0, 4.5]))
+
+
 def test_constant_forward_velocity_drops_the_forward_action(env) -> None:
     term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(linear_scale=0.05, forward_velocity=0.02), env)
     assert term.action_dim == 5

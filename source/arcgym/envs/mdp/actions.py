@@ -103,7 +103,8 @@ class TipVelocityAction(VelocityAction):
 
     def __init__(self, cfg: TipVelocityActionCfg, env: ManagerBasedEnv) -> None:
         """Find the actuator, and fix the forward velocity if the configuration does."""
-        scale = [cfg.linear_scale] * 3 + [cfg.angular_scale] * 3
+        roll = cfg.angular_scale if cfg.roll_scale is None else cfg.roll_scale
+        scale = [cfg.linear_scale] * 3 + [cfg.angular_scale] * 2 + [roll]
         super().__init__(cfg, env, scale, {} if cfg.forward_velocity is None else {2: cfg.forward_velocity})
         self._pull = self._asset.actuator(cfg.actuator_name)
 
@@ -173,6 +174,10 @@ class TipVelocityActionCfg(ActionTermCfg):
     """Turning rate about each axis at a raw action of one [rad/s]: 8.6 degrees a step at 10 Hz. Raise it for tight
     bends at high speed."""
 
+    roll_scale: float | None = None
+    """Roll rate about the tip's axis at a raw action of one [rad/s]; None takes ``angular_scale``. Raise it to let a
+    policy roll friction off a tether, for which scripted experts take up to 18 rad/s; the pull's torque limits it."""
+
     forward_velocity: float | None = None
     """Constant forward velocity [m/s], as in the paper; the forward action is then dropped (A = 5). None leaves it to
     the policy (A = 6)."""
@@ -184,7 +189,7 @@ class TipVelocityActionCfg(ActionTermCfg):
             ValueError: If a value is out of its bounds.
         """
         require_positive(self, "linear_scale", unit="m/s")
-        require_positive(self, "angular_scale", unit="rad/s")
+        require_positive(self, "angular_scale", "roll_scale", unit="rad/s")
         require(self, "forward_velocity", Range(-1.0, 1.0), unit="m/s")
 
 
