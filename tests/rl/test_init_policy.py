@@ -41,6 +41,18 @@ def test_the_critic_learns_first(tmp_path):
 
 
 @one_thread()
+def test_a_distilled_student_is_a_policy(tmp_path):
+    first = make_runner(seed=0)
+    first.save(str(tmp_path / "model_0.pt"))
+    contents = torch.load(tmp_path / "model_0.pt", weights_only=True)
+    contents["student_state_dict"] = contents.pop("actor_state_dict")
+    torch.save(contents, tmp_path / "student.pt")
+    runner = make_runner(seed=1, init_policy=str(tmp_path / "student.pt"), critic_first=1)
+    runner.learn(1)
+    assert same(copied(first.alg.actor), runner.alg.actor)
+
+
+@one_thread()
 def test_a_deviation_that_is_fixed_stays_so(tmp_path):
     distribution = GaussianDistributionCfg(init_std=0.3, learn_std=False)
     actor = runner_cfg().actor.replace(distribution_cfg=distribution)

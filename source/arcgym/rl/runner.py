@@ -144,10 +144,11 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         return infos
 
     def _start_from(self, path: str) -> None:
-        """Take the policy, and nothing else, from another run's checkpoint."""
+        """Take the policy, and nothing else, from another run's checkpoint: of a distillation, the student."""
         try:
             contents = read_checkpoint(path, self.device)
-            actor = widened(contents["actor_state_dict"], self.alg.get_policy().state_dict())
+            own = "student_state_dict" if "student_state_dict" in contents else "actor_state_dict"
+            actor = widened(contents[own], self.alg.get_policy().state_dict())
             self.alg.load({**contents, "actor_state_dict": actor}, {"actor": True}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error

@@ -331,7 +331,8 @@ class RslRlOnPolicyRunnerCfg:
     """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
 
     init_policy: str | None = None
-    """Checkpoint whose policy a new run starts from, such as one of behaviour cloning; None starts from scratch."""
+    """Checkpoint whose policy a new run starts from, of behaviour cloning, of a distillation (its student),
+    or of another task; None starts from scratch."""
 
     critic_first: int = 0
     """Updates at the start of a run with ``init_policy`` in which the critics alone learn. A good policy gets worse
