@@ -5,6 +5,9 @@
 
 from __future__ import annotations
 
+import math
+
+import pytest
 import torch
 
 from arcgym.envs import mdp
@@ -25,6 +28,26 @@ def test_roll_has_a_scale_of_its_own(env) -> None:
     term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(angular_scale=2.0, roll_scale=9.0), env)
     term.process_actions(torch.tensor([[0.0, 0.0, 0.0, 0.5, -0.5, 0.5]] * 2))
     torch.testing.assert_close(term.processed_actions[0, 3:], torch.tensor([1.0, -1.0, 4.5]))
+
+
+@pytest.mark.parametrize("term_class, cfg, axis", [
+    (mdp.TipVelocityAction, mdp.TipVelocityActionCfg(angular_scale=2.0, roll_amplitude=8.0, roll_period=4.0), 5),
+    (mdp.InsertionAction, mdp.InsertionActionCfg(roll_scale=2.0, roll_amplitude=8.0, roll_period=4.0), 1),
+])  # fmt: skip
+def test_roll_to_and_fro_is_added_to_the_commanded_roll(env, term_class, cfg, axis) -> None:
+    term = term_class(cfg, env)
+    env.scope.inserted_length[:] = torch.tensor([0.3, 2.0])  # half and all of the 0.6 m that take the whole amplitude
+    raw = torch.zeros(2, term.action_dim)
+    raw[:, axis] = 0.5  # 1 rad/s
+    for _ in range(11):  # the eleventh step begins after 1 s: a quarter of a period
+        term.process_actions(raw)
+    torch.testing.assert_close(term.processed_actions[:, axis], torch.tensor([1.0 + 4.0, 1.0 + 8.0]))
+    torch.testing.assert_close(term.raw_actions, raw)
+    torch.testing.assert_close(term._as_actions(term.processed_actions), raw)  # the oscillation is no action
+    term.reset(torch.tensor([0]))
+    term.process_actions(raw)
+    assert term.processed_actions[0, axis] == 1.0
+    assert abs(float(term.processed_actions[1, axis]) - (1.0 + 8.0 * math.cos(2.0 * math.pi / 40.0))) < 1e-5
 
 
 def test_constant_forward_velocity_drops_the_forward_action(env) -> None:

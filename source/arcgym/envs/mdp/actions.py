@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 import torch
 import warp as wp
 
+from arcgym.envs.mdp.roll_oscillation import RollOscillation
 from arcgym.managers import ActionTerm, ActionTermCfg
 from arcgym.utils.configclass import configclass
-from arcgym.utils.validation import Range, require, require_positive
+from arcgym.utils.validation import Range, require, require_non_negative, require_positive
 from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
@@ -47,11 +48,17 @@ class VelocityAction(ActionTerm):
         free = [axis for axis in range(len(scale)) if axis not in fixed]
         self._free, self._axes = free, torch.tensor(free, device=self.device)
         self._scale = torch.tensor([scale[axis] for axis in free], device=self.device)
+        self._roll: RollOscillation | None = None
         self._raw = torch.zeros(self.num_envs, len(free), device=self.device)
         self._processed = torch.zeros(self.num_envs, len(scale), device=self.device)
         self._rest = torch.zeros(len(scale), device=self.device)
         for axis, value in fixed.items():
             self._rest[axis] = value
+
+    def _roll_to_and_fro(self, amplitude: float, period: float) -> None:
+        """Add an oscillation to the axis "roll", but with an amplitude of 0."""
+        if amplitude > 0.0:
+            self._roll = RollOscillation(amplitude, period, self._env.step_dt, self.num_envs, self.device)
 
     @property
     def action_dim(self) -> int:
@@ -83,15 +90,23 @@ class VelocityAction(ActionTerm):
         self._raw.copy_(actions)
         self._processed.copy_(self._rest.expand_as(self._processed))
         self._processed[:, self._axes] = self._raw.clamp(-1.0, 1.0) * self._scale
+        if self._roll is not None:
+            self._roll.advance(self._asset.data.inserted_length)
+            self._processed[:, self.axes.index("roll")] += self._roll.rate
 
     def _as_actions(self, values: torch.Tensor) -> torch.Tensor:
         """Return the raw actions, within [-1, 1], of physical values of every axis, shape (N, D)."""
+        if self._roll is not None:
+            values = values.clone()
+            values[:, self.axes.index("roll")] -= self._roll.rate
         return (values[:, self._axes] / self._scale).clamp(-1.0, 1.0)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Set the actions of the given worlds to zero."""
         fill_worlds(self._raw, env_ids, 0.0)
         fill_worlds(self._processed, env_ids, 0.0)
+        if self._roll is not None:
+            self._roll.reset(env_ids)
 
 
 class TipVelocityAction(VelocityAction):
@@ -107,6 +122,7 @@ class TipVelocityAction(VelocityAction):
         scale = [cfg.linear_scale] * 3 + [cfg.angular_scale] * 2 + [roll]
         super().__init__(cfg, env, scale, {} if cfg.forward_velocity is None else {2: cfg.forward_velocity})
         self._pull = self._asset.actuator(cfg.actuator_name)
+        self._roll_to_and_fro(cfg.roll_amplitude, cfg.roll_period)
 
     def apply_actions(self) -> None:
         """Command the actuator."""
@@ -135,6 +151,7 @@ class InsertionAction(VelocityAction):
         self._base_drive = self._asset.actuator(cfg.base_name)
         self._bending_drive = self._asset.actuator(cfg.bending_name)
         self._bending = torch.zeros(self.num_envs, 2, device=self.device)
+        self._roll_to_and_fro(cfg.roll_amplitude, cfg.roll_period)
 
     def process_actions(self, actions: torch.Tensor) -> None:
         """Clip and scale ``actions``, shape (N, A), and move the bending target by one control step."""
@@ -178,6 +195,13 @@ class TipVelocityActionCfg(ActionTermCfg):
     """Roll rate about the tip's axis at a raw action of one [rad/s]; None takes ``angular_scale``. Raise it to let a
     policy roll friction off a tether, for which scripted experts take up to 18 rad/s; the pull's torque limits it."""
 
+    roll_amplitude: float = 0.0
+    """Amplitude of a roll to and fro that is added to the commanded one [rad/s], with 0.6 m of tether inside; less with
+    less. It takes friction off the tether: try 9 where tips stick that see the lumen; the picture rolls as well."""
+
+    roll_period: float = 4.0
+    """Time of one such roll to and fro [s]. A slower one goes farther along the scope."""
+
     forward_velocity: float | None = None
     """Constant forward velocity [m/s], as in the paper; the forward action is then dropped (A = 5). None leaves it to
     the policy (A = 6)."""
@@ -190,6 +214,8 @@ class TipVelocityActionCfg(ActionTermCfg):
         """
         require_positive(self, "linear_scale", unit="m/s")
         require_positive(self, "angular_scale", "roll_scale", unit="rad/s")
+        require_non_negative(self, "roll_amplitude", unit="rad/s")
+        require_positive(self, "roll_period", unit="s")
         require(self, "forward_velocity", Range(-1.0, 1.0), unit="m/s")
 
 
@@ -215,6 +241,13 @@ class InsertionActionCfg(ActionTermCfg):
     roll_scale: float = 1.0
     """Roll rate of the base at a raw action of one [rad/s]: 0.1 rad a step at 10 Hz."""
 
+    roll_amplitude: float = 0.0
+    """Amplitude of a roll to and fro that is added to the commanded one [rad/s], with 0.6 m of shaft inside; less with
+    less. It takes friction off the shaft: scripted experts roll with up to 9; the picture rolls as well."""
+
+    roll_period: float = 4.0
+    """Time of one such roll to and fro [s]. A slower one goes farther along the scope."""
+
     bending_scale: float = 1.3
     """Rate of pitch and yaw at a raw action of one [rad/s]: 0.13 rad a step at 10 Hz, enough to steer round every bend
     at 45 mm/s. The control wheels follow at ``BendingDriveCfg.rate``; more than that has no effect."""
@@ -231,4 +264,6 @@ class InsertionActionCfg(ActionTermCfg):
         """
         require_positive(self, "insertion_scale", unit="m/s")
         require_positive(self, "roll_scale", "bending_scale", unit="rad/s")
+        require_non_negative(self, "roll_amplitude", unit="rad/s")
+        require_positive(self, "roll_period", unit="s")
         require(self, "insertion_velocity", Range(-1.0, 1.0), unit="m/s")
