@@ -16,7 +16,7 @@ from arcgym.cli.main import main
 from arcgym.envs import mdp
 from arcgym.rl.params import restore
 from arcgym.utils.coerce import to_plain
-from arcgym.utils.configclass import configclass, to_dict, validate
+from arcgym.utils.configclass import MISSING, configclass, to_dict, validate
 from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import cfg_keys, list_tasks, load_cfg_from_registry
 from arcgym_tasks.navigation import register_navigation_task, register_robot
@@ -221,6 +221,35 @@ def test_journeys_begin_at_rest_in_the_anus(way: str, segment: str, seconds: flo
     cfg = load_cfg_from_registry(f"ARC-{way}-{robot}", "env_cfg_entry_point")
     validate(cfg)
     assert (cfg.segment, cfg.start, cfg.max_episode_length_s) == (segment, "rest", seconds)
+
+
+@pytest.mark.parametrize(("robot", "length"), [("Capsule", None), ("Magnetic", 2.2), ("Proximal", 2.2)])
+@pytest.mark.parametrize("variant", ["", "-Play"])
+def test_the_way_to_the_cecum_has_a_longer_scope(robot: str, length: float | None, variant: str) -> None:
+    """Only there: a withdrawal starts from states of the shipped scope."""
+    cfg = load_cfg_from_registry(f"ARC-Cecum-{robot}{variant}", "env_cfg_entry_point")
+    assert cfg.scene.endoscope.length == cfg.scope_length == length
+    entry = str(gymnasium.spec(f"ARC-Cecum-{robot}{variant}").kwargs["env_cfg_entry_point"])
+    assert ("scope_length=2.2" in entry) == (length is not None)
+    for way in ("LeftColon", "Withdrawal"):
+        other = load_cfg_from_registry(f"ARC-{way}-{robot}{variant}", "env_cfg_entry_point")
+        assert other.scene.endoscope.length is None
+    if length:
+        apply_overrides({"env": cfg}, ["env.scene.endoscope.length=1.9"])
+        assert cfg.scene.endoscope.length == 1.9
+        apply_overrides({"env": cfg}, ["env.scene.endoscope.length=null"])
+        validate(cfg)
+        assert cfg.scene.endoscope.length is None
+
+
+def test_a_scope_that_comes_in_one_length_keeps_it() -> None:
+    """A stage of one's own, and a configuration whose scope comes later."""
+    cfg = ProximalEnvCfg(segment="cecum")
+    cfg.scene.endoscope.usd_path = "short.usda"
+    cfg.scope_length = 2.2
+    assert cfg.scope_length is None
+    cfg.scene.endoscope = MISSING
+    cfg.scope_length = 2.2
 
 
 def test_the_papers_reward_is_the_view_of_the_lumen_alone() -> None:

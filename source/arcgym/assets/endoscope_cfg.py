@@ -91,9 +91,9 @@ class EndoscopeCfg:
     """Class of the scripted expert that drives this robot to the start states, or its name ``"module:Class"``, see
     :mod:`arcgym.experts`. None: episodes can start from rest or from states made before."""
     length: float | None = None
-    """Length of a shipped scope with a shaft [m], over its 1.68 m. All but 0.2 m can be inserted. Raise it where the
-    caecum is farther than the scope is long, as in many patients: enteroscopes are sold with 2.0 m; the cost grows with
-    the number of links."""
+    """Length of a shipped scope with a shaft [m], over its 1.68 m; 2.2 m in the tasks ``ARC-Cecum``. All but 0.2 m can
+    be inserted. Raise it where the caecum is farther than the scope is long, as in many patients: enteroscopes are sold
+    with 2.0 m; the cost grows with the number of links."""
     shaft_rigidity: float | None = None
     """Bending rigidity EI of the hinges behind the bending section [N m^2], over the stage's."""
     tip_rigidity: float | None = None

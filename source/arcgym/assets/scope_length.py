@@ -16,6 +16,11 @@ SPECS = {"magnetic": magnetic_spec, "proximal": proximal_spec}
 """Specification of each scope with a shaft as a function of its length [m]."""
 
 
+def has_lengths(usd_path: str) -> bool:
+    """Return whether a stage is that of a shipped scope with a shaft, which can be had in other lengths."""
+    return Path(usd_path).stem in SPECS
+
+
 def stage_of_length(stage: Path, length: float) -> Path:
     """Return the stage of a shipped scope in another length.
 
@@ -26,7 +31,7 @@ def stage_of_length(stage: Path, length: float) -> Path:
     Raises:
         ValueError: If it is none of the shipped scopes with a shaft.
     """
-    if stage.stem not in SPECS:
+    if not has_lengths(str(stage)):
         raise ValueError(
             f"EndoscopeCfg.length is {length:g} m, but {stage.name} is no shipped scope with a shaft. "
             f"{did_you_mean(stage.stem, SPECS)} Write a stage of your own with arcgym.assets.endoscope_stage."

@@ -22,6 +22,7 @@ from arcgym.evaluation.result_folder import (
     read_run,
     read_trial_rows,
 )
+from arcgym.evaluation.scope_lengths import other_length
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
@@ -78,7 +79,8 @@ def problems(path: Path, whole: bool = True) -> list[str]:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
     conditions = suite.conditions_of(run.get("conditions_sha256"))
     found = [*_run_problems(run, conditions, suite), *_row_problems(rows, conditions), *_other_tasks(rows, suite)]
-    unfit = [*_outdated(conditions, suite), *_unfit_to_compete(run, rows, conditions), *_silent(run, rows)]
+    outdated = [*_outdated(conditions, suite), *(line for task in _tasks(rows) for line in other_length(run, task))]
+    unfit = [*outdated, *_unfit_to_compete(run, rows, conditions), *_silent(run, rows)]
     return found + [*unfit, *_missing_trials(rows, conditions, suite)] * whole
 
 
@@ -170,13 +172,17 @@ def _unfit_to_compete(run: dict[str, Any], rows: list[Row], conditions: Conditio
 def _silent(run: dict[str, Any], rows: list[Row]) -> list[str]:
     """Return a problem for each task of which a checkpoint's run does not say how it was run and what was seen."""
     asked = {"changes": "with what settings it was run", "inputs": "what its policy sees"}
-    tasks = sorted({row["task"] for row in rows if "task" in row}) if run.get("agent") == "checkpoint" else []
+    tasks = _tasks(rows) if run.get("agent") == "checkpoint" else []
     return [
         f"{task}: run.json does not say {what}, '{name}' is missing"
         for name, what in asked.items()
         for task in tasks
         if task not in run.get(name, {})
     ]
+
+
+def _tasks(rows: list[Row]) -> list[str]:
+    return sorted({row["task"] for row in rows if "task" in row})
 
 
 def is_agents(path: str, used: Any) -> bool:

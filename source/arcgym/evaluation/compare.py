@@ -12,6 +12,7 @@ import numpy as np
 from arcgym.evaluation.check import is_agents
 from arcgym.evaluation.physics_steps import as_text, steps_in
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
+from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
 from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS
 from arcgym.utils.errors import UsageError
@@ -65,14 +66,19 @@ def notes(first: Path, second: Path) -> list[str]:
 
 
 def _settings(run: dict[str, Any]) -> dict[str, Any]:
-    """Return the length of a physics step, and all settings that are not as registered and not the agent's own."""
+    """Return lengths of physics step and scope, and all settings that are not as registered and not the agent's."""
     steps = {f"{task} physics step": as_text(steps_in(run, task)) for task in run.get("changes", {})}
-    return steps | {
-        f"{task} {path}": used
-        for task, changes in run.get("changes", {}).items()
-        for path, (_, used) in changes.items()
-        if not is_agents(path, used)
-    }
+    lengths = {f"{task} scope [m]": length for task, length in run.get(LENGTH, {}).items()}
+    return (
+        steps
+        | lengths
+        | {
+            f"{task} {path}": used
+            for task, changes in run.get("changes", {}).items()
+            for path, (_, used) in changes.items()
+            if not is_agents(path, used)
+        }
+    )
 
 
 def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:

@@ -16,6 +16,7 @@ from arcgym.evaluation.options import PATIENTS, WORLDS, EvaluationOptions, LoadC
 from arcgym.evaluation.physics_steps import steps_of
 from arcgym.evaluation.result_folder import ResultFolder, alone_in
 from arcgym.evaluation.run_trials import run_trials
+from arcgym.evaluation.scope_lengths import length_of
 from arcgym.evaluation.sharing import gather
 from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trial_queue import give_patient_of_trial
@@ -96,6 +97,7 @@ def _run_batch(
     cfgs = load_cfgs(task, checkpoint_of(agent))
     folder.note_changes(task, changes_of(task, cfgs[0]))
     folder.note_steps(task, steps_of(cfgs[0]))
+    folder.note_length(task, length_of(cfgs[0]))
     if agent not in UNTRAINED:
         folder.note_inputs(task, inputs_of(*cfgs))
     with opened(task, agent, trials, cfgs, options) as (env, make_policy):

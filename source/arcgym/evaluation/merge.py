@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.physics_steps import ENTRY
 from arcgym.evaluation.result_folder import DROPPED, ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
 from arcgym.utils.errors import UsageError
 
 
@@ -48,7 +49,12 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
 
 
 def _merge_settings(folder: ResultFolder, part: Path, run: dict[str, Any]) -> None:
-    for entry, note in (("changes", folder.note_changes), (ENTRY, folder.note_steps)):
+    notes: dict[str, Callable[[str, Any], None]] = {
+        "changes": folder.note_changes,
+        ENTRY: folder.note_steps,
+        LENGTH: folder.note_length,
+    }
+    for entry, note in notes.items():
         before = read_run(folder.path).get(entry, {})
         for task, of in run.get(entry, {}).items():
             if before.get(task, of) != of:

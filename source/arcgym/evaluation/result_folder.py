@@ -23,6 +23,7 @@ except ImportError:  # Windows
 
 from arcgym.evaluation.physics_steps import ENTRY
 from arcgym.evaluation.run_shape import fault
+from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
 from arcgym.utils.errors import UsageError
 
 TRIALS_FILE = "trials.csv"
@@ -104,6 +105,13 @@ class ResultFolder:
         run = read_run(self.path)
         run.setdefault(ENTRY, {})[task] = steps
         _write_run(self.path / RUN_FILE, run)
+
+    def note_length(self, task: str, length: float | None) -> None:
+        """Write down the length of a task's scope [m]; None, that of its stage, is not written."""
+        run = read_run(self.path)
+        if length is not None:
+            run.setdefault(LENGTH, {})[task] = length
+            _write_run(self.path / RUN_FILE, run)
 
     def note_dropped(self, task: str, contacts: int) -> None:
         """Write down how many contacts of a task found no room, which makes its forces wrong; 0 is not written."""

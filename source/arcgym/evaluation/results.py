@@ -12,6 +12,7 @@ from typing import Any
 from arcgym.evaluation.check import problems
 from arcgym.evaluation.physics_steps import steps_in, steps_registered
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
+from arcgym.evaluation.scope_lengths import other_length
 from arcgym.evaluation.suites import read_suites, split_task
 
 LARGEST_SHARE = 10
@@ -124,7 +125,8 @@ def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list
     """Return what can be shown of all result folders below some folders, and why the rest is left out.
 
     Shown are trials whose code, checkpoint and condition file are known and are those of the suite, all of them or each
-    n-th one: those that end early come first, so that another part would be another sample.
+    n-th one: those that end early come first, so that another part would be another sample. Of a task whose scope had
+    another length then nothing is shown.
     """
     found: list[Result] = []
     left_out: dict[Path, list[str]] = {}
@@ -133,10 +135,10 @@ def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list
         wrong = [*_unknown(run), *problems(path, whole=False)]
         for task in [] if wrong else sorted({row["task"] for row in rows}):
             result = Result(path, task, run, [row for row in rows if row["task"] == task])
-            if _is_whole(result):
-                found.append(result)
+            if other := [*other_length(run, task), *_not_whole(result)]:
+                wrong += other
             else:
-                wrong.append(f"{task} has {len(result.rows)} trials, neither all nor each n-th of them")
+                found.append(result)
         if wrong:
             left_out[path] = wrong
     return found, left_out
@@ -166,8 +168,10 @@ def _unknown(run: dict[str, Any]) -> list[str]:
     return found
 
 
-def _is_whole(result: Result) -> bool:
-    """Return whether there are all trials of the suite, or each n-th of them from the first on."""
+def _not_whole(result: Result) -> list[str]:
+    """Return a reason unless there are all trials of the suite, or each n-th of them from the first on."""
     conditions = read_suites()[result.suite].conditions_of(result.run.get("conditions_sha256"))
     numbers = [trial.trial for trial in conditions.trials]
-    return {row["trial"] for row in result.rows} in [set(numbers[::n]) for n in range(1, LARGEST_SHARE + 1)]
+    if {row["trial"] for row in result.rows} in [set(numbers[::n]) for n in range(1, LARGEST_SHARE + 1)]:
+        return []
+    return [f"{result.task} has {len(result.rows)} trials, neither all nor each n-th of them"]

@@ -22,8 +22,8 @@ def _is_inputs(of: Any) -> bool:
     )
 
 
-def _is_steps(of: Any) -> bool:
-    return all(isinstance(steps, int | float) and steps > 0 for steps in of.values())
+def _is_positive(of: Any) -> bool:
+    return all(isinstance(number, int | float) and number > 0 for number in of.values())
 
 
 def _is_counts(of: Any) -> bool:
@@ -42,7 +42,8 @@ SHAPES: dict[str, tuple[type, Callable[[Any], bool], str]] = {
     "training": (list, _is_any, "a list, an entry a checkpoint"),
     "versions": (dict, _is_any, "versions by name"),
     "changes": (dict, _is_changes, "registered and used value by field, by task"),
-    "physics_hz": (dict, _is_steps, "physics steps a second by task"),
+    "physics_hz": (dict, _is_positive, "physics steps a second by task"),
+    "scope_length": (dict, _is_positive, "length of the scope by task [m]"),
     "dropped_contacts": (dict, _is_counts, "contacts by task"),
     "inputs": (dict, _is_inputs, "'sees' and 'simulator_depth' by task"),
 }

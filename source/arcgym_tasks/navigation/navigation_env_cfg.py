@@ -12,6 +12,7 @@ from typing import Literal, get_args
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets import ColonCfg, EndoscopeCfg
+from arcgym.assets.scope_length import has_lengths
 from arcgym.envs import ManagerBasedRLEnvCfg, mdp
 from arcgym.managers import CostTermCfg as CostTerm
 from arcgym.managers import EventTermCfg as EventTerm
@@ -332,6 +333,19 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     def max_episode_length_s(self) -> float:
         """Longest episode [s], as set or as segment and start have it."""
         return time_limit_s(self.segment, self.start) if self.episode_length_s is None else self.episode_length_s
+
+    @property
+    def scope_length(self) -> float | None:
+        """Length of the scope [m], ``env.scene.endoscope.length``; None for that of its stage.
+
+        A task sets it for its robots; scopes that come in one length alone, such as the capsule, stay as they are.
+        """
+        return self.scene.endoscope.length
+
+    @scope_length.setter
+    def scope_length(self, length: float | None) -> None:
+        if has_lengths(str(getattr(self.scene.endoscope, "usd_path", ""))):
+            self.scene.endoscope.length = length
 
     def play(self) -> None:
         """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""

@@ -51,6 +51,7 @@ def register_robot(
     *,
     segments: Sequence[str] = tuple(TIME_LIMIT_S),
     journeys: Mapping[str, Mapping[str, Any]] = JOURNEYS,
+    shaft: bool = True,
     agents: Mapping[str, str | Callable[[], Any]] | None = None,
 ) -> list[str]:
     """Register ``ARC-<Segment>-<Robot>`` and ``ARC-<Segment>-<Robot>-Play`` for every segment and every journey.
@@ -63,6 +64,7 @@ def register_robot(
             actions, or its name ``"module:Class"``.
         segments: Segments to pass, lower case.
         journeys: Longer ways by their name in the task, with the fields of the configuration that they set.
+        shaft: Whether the robot has a shaft, of which some journeys ask for a length.
         agents: Agent configurations by registry key, added to
             :data:`arcgym_tasks.navigation.agents.AGENTS` or in their place.
 
@@ -75,7 +77,8 @@ def register_robot(
     tasks = []
     ways = {**{name.capitalize(): {"segment": name} for name in segments}, **journeys}
     for name, fields in ways.items():
-        tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **fields)
+        own = {field: value for field, value in fields.items() if shaft or field != "scope_length"}
+        tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **own)
     return tasks
 
 

@@ -26,6 +26,8 @@ from arcgym.utils.configclass import replace, validate
 
 TASK = "ARC-Cecum-Proximal"
 """Task whose scene is taken."""
+COLONOSCOPE = "env.scene.endoscope.length=null"
+"""Override: the length that colonoscopes have, as those of the published insertions; the task's is longer [m]."""
 OUT_OF_TIME = "no computing time left"
 """Problem of a patient in which the drive was stopped from outside."""
 EXAMINER_SPEED = 0.015
@@ -112,7 +114,7 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
 
 def build(plan: Plan, stages: Sequence[Path]) -> InteractiveScene:
     """Return the task's worlds, some for each patient, without a camera."""
-    cfg = load_env_cfg(TASK, plan.overrides, plan.seed, device=plan.device)
+    cfg = load_env_cfg(TASK, (COLONOSCOPE, *plan.overrides), plan.seed, device=plan.device)
     validate(cfg)
     cfg.resolve()
     colon = replace(cfg.scene.colon, usd_path=[str(stage) for stage in stages], num_patients=None)
