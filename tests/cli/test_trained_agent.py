@@ -55,6 +55,28 @@ def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -
     assert other.observations.policy.rgb.history_length == 5
 
 
+def test_a_roll_to_and_fro_goes_with_its_policy(tmp_path: Path) -> None:
+    """In evaluation and play, in its own task and in another one; a robot without such an action is left alone."""
+    trained = "ARC-Rectum-Magnetic"
+    env_cfg = load_cfg_from_registry(trained, "env_cfg_entry_point")
+    env_cfg.actions.tip.roll_amplitude, env_cfg.actions.tip.roll_period = 9.0, 3.0
+    env_cfg.actions.tip.linear_scale = 0.02
+    agent_cfg = load_cfg_from_registry(trained, "rsl_rl_cfg_entry_point")
+    write_params(tmp_path, run={"task": trained, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    checkpoint = tmp_path / "model_0.pt"
+    checkpoint.write_bytes(b"")
+    for task in (trained, f"{trained}-Play", "ARC-Cecum-Magnetic", "ARC-LeftColon-Magnetic-Play"):
+        played, _, _ = load_run_cfgs(RunArguments(task=task, checkpoint=str(checkpoint)))
+        judged, _ = _load(task, checkpoint, ())
+        for tip in (played.actions.tip, judged.actions.tip):
+            assert (tip.roll_amplitude, tip.roll_period) == (9.0, 3.0)
+            assert tip.linear_scale == (0.02 if trained in task else 0.045)
+        still, _ = _load(task, checkpoint, ("env.actions.tip.roll_amplitude=0",))
+        assert still.actions.tip.roll_amplitude == 0.0
+    pushed, _, _ = load_run_cfgs(RunArguments(task="ARC-Rectum-Proximal", checkpoint=str(checkpoint)))
+    assert pushed.actions.base.roll_amplitude == 0.0
+
+
 def test_trials_are_drawn_by_the_task_however_the_training_drew(tmp_path: Path) -> None:
     env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
     own = tuple(env_cfg.events.friction.params["friction"])

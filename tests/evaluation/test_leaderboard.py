@@ -7,7 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from paper_results import RUN, TASKS, result
+from paper_results import RUN, TASKS, changed, result
 
 from arcgym.cli.main import main
 from arcgym.evaluation.leaderboard import entries_table, submissions
@@ -103,6 +103,14 @@ def test_an_entry_of_another_physics_step_is_marked_and_stands_last(tmp_path: Pa
         (result(tmp_path / name, run=run) / "entry.yaml").write_text(ENTRY)
     lines = [line for line in entries_table(submissions(tmp_path)[0]).splitlines() if TASKS[0] in line]
     assert "| 1/240 s | self-reported |" in lines[0] and "| 1/480 s‡ | self-reported |" in lines[1]
+
+
+def test_an_entry_that_rolls_says_so_in_the_tasks_where_it_does(tmp_path: Path) -> None:
+    run = changed(TASKS[0], **{"actions.tip.roll_amplitude": [0.0, 9.0]})
+    (result(tmp_path / "a", run=run) / "entry.yaml").write_text(ENTRY)
+    text = entries_table(submissions(tmp_path)[0])
+    assert f"| `{TASKS[0]}` | Mine, rolls to and fro [rad/s]: 9 | A. Author |" in text
+    assert f"| `{TASKS[1]}` | Mine | A. Author |" in text
 
 
 def test_the_floor_is_no_entry(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from paper_results import RUN, TASKS, changed, result
 from result_folders import write_result_folder
 
 from arcgym.cli.main import main
-from arcgym.evaluation.check import AGENTS_OWN, FASTEST, FORWARD_VELOCITY, problems
+from arcgym.evaluation.check import AGENTS_OWN, OWN_UP_TO, problems
 from arcgym.evaluation.compare import compare, notes
 from arcgym.evaluation.merge import merge
 from arcgym.evaluation.physics_steps import steps_registered
@@ -206,6 +206,29 @@ def test_what_is_the_agents_own_is_no_reason_to_refuse(tmp_path: Path) -> None:
     assert problems(result(tmp_path / "mine", run=run)) == []
 
 
+@pytest.mark.parametrize(
+    ("field", "value", "fits"),
+    [
+        ("actions.tip.roll_amplitude", 9.0, True),
+        ("actions.tip.roll_amplitude", 18.5, False),
+        ("actions.tip.roll_period", 3.0, True),
+        ("actions.base.roll_amplitude", 9.0, True),
+        ("actions.base.roll_amplitude", 9.5, False),
+        ("actions.tip.forward_velocity", 0.04, True),
+        ("actions.tip.forward_velocity", 0.05, False),
+        ("actions.tip.roll_scale", 18.0, False),
+        ("reward", "paper", True),
+    ],
+)
+def test_what_is_the_agents_own_may_be_an_override(tmp_path: Path, field: str, value: Any, fits: bool) -> None:
+    """Brought by the policy's parameters, or given to the evaluation as well; up to what experts or actions take."""
+    run = changed(TASKS[0], **{field: [None, value]})
+    given = run | {"overrides": [f"env.{field}={value}"]}
+    for name, of in (("brought", run), ("given", given)):
+        found = problems(result(tmp_path / name, run=of))
+        assert bool(found) != fits and all("change" in line for line in found)
+
+
 def test_a_setting_that_a_policy_brings_along_may_be_put_back(tmp_path: Path) -> None:
     """The reach of the contact search was 3 when it was trained, and the task's is 12."""
     back, brought = "env.sim.contact.search_reach=12", changed(TASKS[0], **{"sim.contact.search_reach": [12, 3]})
@@ -226,12 +249,15 @@ def test_a_setting_of_the_suite_may_not_be_put_back(tmp_path: Path) -> None:
 
 def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
     """A new effect of the environment is part of the task until it is said to be the agent's."""
+    from arcgym.experts import PullExpert, PushExpert
     from arcgym.utils.coerce import to_plain
     from arcgym.utils.registry import load_cfg_from_registry
 
     fields = to_plain(load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point"))
-    assert set(AGENTS_OWN) - {FORWARD_VELOCITY} <= set(fields)
-    assert fields["actions"]["tip"]["linear_scale"] == FASTEST
+    assert {name.partition(".")[0] for name in AGENTS_OWN} - {"actions"} <= set(fields)
+    assert fields["actions"]["tip"]["linear_scale"] == OWN_UP_TO["actions.tip.forward_velocity"]
+    most = PullExpert.VARIED["roll"][1], PushExpert.VARIED["twist"][1]
+    assert most == (OWN_UP_TO["actions.tip.roll_amplitude"], OWN_UP_TO["actions.base.roll_amplitude"])
     assert {"gas", "clinical", "sim", "scene", "events", "terminations", "metrics"} <= set(fields) - set(AGENTS_OWN)
 
 

@@ -13,6 +13,7 @@ import pytest
 from result_folders import PPO, write_result_folder
 
 from arcgym.cli.main import main
+from arcgym.evaluation.floors import floors_of
 from arcgym.evaluation.results import find_results, method_of
 from arcgym.evaluation.results_page import SECTIONS_FILE, read_sections, results_page
 from arcgym.evaluation.suites import read_suites
@@ -50,6 +51,40 @@ def test_the_committed_page_is_made_of_the_committed_folders(monkeypatch: pytest
     assert command == "arcgym results summary docs/data/results --out docs/results.md --figure docs/images/results.png"
     results, left_out = find_results([Path("docs/data/results")])
     assert results_page(results, command, read_sections(), "images/results.png") == text and not left_out
+
+
+def test_a_roll_to_and_fro_is_named_and_takes_no_other_row(tmp_path: Path) -> None:
+    """The same checkpoint with and without, 20 and 10 of 200; an expert that rolls is not the floor's."""
+    task = "ARC-LeftColon-Magnetic"
+    roll = {"changes": {task: {"actions.tip.roll_amplitude": [0.0, 9.0]}}}
+    expert = {"agent": "expert", "checkpoint": [], "checkpoint_sha256": [], "training": []}
+    folders = [
+        write_result_folder(tmp_path / "plain", 10, task, "population"),
+        write_result_folder(tmp_path / "rolls", 20, task, "population", **roll),
+        write_result_folder(tmp_path / "expert", 30, task, "population", **roll | expert),
+    ]
+    pushed = {"changes": {task: VELOCITY}, "agent": "zero", "checkpoint": [], "checkpoint_sha256": [], "training": []}
+    folders.append(write_result_folder(tmp_path / "zero", 0, task, "population", **pushed))
+    text = page(folders, tmp_path)
+    assert f"| `{task}` | zero_velocity | 200 | 0 (0–2) |" in text
+    assert f"| `{task}` | ppo `abcdef01` | 200 | 5 (3–9) |" in text
+    assert f"| `{task}` | ppo_roll9 `abcdef01` | 200 | 10 (7–15) |" in text
+    assert f"| `{task}` | expert_roll9 | 200 | 15 (11–21) |" in text
+    assert [one.agent for one in floors_of(find_results(folders)[0])] == []
+
+
+def test_the_robustness_of_a_policy_that_rolls_is_a_table_of_its_own(tmp_path: Path) -> None:
+    task = "ARC-LeftColon-Magnetic:blur_2"
+    of = {"robustness": ["none", "blur_2"]}
+    roll = of | {"actions.tip.roll_amplitude": [0.0, 9.0]}
+    folders = [
+        write_result_folder(tmp_path / name, count, task, "robustness", changes={task: fields})
+        for name, count, fields in (("plain", 5, of), ("rolls", 10, roll))
+    ]
+    text = page(folders, tmp_path)
+    for name, figure in (("model_3.pt", "25 (11–47)"), ("model_3.pt_roll9", "50 (30–70)")):
+        table = text.partition(f"run_1/{name}: ")[2]
+        assert f"| blur | no trial | {figure} |" in table[: table.index("blur") + 60]
 
 
 def test_the_page_names_the_command_that_made_it(tmp_path: Path) -> None:

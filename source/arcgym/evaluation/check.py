@@ -28,15 +28,25 @@ from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
 AGENTS_OWN = (
     *("observations", "extra_observations", "reward", "rewards", "costs", "curriculum", "viewer"),
-    *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs", "actions.tip.forward_velocity"),
+    *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs"),
+    *("actions.tip.roll_period", "actions.base.roll_period"),
 )
 """Fields of the environment, with all below them, that are the agent's: all others make a task what it is."""
 
 ROOM = ("sim.contact.capacity", "sim.contact.patch_capacity")
 """Fields of the environment that give contacts room, and change nothing where they had enough."""
 
-FORWARD_VELOCITY, FASTEST = "actions.tip.forward_velocity", 0.045
-"""A constant velocity of the tip, and the largest that actions command [m/s]."""
+OWN_UP_TO = {
+    "actions.tip.forward_velocity": 0.045,
+    "actions.tip.roll_amplitude": 18.0,
+    "actions.base.roll_amplitude": 9.0,
+}
+"""Fields that are the agent's up to a value. A constant velocity of the tip: the largest that actions command [m/s]. A
+roll to and fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
+:class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]."""
+
+ROLLS = ("actions.tip.roll_amplitude", "actions.base.roll_amplitude")
+"""Those of a roll to and fro, which tables name."""
 
 SWITCH = "enabled"
 """Field of an effect's configuration that says whether there is the effect at all."""
@@ -96,7 +106,8 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     for task, contacts in run.get(DROPPED, {}).items():
         found.append(f"{contacts} contacts of {task} found no room: run it with a larger env.sim.contact.capacity")
     given = [text for text in run.get("overrides", []) if text not in suite.overrides and not text.startswith("agent.")]
-    more = [text for text in given if not _is_as_registered(text, list(run.get("changes", {})), suite)]
+    tasks = list(run.get("changes", {}))
+    more = [text for text in given if not (_is_agents_own(text) or _is_as_registered(text, tasks, suite))]
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
     for task, changes in run.get("changes", {}).items():
@@ -107,6 +118,12 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
             if not own and str(used).lower() != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
     return found
+
+
+def _is_agents_own(override: str) -> bool:
+    """Return whether an override, ``env.path=value``, gives a field that is the agent's to choose."""
+    path, _, value = override.removeprefix("env.").partition("=")
+    return is_agents(path, yaml.safe_load(value))
 
 
 def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
@@ -190,8 +207,8 @@ def is_agents(path: str, used: Any) -> bool:
 
     So is the room for contacts.
     """
-    if path == FORWARD_VELOCITY and used is not None:
-        return abs(float(used)) <= FASTEST
+    if path in OWN_UP_TO:
+        return used is None or (isinstance(used, int | float) and abs(used) <= OWN_UP_TO[path])
     return path in ROOM or any(path == own or path.startswith(f"{own}.") for own in AGENTS_OWN)
 
 

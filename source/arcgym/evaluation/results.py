@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.check import problems
+from arcgym.evaluation.check import ROLLS, problems
 from arcgym.evaluation.physics_steps import steps_in, steps_registered
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.scope_lengths import other_length
@@ -106,19 +106,26 @@ class Result:
 def method_of(run: dict[str, Any], task: str) -> str:
     """Return the name of a method: its agent, with ``_paper`` where reward and velocity are the paper's.
 
-    ``_paper_free`` is the paper's reward alone, and ``_velocity`` a constant velocity alone. An agent that was not
-    trained has its own name.
+    ``_paper_free`` is the paper's reward alone, ``_velocity`` a constant velocity alone, and ``_roll9`` a roll to and
+    fro of 9 rad/s that is added to what it commands. Agents without training have their own name.
     """
+    changes = run.get("changes", {}).get(task, {})
+    constant = changes.get("actions.tip.forward_velocity", [None, None])[1] is not None
     if run["agent"] != "checkpoint":
-        return str(run["agent"])
+        return str(run["agent"]) + "_velocity" * constant + roll_mark(run, task)
     training = (run.get("training") or [{}])[0]
     key = str(training.get("agent") or "unknown")
     name = key.removesuffix("cfg_entry_point").removeprefix("rsl_rl").strip("_") or "ppo"
-    changes = run.get("changes", {}).get(task, {})
     reward = changes.get("reward", [None, None])[1]
-    constant = changes.get("actions.tip.forward_velocity", [None, None])[1] is not None
     suffix = f"_{reward}" + ("" if constant else "_free") if reward else "_velocity" * constant
-    return name + suffix
+    return name + suffix + roll_mark(run, task)
+
+
+def roll_mark(run: dict[str, Any], task: str) -> str:
+    """Return ``_roll9`` where a roll to and fro of 9 rad/s is added to an agent's commands, and nothing without one."""
+    changes = run.get("changes", {}).get(task, {})
+    amplitude = max((float(changes[path][1] or 0.0) for path in ROLLS if path in changes), default=0.0)
+    return f"_roll{amplitude:g}" if amplitude else ""
 
 
 def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list[str]]]:

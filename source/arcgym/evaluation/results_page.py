@@ -17,7 +17,7 @@ import yaml
 from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
 from arcgym.evaluation.physics_steps import STEP_MARK, as_text
 from arcgym.evaluation.result_folder import Row
-from arcgym.evaluation.results import Result, best
+from arcgym.evaluation.results import Result, best, roll_mark
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.strengths import strengths_tables
 from arcgym.evaluation.suites import FOLDER, read_suites
@@ -71,8 +71,8 @@ of successful trials [%] with Wilson's interval (95 %), and behind it the number
 suite's; other figures are interquartile means with bootstrap intervals. `–` was not run: the command that would make it
 is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
 this policy and not of the method. † marks rules on actions that read the simulator's depth, which the policy does not
-see. ‡ marks trials of an earlier physics step, such as 1/480 s. What was run where is in the
-[last table](#what-was-run).
+see. ‡ marks trials of an earlier physics step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what
+an agent commands. What was run where is in the [last table](#what-was-run).
 """
 
 
@@ -220,7 +220,8 @@ def _mean(rows: Sequence[Row], name: str) -> str:
 def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of the robustness variants, a table an agent, and the command where there is none."""
     own = _newest(results)
-    text = "\n".join(table.to_markdown() for table in strengths_tables([row for one in own for row in one.rows]))
+    rows = [{**row, "agent": f"{row['agent']}{roll_mark(one.run, one.task)}"} for one in own for row in one.rows]
+    text = "\n".join(table.to_markdown() for table in strengths_tables(rows))
     return own, text, [] if any(one.is_current for one in own) else [section["command"]]
 
 
