@@ -8,7 +8,15 @@ Launch dimensions: N worlds, H rows, W columns, S samples a pixel.
 
 import warp as wp
 
-from arcgym.sensors.shading_kernels import Lighting, SurfaceView, covered_radiance, shade, shade_measured, surface_hit
+from arcgym.sensors.shading_kernels import (
+    Lighting,
+    SurfaceView,
+    covered_radiance,
+    nearest_hit,
+    shade,
+    shade_measured,
+    surface_hit,
+)
 from arcgym.utils import warp_setup  # noqa: F401
 
 PROBES = wp.constant(14)
@@ -107,7 +115,7 @@ def make_cast_rays(shade: wp.Function) -> wp.Kernel:
         nearest = far
         for sample in range(rays.shape[2]):
             direction = wp.transform_vector(camera, rays[row, column, sample])
-            query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+            query = nearest_hit(surface, world, origin, direction, far)
             if query.result:
                 hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
                 total += shade(surface, lighting, world, hit, camera, direction, query.t, texture_offset[world])

@@ -6,7 +6,7 @@
 import warp as wp
 
 from arcgym.sensors.blob_kernels import blob_at
-from arcgym.sensors.shading_kernels import SurfaceView
+from arcgym.sensors.shading_kernels import SurfaceView, nearest_hit
 from arcgym.utils import warp_setup  # noqa: F401
 
 SMALLEST, LARGEST = wp.constant(0.4), wp.constant(0.9)
@@ -78,7 +78,7 @@ def soil(
     camera = poses[world]
     direction = wp.transform_vector(camera, rays[row, column, 0])
     origin = wp.transform_get_translation(camera)
-    query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+    query = nearest_hit(surface, world, origin, direction, far)
     if not query.result:
         return
     i0 = wp.mesh_get_index(surface.mesh, query.face * 3)

@@ -5,7 +5,7 @@
 
 import warp as wp
 
-from arcgym.sensors.shading_kernels import SurfaceView
+from arcgym.sensors.shading_kernels import SurfaceView, nearest_hit
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -44,7 +44,7 @@ def mark_seen(
     camera = poses[world]
     direction = wp.transform_vector(camera, rays[row, column, 0])
     origin = wp.transform_get_translation(camera)
-    query = wp.mesh_query_ray(surface.mesh, origin, direction, reach, surface.roots[world])
+    query = nearest_hit(surface, world, origin, direction, reach)
     if not query.result:
         return
     weight = wp.vec3(query.u, query.v, 1.0 - query.u - query.v)

@@ -7,6 +7,11 @@ import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
 
+EDGE = wp.constant(1.0e-5)
+"""Least barycentric coordinate of a hit that counts as inside a triangle; rounding moves an edge by less."""
+ASIDE = wp.constant(wp.vec3(6.0e-5, 5.0e-5, 6.2e-5))
+"""What is added to the direction of a ray that meets an edge [rad]: a hundredth of a pixel, and far more than EDGE."""
+
 
 @wp.struct
 class SurfaceView:
@@ -54,6 +59,19 @@ class Hit:
     tint: float
     # level of the texture pyramid whose texels are as large as the pixel
     level: float
+
+
+@wp.func
+def nearest_hit(surface: SurfaceView, world: int, origin: wp.vec3, direction: wp.vec3, far: float) -> wp.MeshQueryRay:
+    """Return the nearest triangle of a world that a ray meets within ``far`` [m], whatever the order of the triangles.
+
+    A ray that meets an edge meets two triangles at the same distance, of which a tree gives the one that it comes to
+    first; trees of other patients beside have another order. So such a ray is traced again, a little aside.
+    """
+    query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+    if query.result and wp.min(wp.min(query.u, query.v), 1.0 - query.u - query.v) < EDGE:
+        query = wp.mesh_query_ray(surface.mesh, origin, wp.normalize(direction + ASIDE), far, surface.roots[world])
+    return query
 
 
 @wp.func

@@ -5,7 +5,7 @@
 
 import warp as wp
 
-from arcgym.sensors.shading_kernels import SurfaceView
+from arcgym.sensors.shading_kernels import SurfaceView, nearest_hit
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -46,7 +46,7 @@ def look_closer(
     camera = poses[world]
     direction = wp.transform_vector(camera, rays[row, column, 0])
     origin = wp.transform_get_translation(camera)
-    query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+    query = nearest_hit(surface, world, origin, direction, far)
     if not query.result:
         return
     corner = query.face * 3
