@@ -17,9 +17,7 @@ from arcgym.cli.main import main
 from arcgym.evaluation.check import AGENTS_OWN, OWN_UP_TO, problems
 from arcgym.evaluation.compare import compare, notes
 from arcgym.evaluation.merge import merge
-from arcgym.evaluation.physics_steps import steps_registered
-from arcgym.evaluation.result_folder import ResultFolder, read_run
-from arcgym.evaluation.results import find_results
+from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.trials import read_conditions
 from arcgym.utils.errors import UsageError
@@ -337,28 +335,6 @@ def test_what_the_suite_itself_changes_is_no_reason_to_refuse(tmp_path: Path) ->
     changes[task]["robustness"][1] = "none"
     other = ResultFolder(tmp_path / "b", {**run, "changes": changes})
     assert [line for line in problems(other.path) if "run with robustness = none, which changes the task" in line]
-
-
-def test_results_of_a_shorter_scope_are_no_results_of_the_task(tmp_path: Path) -> None:
-    """Of the two tasks of a folder, the one that has the shipped length is shown all the same."""
-    of: dict[str, Any] = {"suite": "ct", "agent": "expert", "checkpoint": [], "checkpoint_sha256": [], "training": []}
-    task, other = "ARC-Cecum-Magnetic", "ARC-LeftColon-Magnetic"
-    of |= {"physics_hz": {task: steps_registered(task), other: steps_registered(other)}}
-    conditions = read_conditions(read_suites()["ct"].conditions_path)
-    for name, lengths in (("old", {}), ("new", {"scope_length": {task: 2.2}})):
-        folder = write_result_folder(tmp_path / name, 0, task, **of | lengths)
-        for trial in conditions.trials:
-            row = {"task": other, "agent": "expert", **vars(trial), "success": 0, "end": "stuck", "progress": 0.5}
-            more = {"reward": 1.0, "seconds": 2.0, "s_c": 0.5, "centered_rate": 0.5, "tip_time_above_unsafe": 0.25}
-            ResultFolder(folder, read_run(folder)).add(row | more)
-    message = f"{task} was run with a scope of its shipped length, and has a scope of 2.2 m now: evaluate again"
-    assert problems(tmp_path / "old") == [message] and problems(tmp_path / "new") == []
-    found, left_out = find_results([tmp_path])
-    assert [(one.folder.name, one.task) for one in found] == [("new", task), ("new", other), ("old", other)]
-    assert left_out == {tmp_path / "old": [message]}
-    assert f"note: {task} scope [m] is None in {tmp_path / 'old'} and 2.2 in {tmp_path / 'new'}" in notes(
-        tmp_path / "old", tmp_path / "new"
-    )
 
 
 def test_trials_of_an_earlier_version_cannot_be_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -69,16 +69,13 @@ def _settings(run: dict[str, Any]) -> dict[str, Any]:
     """Return lengths of physics step and scope, and all settings that are not as registered and not the agent's."""
     steps = {f"{task} physics step": as_text(steps_in(run, task)) for task in run.get("changes", {})}
     lengths = {f"{task} scope [m]": length for task, length in run.get(LENGTH, {}).items()}
-    return (
-        steps
-        | lengths
-        | {
-            f"{task} {path}": used
-            for task, changes in run.get("changes", {}).items()
-            for path, (_, used) in changes.items()
-            if not is_agents(path, used)
-        }
-    )
+    others = {
+        f"{task} {path}": used
+        for task, changes in run.get("changes", {}).items()
+        for path, (_, used) in changes.items()
+        if not is_agents(path, used)
+    }
+    return steps | lengths | others
 
 
 def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:

@@ -15,7 +15,7 @@ import yaml
 from arcgym.evaluation.check import problems
 from arcgym.evaluation.physics_steps import STEP_MARK, as_text, steps_in, steps_registered
 from arcgym.evaluation.result_folder import COMMIT, read_run, read_trial_rows, result_folders
-from arcgym.evaluation.results import roll_mark
+from arcgym.evaluation.results import roll_of
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
@@ -180,7 +180,7 @@ def _lines(folder: Path) -> list[tuple[str, bool, float, str]]:
         figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
         steps = steps_in(run, task)
         is_present = steps == steps_registered(task)
-        rolls = roll_mark(run, task).replace("_roll", ", rolls to and fro [rad/s]: ")
+        rolls = f", rolls to and fro [rad/s]: {amplitude:g}" if (amplitude := roll_of(run, task)) else ""
         cells = [f"`{task}`", name + rolls, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
         cells += [as_text(steps) + ("" if is_present else STEP_MARK), marked]
         lines.append((task, not is_present, -of["success"].value, f"| {' | '.join(cells)} |"))

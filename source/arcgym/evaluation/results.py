@@ -121,10 +121,15 @@ def method_of(run: dict[str, Any], task: str) -> str:
     return name + suffix + roll_mark(run, task)
 
 
-def roll_mark(run: dict[str, Any], task: str) -> str:
-    """Return ``_roll9`` where a roll to and fro of 9 rad/s is added to an agent's commands, and nothing without one."""
+def roll_of(run: dict[str, Any], task: str) -> float:
+    """Return the amplitude of the roll to and fro that is added to an agent's commands [rad/s]; 0 without one."""
     changes = run.get("changes", {}).get(task, {})
-    amplitude = max((float(changes[path][1] or 0.0) for path in ROLLS if path in changes), default=0.0)
+    return max((float(changes[path][1] or 0.0) for path in ROLLS if path in changes), default=0.0)
+
+
+def roll_mark(run: dict[str, Any], task: str) -> str:
+    """Return the end of an agent's name in tables: ``_roll9`` for a roll of 9 rad/s, and nothing without one."""
+    amplitude = roll_of(run, task)
     return f"_roll{amplitude:g}" if amplitude else ""
 
 
