@@ -338,7 +338,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     def scope_length(self) -> float | None:
         """Length of the scope [m], ``env.scene.endoscope.length``; None for that of its stage.
 
-        A task sets it for its robots; scopes that come in one length alone, such as the capsule, stay as they are.
+        A task sets it for all robots. A scope that comes in one length alone keeps it: the capsule, a stage of one's
+        own.
         """
         return self.scene.endoscope.length
 

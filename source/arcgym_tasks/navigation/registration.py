@@ -51,7 +51,6 @@ def register_robot(
     *,
     segments: Sequence[str] = tuple(TIME_LIMIT_S),
     journeys: Mapping[str, Mapping[str, Any]] = JOURNEYS,
-    shaft: bool = True,
     agents: Mapping[str, str | Callable[[], Any]] | None = None,
 ) -> list[str]:
     """Register ``ARC-<Segment>-<Robot>`` and ``ARC-<Segment>-<Robot>-Play`` for every segment and every journey.
@@ -63,8 +62,8 @@ def register_robot(
         env_cfg: Subclass of :class:`arcgym_tasks.navigation.navigation_env_cfg.NavigationEnvCfg` with the robot and its
             actions, or its name ``"module:Class"``.
         segments: Segments to pass, lower case.
-        journeys: Longer ways by their name in the task, with the fields of the configuration that they set.
-        shaft: Whether the robot has a shaft, of which some journeys ask for a length.
+        journeys: Longer ways by their name in the task, with the fields of the configuration that they set. A
+            ``scope_length`` among them is for the scopes that come in several lengths; others keep theirs.
         agents: Agent configurations by registry key, added to
             :data:`arcgym_tasks.navigation.agents.AGENTS` or in their place.
 
@@ -77,8 +76,7 @@ def register_robot(
     tasks = []
     ways = {**{name.capitalize(): {"segment": name} for name in segments}, **journeys}
     for name, fields in ways.items():
-        own = {field: value for field, value in fields.items() if shaft or field != "scope_length"}
-        tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **own)
+        tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **fields)
     return tasks
 
 

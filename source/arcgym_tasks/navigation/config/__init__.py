@@ -15,4 +15,4 @@ ROBOTS = {
 """Environment configuration by robot, as written in task names."""
 
 for _robot, _env_cfg in ROBOTS.items():
-    register_robot(_robot, _env_cfg, shaft=_robot != "Capsule")
+    register_robot(_robot, _env_cfg)
