@@ -34,6 +34,12 @@ def small(tiny_colon_path: Path) -> Callable[..., Any]:
 
 
 @pytest.fixture(scope="session")
+def make_cfg(tiny_colon_path: Path) -> Callable[..., Any]:
+    """Makes its configuration."""
+    return lambda **settings: small_cfg(tiny_colon_path, **settings)
+
+
+@pytest.fixture(scope="session")
 def recorded(tiny_colon_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder of two episodes of 14 steps, of two worlds with different friction, stiffness and actions."""
     folder = tmp_path_factory.mktemp("recorded")

@@ -10,9 +10,12 @@ import gymnasium as gym
 import imageio_ffmpeg
 import numpy as np
 import pytest
+import torch
 
 from arcgym.cli.main import main
+from arcgym.envs import mdp
 from arcgym.managers import Episode, episode_paths, save_episode
+from arcgym.recordings.pieces import STATE, replay_pieces
 from arcgym.recordings.replay import replay
 from arcgym.recordings.restoring import mismatches, restored_cfg
 from arcgym.utils.errors import UsageError
@@ -58,6 +61,30 @@ def test_what_is_changed_shows(episode, again) -> None:
     assert "final_state/joint_q" in {one.name for one in result.differences}
     slippery = {**episode.data, "world_settings/friction": np.float32(0.5)}
     assert not replay(again, dataclasses.replace(episode, data=slippery)).is_exact
+
+
+def test_a_roll_to_and_fro_goes_on_where_a_piece_begins(make_cfg, tmp_path) -> None:
+    """A mark after 6 of 9 steps; the whole episode and the piece behind the mark are made again."""
+    cfg = make_cfg()
+    cfg.recorders = mdp.TrajectoryRecorderCfg(dataset_export_dir_path=str(tmp_path))
+    cfg.actions.capsule.roll_amplitude, cfg.actions.capsule.roll_period = 9.0, 2.0
+    env = gym.make("ARC-Splenic-Capsule", cfg=cfg).unwrapped
+    env.reset()
+    mark = {}
+    for step in range(9):
+        if step == 6:
+            mark = {f"{STATE}{name}": array.numpy().copy() for name, array in env.sim.world_arrays().items()}
+        env.step(torch.tensor([[0.0, 0.0, 1.0, 0.1, 0.0, 0.0]]))
+    env.close()
+    whole = Episode.load(episode_paths(tmp_path)[0])
+    marked = dataclasses.replace(whole, data={**whole.data, **mark, "marks/step": np.array([6])})
+    task, restored = restored_cfg(whole, None, "cpu")
+    assert restored.actions.capsule.roll_amplitude == 9.0
+    again = gym.make(task, cfg=restored).unwrapped
+    assert replay(again, whole).is_exact
+    (piece,) = replay_pieces(again, marked)
+    assert piece.is_exact and (piece.start, piece.end) == (6, 9), str(piece)
+    again.close()
 
 
 def test_recording_cut_off_by_a_kill_is_compared_as_far_as_it_goes(episode, again) -> None:

@@ -58,6 +58,9 @@ class ActionTerm(ManagerTermBase, ABC):
     def apply_actions(self) -> None:
         """Hand the commands to the asset, after every :meth:`process_actions`."""
 
+    def resume(self, step: int, env_ids: torch.Tensor | None = None) -> None:  # noqa: B027
+        """Go on in the given worlds as after so many control steps of an episode; they have been put in its state."""
+
     def commanded_actions(self) -> torch.Tensor:
         """Return the raw actions that come closest to what the asset is commanded now, shape (N, action_dim).
 
@@ -129,6 +132,11 @@ class ActionManager(ManagerBase):
     def commanded_actions(self) -> torch.Tensor:
         """Return the raw actions that come closest to what the assets are commanded now, shape (N, A)."""
         return torch.cat([term.commanded_actions() for term in self._terms.values()], dim=1)
+
+    def resume(self, step: int, env_ids: torch.Tensor | None = None) -> None:
+        """Let the terms go on in some worlds as after so many control steps of an episode."""
+        for term in self._terms.values():
+            term.resume(step, env_ids)
 
     def reset(self, env_ids: torch.Tensor | None = None) -> dict[str, Any]:
         """Set the actions of some worlds to zero and reset the terms."""

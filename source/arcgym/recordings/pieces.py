@@ -85,6 +85,7 @@ def _piece(env: Any, episode: Episode, mark: int, start: int, end: int, on_step:
     state = {name.removeprefix(STATE): value[mark] for name, value in data.items() if name.startswith(STATE)}
     settings = {name.removeprefix(SETTINGS): value for name, value in data.items() if name.startswith(SETTINGS)}
     put_in_state(env, state, settings)
+    env.action_manager.resume(start)
     exact, there = True, np.zeros(3)
     for step in range(start, end):
         env.step(torch.as_tensor(data["actions"][step])[None])

@@ -101,6 +101,11 @@ class VelocityAction(ActionTerm):
             values[:, self.axes.index("roll")] -= self._roll.rate
         return (values[:, self._axes] / self._scale).clamp(-1.0, 1.0)
 
+    def resume(self, step: int, env_ids: torch.Tensor | None = None) -> None:
+        """Roll to and fro in the given worlds as after so many control steps."""
+        if self._roll is not None:
+            self._roll.resume(step, env_ids)
+
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Set the actions of the given worlds to zero."""
         fill_worlds(self._raw, env_ids, 0.0)

@@ -44,6 +44,10 @@ class RollOscillation:
         self.rate = self._amplitude * share * (self._phase_step * self._steps).sin()
         self._steps += 1.0
 
+    def resume(self, step: int, env_ids: torch.Tensor | None = None) -> None:
+        """Go on in the given worlds as after so many control steps."""
+        fill_worlds(self._steps, env_ids, float(step))
+
     def reset(self, env_ids: torch.Tensor | None = None) -> None:
         """Set the given worlds back to t = 0."""
         fill_worlds(self._steps, env_ids, 0.0)
