@@ -13,7 +13,12 @@ NEAR_ANUS = 0.03
 
 
 class Retreat:
-    """Counts the control steps without progress; each further attempt backs off longer."""
+    """Counts the control steps without progress; each further attempt backs off longer.
+
+    Without :data:`GAIN` at last it goes back for ``longest`` of every ``longest + patience`` steps: a pulled tip for 4
+    of every 6 s from the seventh attempt on, a pushed one, unless told otherwise, for 6 of every 12 from the sixth. One
+    that creeps on is taken for stuck, too.
+    """
 
     def __init__(self, num_envs: int, device: str, patience: float | torch.Tensor, first: int, longest: int):
         """Start anew.
