@@ -69,6 +69,19 @@ def test_plain_newton_refuses_what_differs_between_worlds(narrow: TinySim) -> No
         sim.endoscope.write_friction_to_sim(torch.ones(1))
 
 
+@pytest.mark.parametrize(("substeps", "made"), [(1, 2), (4, 4)])
+def test_plain_newton_steps_the_wall_in_every_substep(
+    narrow: TinySim, substeps: int, made: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It needs two of them."""
+    sim = narrow(links=6, colon=SOLID, solver="newton", scope_substeps=substeps, use_graph=False)
+    solver, lengths = sim.coupling.solver, []
+    step = solver.step
+    monkeypatch.setattr(solver, "step", lambda *args: (lengths.append(args[-1]), step(*args)))
+    sim.step(1)
+    assert lengths == [pytest.approx(sim.physics_dt / made)] * made
+
+
 def test_plain_newton_refuses_to_tell_about_penetration(narrow: TinySim) -> None:
     sim = narrow(links=6, colon=SOLID, solver="newton")
     with pytest.raises(ValueError, match="does not measure wall penetration.*env.terminations.wall_penetrated=null"):

@@ -165,7 +165,8 @@ class SimulationCfg:
     scope_substeps: int = 4
     """Scope substeps a physics step, at least 1. The scope is solved implicitly and is stable with any number;
     more of them follow fast contacts more closely. On a CPU they cost little beside the wall, on an H200 each takes
-    9.2 ms of the 125 of a control step of 1024 worlds (docs/gpu.md). ``solver="newton"`` takes at least 2."""
+    9.2 ms of the 125 of a control step of 1024 worlds (docs/gpu.md). ``solver="newton"`` takes at least 2, steps the
+    wall in each as well, and takes as much longer."""
     scope_iterations: int = 10
     """Constraint iterations of MuJoCo a substep, with ``solver="newton"``."""
     mass_scaling: float = 1.0
@@ -179,7 +180,7 @@ class SimulationCfg:
     wall: WallSolverCfg = WallSolverCfg()
     """Wall solver."""
     newton_iterations: int = 5
-    """Sweeps of plain ``SolverVBD`` a physics step, with ``solver="newton"``. Use it with ``dt=1/960``."""
+    """Sweeps of plain ``SolverVBD`` a scope substep, with ``solver="newton"``. Use it with ``dt=1/960``."""
     use_graph: bool = True
     """Capture the physics step in a graph and replay it: 2.3 times faster with one world on a CPU core. Switch it off
     to step through kernels in a debugger."""

@@ -111,7 +111,7 @@ def compare_pushes(run: Run, name: str, tube: Tube | None, depth: float, **chang
 def plain_newton(run: Run) -> list[Row]:
     """Push through the bend against plain Newton, on the solid wall that it can simulate.
 
-    Newton steps at 1/960 s and needs a scope three times as heavy.
+    Newton steps at 1/960 s, in as many substeps as ours, and needs a scope three times as heavy.
     """
     ours = push(run, BEND, DEPTH, wall_model="solid")
     newton = push(run, BEND, DEPTH, wall_model="solid", solver="newton", dt=1.0 / 960.0, mass_scaling=3.0)
