@@ -12,6 +12,7 @@ from typing import Any
 
 import torch
 
+from arcgym.assets import ColonCfg
 from arcgym.envs.provenance import versions
 from arcgym.evaluation.options import EvaluationOptions
 from arcgym.evaluation.suites import split_task
@@ -23,6 +24,7 @@ from arcgym.rl.pretrained import ABOUT
 from arcgym.rl.rollout import UNTRAINED
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
+from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import load_cfg_from_registry
 
 SET_HERE = (
@@ -80,13 +82,25 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
 def trained_on(checkpoint: Path) -> Any:
     """Return the patients that a checkpoint was trained on; None where nothing beside it says so.
 
-    The parameters of its run name them; those of a shipped policy do not, but its description does.
+    The parameters of its run name them, or else the command that started it; those of a shipped policy do not, but its
+    description does.
     """
     about = checkpoint.with_name(ABOUT)
     if about.is_file():
         return json.loads(about.read_text()).get("trained_on")
     saved = read_params(checkpoint.parent)
-    return None if saved is None else saved.env["scene"]["colon"].get("usd_path")
+    if saved is None:
+        return None
+    colon = saved.env.get("scene", {}).get("colon", {})
+    return colon.get("usd_path") or _patients_in(saved.command)
+
+
+def _patients_in(command: Sequence[str]) -> Any:
+    """Return the patients that a command's words give a training; None where they leave it to the task."""
+    colon, scene = ColonCfg(), "env.scene."
+    words = [word.removeprefix(scene) for word in command if word.startswith(f"{scene}colon.usd_path=")]
+    apply_overrides({"colon": colon}, words)
+    return colon.usd_path if words else None
 
 
 def training_of(checkpoint: Path) -> dict[str, Any]:

@@ -55,6 +55,9 @@ class RunParams:
     agent: Plain
     """Configuration of the agent."""
 
+    command: tuple[str, ...] = ()
+    """Words of the command that started it, as far as the run says so."""
+
 
 def read_params(run: Path) -> RunParams | None:
     """Return the parameters of a run, or None where its folder has none.
@@ -75,7 +78,9 @@ def read_params(run: Path) -> RunParams | None:
         if not isinstance(contents[name], dict):
             raise UsageError(f"{path} holds {type(contents[name]).__name__}, expected names with values.")
     about = contents["run"]
-    return RunParams(folder, str(about.get("task", "")), about.get("agent"), contents["env"], contents["agent"])
+    command = about.get("command")
+    words = tuple(map(str, command)) if isinstance(command, list) else ()
+    return RunParams(folder, str(about.get("task", "")), about.get("agent"), contents["env"], contents["agent"], words)
 
 
 def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = (), recorded: bool = False) -> None:

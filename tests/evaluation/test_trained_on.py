@@ -1,0 +1,37 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""The patients that a checkpoint was trained on, by what lies beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from arcgym.evaluation.identity import trained_on
+from arcgym.rl.run_folder import write_params
+
+TRAIN = "env.scene.colon.usd_path=[colon_1/colon.usda,population:train]"
+
+
+@pytest.mark.parametrize(
+    ("colon", "command", "patients"),
+    [
+        ({"usd_path": "ct_1/colon.usda"}, [TRAIN], "ct_1/colon.usda"),
+        ({}, ["arcgym", "train", TRAIN, "env.scene.colon.num_patients=9"], ["colon_1/colon.usda", "population:train"]),
+        ({}, ["env.scene.colon.usd_path=population:7*0.5"], "population:7*0.5"),
+        ({}, ["arcgym", "train", "--task", "ARC-Rectum-Capsule"], None),
+        ({}, None, None),
+    ],
+)
+def test_parameters_name_them_or_the_command_does(tmp_path: Path, colon: dict, command: list | None, patients: Any):
+    run = {"task": "ARC-Rectum-Capsule"} | ({} if command is None else {"command": command})
+    write_params(tmp_path, run=run, env={"scene": {"colon": colon}}, agent={})
+    assert trained_on(tmp_path / "model_0.pt") == patients
+
+
+def test_nothing_beside_it_says_so(tmp_path: Path) -> None:
+    assert trained_on(tmp_path / "model_0.pt") is None
+    write_params(tmp_path, run={"task": "ARC-Rectum-Capsule"}, env={}, agent={})
+    assert trained_on(tmp_path / "model_0.pt") is None
