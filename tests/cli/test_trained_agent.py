@@ -77,6 +77,30 @@ def test_a_roll_to_and_fro_goes_with_its_policy(tmp_path: Path) -> None:
     assert pushed.actions.base.roll_amplitude == 0.0
 
 
+def test_a_scope_of_another_length_goes_with_its_policy_and_is_told(tmp_path: Path, capsys) -> None:
+    """In its own task, where no override gives it that of the task."""
+    trained, field = "ARC-Cecum-Magnetic", "env.scene.endoscope.length"
+    env_cfg = load_cfg_from_registry(trained, "env_cfg_entry_point")
+    env_cfg.scene.endoscope.length = None
+    agent_cfg = load_cfg_from_registry(trained, "rsl_rl_cfg_entry_point")
+    write_params(tmp_path, run={"task": trained, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    checkpoint = tmp_path / "model_0.pt"
+    checkpoint.write_bytes(b"")
+    for task, override, length in (
+        (trained, (), None),
+        (f"{trained}-Play", (), None),
+        (trained, (f"{field}=2.2",), 2.2),
+        (trained, (f"{field}=null",), None),
+        ("ARC-LeftColon-Magnetic", (), None),
+    ):
+        judged, _ = _load(task, checkpoint, override)
+        note = (
+            f"note: a scope of its shipped length, as the run had; {task} has a scope of 2.2 m now, which {field}=2.2"
+        )
+        assert judged.scene.endoscope.length == length
+        assert (note in capsys.readouterr().out) == (trained in task and not override)
+
+
 def test_trials_are_drawn_by_the_task_however_the_training_drew(tmp_path: Path) -> None:
     env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
     own = tuple(env_cfg.events.friction.params["friction"])

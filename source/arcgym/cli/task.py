@@ -110,7 +110,21 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
     for path, (old, new) in differences(before, after).items():
         if path not in passing:
             print(f"changed: {path}: {old} -> {new}")
+    _tell_length(args, env_cfg)
     return env_cfg, agent_cfg, checkpoint
+
+
+def _tell_length(args: RunArguments, env_cfg: Any) -> None:
+    """Print that a run's scope is not as long as the task's, unless an override says how long it is."""
+    from arcgym.evaluation.scope_lengths import FIELD, as_text, length_of, length_registered
+
+    used, own = length_of(env_cfg), length_registered(args.task)
+    if used == own or any(text.startswith(f"env.{FIELD}=") for text in args.overrides):
+        return
+    value = "null" if own is None else f"{own:g}"
+    print(
+        f"note: {as_text(used)}, as the run had; {args.task} has {as_text(own)} now, which env.{FIELD}={value} gives it"
+    )
 
 
 def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:

@@ -28,7 +28,7 @@ def length_in(run: dict[str, Any], task: str) -> float | None:
 
 def other_length(run: dict[str, Any], task: str) -> list[str]:
     """Return a problem if the scope of a task has another length now; none where ``changes`` of the run say so."""
-    length, now = length_in(run, task), _registered(task)
+    length, now = length_in(run, task), length_registered(task)
     if length == now or FIELD in run.get("changes", {}).get(task, {}):
         return []
     return [f"{task} was run with {as_text(length)}, and has {as_text(now)} now: evaluate again"]
@@ -40,7 +40,8 @@ def as_text(length: float | None) -> str:
 
 
 @functools.cache
-def _registered(task: str) -> float | None:
+def length_registered(task: str) -> float | None:
+    """Return the length of a task's scope as it is registered [m], with ``:variant`` or without; None as before."""
     from arcgym.utils.registry import load_cfg_from_registry
 
     return length_of(load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point"))
