@@ -22,7 +22,10 @@ def test_results_of_a_shorter_scope_are_no_results_of_the_task(tmp_path: Path) -
     """Of the two tasks of a folder, the one that has the shipped length is shown all the same."""
     of: dict[str, Any] = {"suite": "ct", "agent": "expert", "checkpoint": [], "checkpoint_sha256": [], "training": []}
     task, other = "ARC-Cecum-Magnetic", "ARC-LeftColon-Magnetic"
-    of |= {"physics_hz": {task: steps_registered(task), other: steps_registered(other)}}
+    of |= {
+        "changes": {task: {}, other: {}},
+        "physics_hz": {task: steps_registered(task), other: steps_registered(other)},
+    }
     conditions = read_conditions(read_suites()["ct"].conditions_path)
     for name, lengths in (("old", {}), ("new", {"scope_length": {task: 2.2}})):
         folder = write_result_folder(tmp_path / name, 0, task, **of | lengths)
@@ -35,6 +38,6 @@ def test_results_of_a_shorter_scope_are_no_results_of_the_task(tmp_path: Path) -
     found, left_out = find_results([tmp_path])
     assert [(one.folder.name, one.task) for one in found] == [("new", task), ("new", other), ("old", other)]
     assert left_out == {tmp_path / "old": [message]}
-    assert f"note: {task} scope [m] is None in {tmp_path / 'old'} and 2.2 in {tmp_path / 'new'}" in notes(
+    assert f"note: {task} scope is its shipped length in {tmp_path / 'old'} and 2.2 m in {tmp_path / 'new'}" in notes(
         tmp_path / "old", tmp_path / "new"
     )

@@ -122,9 +122,8 @@ def _tell_length(args: RunArguments, env_cfg: Any) -> None:
     if used == own or any(text.startswith(f"env.{FIELD}=") for text in args.overrides):
         return
     value = "null" if own is None else f"{own:g}"
-    print(
-        f"note: {as_text(used)}, as the run had; {args.task} has {as_text(own)} now, which env.{FIELD}={value} gives it"
-    )
+    told = f"a scope of {as_text(used)}, as the run had; {args.task} has one of {as_text(own)} now"
+    print(f"note: {told}, which env.{FIELD}={value} gives it")
 
 
 def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:

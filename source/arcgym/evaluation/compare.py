@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from arcgym.evaluation import physics_steps, scope_lengths
 from arcgym.evaluation.check import is_agents
-from arcgym.evaluation.physics_steps import as_text, steps_in
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
-from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
 from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS
 from arcgym.utils.errors import UsageError
@@ -67,11 +66,12 @@ def notes(first: Path, second: Path) -> list[str]:
 
 def _settings(run: dict[str, Any]) -> dict[str, Any]:
     """Return lengths of physics step and scope, and all settings that are not as registered and not the agent's."""
-    steps = {f"{task} physics step": as_text(steps_in(run, task)) for task in run.get("changes", {})}
-    lengths = {f"{task} scope [m]": length for task, length in run.get(LENGTH, {}).items()}
+    tasks = run.get("changes", {})
+    steps = {f"{task} physics step": physics_steps.as_text(physics_steps.steps_in(run, task)) for task in tasks}
+    lengths = {f"{task} scope": scope_lengths.as_text(scope_lengths.length_in(run, task)) for task in tasks}
     others = {
         f"{task} {path}": used
-        for task, changes in run.get("changes", {}).items()
+        for task, changes in tasks.items()
         for path, (_, used) in changes.items()
         if not is_agents(path, used)
     }

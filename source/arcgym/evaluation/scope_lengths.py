@@ -31,17 +31,17 @@ def other_length(run: dict[str, Any], task: str) -> list[str]:
     length, now = length_in(run, task), length_registered(task)
     if length == now or FIELD in run.get("changes", {}).get(task, {}):
         return []
-    return [f"{task} was run with {as_text(length)}, and has {as_text(now)} now: evaluate again"]
+    return [f"{task} was run with a scope of {as_text(length)}, and has a scope of {as_text(now)} now: evaluate again"]
 
 
 def as_text(length: float | None) -> str:
-    """Return a length in words, such as ``a scope of 2.2 m``."""
-    return "a scope of its shipped length" if length is None else f"a scope of {length:g} m"
+    """Return a length in words, ``2.2 m`` or ``its shipped length``."""
+    return "its shipped length" if length is None else f"{length:g} m"
 
 
 @functools.cache
 def length_registered(task: str) -> float | None:
-    """Return the length of a task's scope as it is registered [m], with ``:variant`` or without; None as before."""
+    """Return the length of a task's scope as it is registered [m], or None for that of its stage."""
     from arcgym.utils.registry import load_cfg_from_registry
 
     return length_of(load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point"))
