@@ -45,7 +45,7 @@ OWN_UP_TO = {
 roll to and fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
 :class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]."""
 
-ROLLS = ("actions.tip.roll_amplitude", "actions.base.roll_amplitude")
+ROLLS = tuple(path for path in OWN_UP_TO if path.endswith(".roll_amplitude"))
 """Those of a roll to and fro, which tables name."""
 
 SWITCH = "enabled"
@@ -111,8 +111,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     if more:
         found.append(f"overrides {more} change the task: publish it as a variant of its own")
     for task, changes in run.get("changes", {}).items():
-        asked = (text.removeprefix("env.").partition("=") for text in suite.overrides_of(task))
-        allowed = {path: value for path, _, value in asked}
+        allowed = dict(map(_path_and_value, suite.overrides_of(task)))
         for path, (registered, used) in changes.items():
             own = is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed})
             if not own and str(used).lower() != allowed.get(path, "").lower():
@@ -120,9 +119,15 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     return found
 
 
-def _is_agents_own(override: str) -> bool:
-    """Return whether an override, ``env.path=value``, gives a field that is the agent's to choose."""
+def _path_and_value(override: str) -> tuple[str, str]:
+    """Return the two of an override, ``env.path=value``."""
     path, _, value = override.removeprefix("env.").partition("=")
+    return path, value
+
+
+def _is_agents_own(override: str) -> bool:
+    """Return whether an override gives a field that is the agent's to choose."""
+    path, value = _path_and_value(override)
     return is_agents(path, yaml.safe_load(value))
 
 
@@ -134,20 +139,20 @@ def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
 
 
 def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool:
-    """Return whether an override, ``env.path=value``, gives a field that the suite leaves alone its registered value.
+    """Return whether an override gives a field that the suite leaves alone its registered value.
 
     A policy brings along the settings of its training, and needs it where a default has changed since then.
     """
     from arcgym.utils.registry import load_cfg_from_registry
 
-    path, _, value = override.removeprefix("env.").partition("=")
+    path, value = _path_and_value(override)
     if path in ROOM:
         return True
     for task in tasks:
         found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
         for name in path.split("."):
             found = getattr(found, name, "")
-        of_suite = [text.removeprefix("env.").partition("=")[0] for text in suite.overrides_of(task)]
+        of_suite = dict(map(_path_and_value, suite.overrides_of(task)))
         if path in of_suite or (str(found).lower() != value.lower() and found != yaml.safe_load(value)):
             return False
     return bool(tasks)
@@ -291,13 +296,12 @@ def _impossible(row: Row) -> Iterator[tuple[str, float | str, str]]:
 
 def _other_tasks(rows: list[Row], suite: Suite) -> list[str]:
     """Return a problem for each task that is not the suite's."""
-    named = {row["task"] for row in rows if "task" in row}
     own = {task for robot in _robots(rows) for task in suite.tasks(robot)}
-    return [f"{task} is no task of the suite" for task in sorted(named - own)]
+    return [f"{task} is no task of the suite" for task in _tasks(rows) if task not in own]
 
 
 def _robots(rows: list[Row]) -> list[str]:
-    return sorted({split_task(row["task"])[0].split("-")[-1] for row in rows if "task" in row})
+    return sorted({split_task(task)[0].split("-")[-1] for task in _tasks(rows)})
 
 
 def _missing_trials(rows: list[Row], conditions: Conditions, suite: Suite) -> list[str]:

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.physics_steps import ENTRY, UNSAID, steps_registered
+from arcgym.evaluation.physics_steps import ENTRY as STEPS
+from arcgym.evaluation.physics_steps import UNSAID, steps_registered
 from arcgym.evaluation.result_folder import UNTRAINED
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
@@ -160,7 +161,7 @@ def _floor(result: Result) -> Floor:
 
 
 def _cells(one: Floor) -> dict[str, Any]:
-    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT} | {ENTRY: f"{one.physics_hz:g}"}
+    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT} | {STEPS: f"{one.physics_hz:g}"}
     for name, of in one.figures.items():
         values = zip(BOUNDS, (of.value, of.low, of.high), strict=True)
         cells |= {name + bound: f"{value:.{DIGITS}g}" for bound, value in values}
@@ -172,5 +173,5 @@ def _read(row: dict[str, str]) -> Floor:
         name: Interval(*(float(row[name + bound]) for bound in BOUNDS)) for name in FIGURES if row.get(name, "") != ""
     }
     about: dict[str, Any] = {name: row.get(name) for name in ABOUT}
-    about |= {"trials": int(row["trials"]), ENTRY: float(row.get(ENTRY) or UNSAID)}
+    about |= {"trials": int(row["trials"]), STEPS: float(row.get(STEPS) or UNSAID)}
     return Floor(**about, figures=figures)

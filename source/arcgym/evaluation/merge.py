@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.physics_steps import ENTRY
+from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.result_folder import DROPPED, ResultFolder, read_run, read_trial_rows
 from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
 from arcgym.utils.errors import UsageError
@@ -51,7 +51,7 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
 def _merge_settings(folder: ResultFolder, part: Path, run: dict[str, Any]) -> None:
     notes: dict[str, Callable[[str, Any], None]] = {
         "changes": folder.note_changes,
-        ENTRY: folder.note_steps,
+        STEPS: folder.note_steps,
         LENGTH: folder.note_length,
     }
     for entry, note in notes.items():

@@ -21,7 +21,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-from arcgym.evaluation.physics_steps import ENTRY
+from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.run_shape import fault
 from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
 from arcgym.utils.errors import UsageError
@@ -103,7 +103,7 @@ class ResultFolder:
     def note_steps(self, task: str, steps: float) -> None:
         """Write down how many physics steps a second a task was run with."""
         run = read_run(self.path)
-        run.setdefault(ENTRY, {})[task] = steps
+        run.setdefault(STEPS, {})[task] = steps
         _write_run(self.path / RUN_FILE, run)
 
     def note_length(self, task: str, length: float | None) -> None:
