@@ -345,6 +345,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     @scope_length.setter
     def scope_length(self, length: float | None) -> None:
+        # a configuration to derive others from has no robot, and so no stage, yet
         if has_lengths(str(getattr(self.scene.endoscope, "usd_path", ""))):
             self.scene.endoscope.length = length
 

@@ -27,7 +27,7 @@ from arcgym.utils.configclass import replace, validate
 TASK = "ARC-Cecum-Proximal"
 """Task whose scene is taken."""
 COLONOSCOPE = "env.scene.endoscope.length=null"
-"""Override: the length that colonoscopes have, as those of the published insertions; the task's is longer [m]."""
+"""Override of the task's longer scope by one as long as colonoscopes, those of the published insertions, are."""
 OUT_OF_TIME = "no computing time left"
 """Problem of a patient in which the drive was stopped from outside."""
 EXAMINER_SPEED = 0.015
