@@ -109,7 +109,7 @@ def test_an_entry_that_rolls_says_so_in_the_tasks_where_it_does(tmp_path: Path) 
     run = changed(TASKS[0], **{"actions.tip.roll_amplitude": [0.0, 9.0]})
     (result(tmp_path / "a", run=run) / "entry.yaml").write_text(ENTRY)
     text = entries_table(submissions(tmp_path)[0])
-    assert f"| `{TASKS[0]}` | Mine, rolls to and fro [rad/s]: 9 | A. Author |" in text
+    assert f"| `{TASKS[0]}` | Mine, with a roll to and fro of 9 rad/s | A. Author |" in text
     assert f"| `{TASKS[1]}` | Mine | A. Author |" in text
 
 

@@ -180,7 +180,7 @@ def _lines(folder: Path) -> list[tuple[str, bool, float, str]]:
         figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
         steps = steps_in(run, task)
         is_present = steps == steps_registered(task)
-        rolls = f", rolls to and fro [rad/s]: {amplitude:g}" if (amplitude := roll_of(run, task)) else ""
+        rolls = f", with a roll to and fro of {amplitude:g} rad/s" if (amplitude := roll_of(run, task)) else ""
         cells = [f"`{task}`", name + rolls, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
         cells += [as_text(steps) + ("" if is_present else STEP_MARK), marked]
         lines.append((task, not is_present, -of["success"].value, f"| {' | '.join(cells)} |"))

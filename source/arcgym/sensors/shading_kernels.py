@@ -10,7 +10,8 @@ from arcgym.utils import warp_setup  # noqa: F401
 EDGE = wp.constant(1.0e-5)
 """Least barycentric coordinate of a hit that counts as inside a triangle; rounding moves an edge by less."""
 ASIDE = wp.constant(wp.vec3(6.0e-5, 5.0e-5, 6.2e-5))
-"""What is added to the direction of a ray that meets an edge [rad]: 1/200 of a pixel of 84, far beyond EDGE."""
+"""What is added to the direction of a ray that meets an edge [rad]: 1/200 of a pixel where 84 make a row, which moves
+a hit within its triangle by far more than EDGE."""
 
 
 @wp.struct
