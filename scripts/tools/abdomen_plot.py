@@ -62,7 +62,7 @@ def main() -> None:
     sim.write_gravity(torch.tensor([weight.gravity(world.posture) for world in WORLDS]))
     for _ in range(round(TIME / 0.1)):
         colon.set_hand_pressure(torch.tensor([world.force for world in WORLDS]))
-        sim.step(48)
+        sim.step(round(0.1 / sim.physics_dt))
     draw(sim, imaged, args.picture)
 
 

@@ -65,7 +65,7 @@ def follow(sim: Any, flow: float, course: Course, done: Callable[[float], bool])
     """Let gas flow [l/min] until its pressure [mmHg] says that it is done."""
     for _ in range(round(LONGEST / 0.1)):
         sim.colon.set_gas_flow(torch.tensor([flow / 60000.0]))
-        sim.step(48)
+        sim.step(round(0.1 / sim.physics_dt))
         course.volume.append(1.0e6 * sim.colon.data.lumen_volume.item())
         course.pressure.append(sim.colon.data.lumen_pressure.item() / MMHG)
         if done(course.pressure[-1]):

@@ -4,9 +4,12 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from arcgym.benchmarks.looping import maneuver
 from arcgym.benchmarks.looping.shape import measure_loop
 
 
@@ -41,3 +44,12 @@ def test_writhe_changes_its_sign_with_the_mirror_image() -> None:
     points = curve(2.0 * np.pi - 0.4, 0.04)
     mirrored = points * [-1.0, 1.0, 1.0]
     assert measure_loop(mirrored).writhe == pytest.approx(-measure_loop(points).writhe)
+
+
+@pytest.mark.parametrize("rate", [240, 480])
+def test_a_control_step_takes_a_tenth_of_a_second(rate: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[int] = []
+    sim = SimpleNamespace(step=taken.append, physics_dt=1.0 / rate, non_finite=[False])
+    monkeypatch.setattr(maneuver, "read", lambda scene, time: {"time": time})
+    assert maneuver.advance(SimpleNamespace(sim=sim), "push", 0) == {"time": 0.1}  # type: ignore[arg-type]
+    assert taken == [rate // 10]

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import asdict
 
@@ -17,8 +18,8 @@ from arcgym.scene import InteractiveScene
 from arcgym.sim import SnapshotSet
 from arcgym.sim.snapshot import fingerprint
 
-STEPS = 48
-"""Physics steps in a control step of 0.1 s."""
+CONTROL_STEP = 0.1
+"""Time from one command to the next [s]."""
 PAST_SIGMOID = 0.12
 """How far into the descending colon the tip is pushed before the shaft is rolled [m]."""
 LOOPING = {"roll": -1.0, "time": 15.0}
@@ -29,7 +30,9 @@ WITHDRAWAL = {"speed": 0.03, "time": 9.0, "hook": 1.5}
 ROLLS = {"clockwise": 0.6, "none": 0.0, "anticlockwise": -0.6}
 """Roll rates while withdrawing [rad/s]."""
 STEERING = {"patience": 25.0, "least_pace": 0.15}
-"""Settings of the expert that the measured curves are of."""
+"""Settings of the expert that brings the tip past the sigmoid colon."""
+PUSHING = {**STEERING, "patience": math.inf}
+"""Settings of the expert that pushes on: it withdraws nothing where the tip does not get on."""
 Row = dict[str, float]
 """Figures of one control step."""
 
@@ -78,7 +81,7 @@ def push(scene: InteractiveScene, max_time: float) -> Iterator[Row]:
 
 def push_on(scene: InteractiveScene, roll_rate: float) -> Iterator[Row]:
     """Push on while rolling; one row a control step."""
-    expert, endoscope = PushExpert(scene, **STEERING), scene["endoscope"]
+    expert, endoscope = PushExpert(scene, **PUSHING), scene["endoscope"]
     expert.bending += endoscope.data.bending
     for step in range(int(10.0 * LOOPING["time"])):
         expert.act()
@@ -100,7 +103,7 @@ def withdraw(scene: InteractiveScene, roll_rate: float) -> Iterator[Row]:
 
 def advance(scene: InteractiveScene, label: str, step: int) -> Row:
     """Make one control step and return what came of it."""
-    scene.sim.step(STEPS)
+    scene.sim.step(round(CONTROL_STEP / scene.sim.physics_dt))
     if bool(scene.sim.non_finite[0]):
         raise SystemExit(f"The world failed after {step / 10.0:.1f} s ({label}).")
     row = read(scene, (step + 1) / 10.0)
