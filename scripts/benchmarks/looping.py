@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Push a colonoscope through a mobile sigmoid colon, turn the shaft into an alpha loop, and straighten it.
 
-python scripts/benchmarks/looping.py --out docs/images --json_out docs/data/looping.json
+python scripts/benchmarks/looping.py --out logs/looping --json_out docs/data/looping.json
 
 First a scripted expert pushes the tip past the sigmoid colon. It pushes on from there, once as before and once while
 the shaft is rolled anticlockwise: the tip falls behind, and the loop crosses itself as seen from the front. Then the
@@ -48,6 +48,7 @@ def main() -> None:
     runs, views = maneuver(scene, args.max_time)
     summary = {name: {"start": rows[0], "end": rows[-1]} for name, rows in runs.items()}
     if args.out:
+        args.out.mkdir(parents=True, exist_ok=True)
         save_views(views, args.out / f"{args.name}_views.jpg")
         draw_curves(runs, LOOPING["time"], args.out / f"{args.name}_curves.png")
     if args.json_out:
