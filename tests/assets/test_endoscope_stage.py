@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
+from pxr import Sdf, Usd, UsdGeom, UsdPhysics, UsdValidation
 from tiny_scope import write_tiny_scope
 
 from arcgym.anatomy import StageError
@@ -26,7 +26,7 @@ from arcgym.assets.endoscope_spec import (
     proximal_spec,
     shared_stiffness,
 )
-from arcgym.assets.endoscope_stage import author_endoscopes, read_endoscope
+from arcgym.assets.endoscope_stage import author_endoscopes, read_endoscope, write_endoscope
 from arcgym.utils.paths import ASSETS_ENV, assets_dir
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "usd" / "endoscopes"
@@ -59,8 +59,20 @@ def test_usd_validators_find_nothing(spec: EndoscopeSpec) -> None:
 
 
 def test_committed_files_are_what_the_code_writes(tmp_path: Path) -> None:
-    for made in author_endoscopes(tmp_path):
-        assert made.read_bytes() == (SHIPPED / made.name).read_bytes(), made.name
+    author_endoscopes(tmp_path)
+    made = sorted(tmp_path.iterdir())
+    assert [path.name for path in made] == sorted(path.name for path in SHIPPED.iterdir())
+    for path in made:
+        layers = [Sdf.Layer.FindOrOpen(str(folder / path.name)) for folder in (tmp_path, SHIPPED)]
+        assert layers[0].ExportToString() == layers[1].ExportToString(), path.name
+
+
+def test_a_shipped_shaft_is_a_short_text_over_the_whole_stage(tmp_path: Path) -> None:
+    """Both layers together say what one text file of the same specification says."""
+    alone = Usd.Stage.Open(str(write_endoscope(magnetic_spec(), tmp_path / "magnetic.usda")))
+    assert (SHIPPED / "magnetic.usda").stat().st_size < 3000
+    layered = Usd.Stage.Open(str(SHIPPED / "magnetic.usda"))
+    assert layered.Flatten(False).ExportToString() == alone.Flatten(False).ExportToString()
 
 
 def test_proximal_dimensions() -> None:

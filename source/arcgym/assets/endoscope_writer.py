@@ -34,9 +34,15 @@ SLIDE_MARGIN = 0.5
 
 
 def author_endoscopes(out_dir: Path) -> list[Path]:
-    """Write the stages of all shipped endoscopes into `out_dir`; the same bytes every time. Returns their paths."""
+    """Write the stages of all shipped endoscopes into `out_dir`. Returns their paths.
+
+    A scope with a shaft, of a hundred links and more, is a short text layer over a binary one, as a colon is.
+    """
     out_dir.mkdir(parents=True, exist_ok=True)
-    return [write_endoscope(spec, out_dir / f"{spec.name}.usda") for spec in endoscope_specs()]
+    return [
+        (write_endoscope if spec.root == "free" else _write_layers)(spec, out_dir / f"{spec.name}.usda")
+        for spec in endoscope_specs()
+    ]
 
 
 def write_endoscope(spec: EndoscopeSpec, path: str | Path) -> Path:
@@ -57,6 +63,16 @@ def write_endoscope(spec: EndoscopeSpec, path: str | Path) -> Path:
         _write_hinge(stage, spec, hinge)
     layer.Export(str(path))
     return Path(path)
+
+
+def _write_layers(spec: EndoscopeSpec, path: Path) -> Path:
+    """Write `path` (text: units, sources) over the whole stage in ``<path with .usdc>`` (binary). Returns `path`."""
+    whole = write_endoscope(spec, path.with_suffix(".usdc"))
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    _write_header(Usd.Stage.Open(layer), spec)
+    layer.subLayerPaths.append(f"./{whole.name}")
+    layer.Export(str(path))
+    return path
 
 
 def link_name(link: int) -> str:
