@@ -177,13 +177,17 @@ def test_a_copy_that_grew_keeps_no_rows_of_the_smaller_one(tmp_path: Path) -> No
 
 
 def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:
-    training = [{"agent": LAGRANGIAN, "limits": {"tip_force": 0.3}}]
-    text = page(
-        [write_result_folder(tmp_path / "safe", 50, "ARC-LeftColon-Magnetic", "left_colon", training=training)],
-        tmp_path,
-    )
-    assert "| ppo_lagrangian `abcdef01`, limit tip_force 0.3 | 50 | 100 (93–100) | 1.00 (1.00–1.00) |" in text
-    assert "| 0.25 |" in text.partition("## Safe ones")[2].partition("## Robust")[0]
+    """A policy that learnt under limits with a roll to and fro; another robot's stands elsewhere."""
+    training, task = [{"agent": LAGRANGIAN, "limits": {"tip_force": 0.3}}], "ARC-LeftColon-Proximal"
+    changes = {task: {"actions.base.roll_amplitude": [0.0, 8.0]}}
+    folders = [
+        write_result_folder(tmp_path / "safe", 200, task, "population", training=training, changes=changes),
+        write_result_folder(tmp_path / "other", 200, "ARC-LeftColon-Magnetic", "population", training=training),
+    ]
+    table = page(folders, tmp_path).partition("## Safe ones")[2].partition("## Robust")[0]
+    assert "| ppo_lagrangian_roll8 `abcdef01`, limit tip_force 0.3 | 200 | 100 (98–100) | 1.00 (1.00–1.00) |" in table
+    assert "| 0.25 |" in table
+    assert "Magnetic" not in table
 
 
 def test_rules_on_actions_are_marked(tmp_path: Path) -> None:

@@ -172,7 +172,7 @@ def _methods(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[R
 def _agents(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of a table of agents, the table, and the commands of the cells that are missing."""
     wanted = section.get("methods")
-    own = [one for one in results if wanted is None or one.method in wanted]
+    own = [one for one in results if wanted is None or _is_asked(one, section)]
     own = [one for one in _newest(own) if one.checkpoints or one is best([same for same in own if _same(same, one)])]
     own.sort(key=lambda one: (one.task, _place(one), one.limits, one.folder.name))
     metrics = [name for name in section["metrics"] if any(name in row for one in own for row in one.rows[:1])]
@@ -186,6 +186,12 @@ def _agents(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Re
         if (robot, agent) not in there
     ]
     return own, "\n".join(lines) + "\n" if own else "", missing
+
+
+def _is_asked(result: Result, section: dict[str, Any]) -> bool:
+    """Return whether a section has a result's robot and its method, with a roll or without."""
+    method = result.method.removesuffix(roll_mark(result.run, result.task))
+    return result.robot in section["robots"] and method in section["methods"]
 
 
 def _same(first: Result, second: Result) -> bool:
