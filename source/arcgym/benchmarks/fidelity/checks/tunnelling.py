@@ -27,7 +27,7 @@ SIDES = ((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0))
 
 
 def tunnelling(run: Run) -> list[Row]:
-    """Count links outside the lumen while 20 N push one of them against the softest preset, for a second.
+    """Count links outside the lumen while 20 N push one of them against the softest preset, for two seconds.
 
     The worlds differ in the link pushed, from the tip backwards, and in the side: to either side of the bend's plane,
     out of the bend and into it; the tip is pushed forwards and backwards, too. Links of a world that is not finite
