@@ -23,7 +23,7 @@ from typing import Any
 import torch
 
 sys.path.insert(0, str(Path(__file__).parent))  # the gallery's way to make a film small
-from make_gallery import shrink
+from make_gallery import QUALITY, shrink
 
 FPS = 4.0
 """States shown in a second."""
@@ -37,25 +37,30 @@ def main() -> int:
     parser.add_argument("way", type=Path, help="folder of the states")
     parser.add_argument("film", type=Path, help="file to write, .mp4")
     parser.add_argument("--task", required=True, help="task of the robot")
+    parser.add_argument(
+        "--every", type=int, default=1, help="states kept for one that is shown; the last is shown, too"
+    )
+    parser.add_argument("--quality", type=int, default=QUALITY, help="constant rate factor of x264, 0 is without loss")
     parser.add_argument("--held", type=float, default=0.0, help="time that the expert goes on from the last state [s]")
     parser.add_argument("--device", default="cpu", help="device of the run")
     args, overrides = parser.parse_known_args()
     from arcgym.benchmarks.experts.ways import read_way
     from arcgym.viewers import VideoRecorder
 
-    states = read_way(args.way)
+    kept = list(read_way(args.way).values())
+    states = [*kept[: -1 : args.every], *kept[-1:]]
     if not states:
         parser.error(f"there are no states in {args.way}; expected files named by arc length, such as 0.9600.npz")
     env = environment(args.task, args.device, overrides)
     with tempfile.TemporaryDirectory() as folder:
         raw = Path(folder) / "film.mp4"
         with VideoRecorder(raw, FPS) as video:
-            for state in states.values():
+            for state in states:
                 video.write(picture(env, state))
             for frame in going_on(env, args.held):
                 video.write(frame)
         env.close()
-        shrink(raw, args.film, 1, FPS)
+        shrink(raw, args.film, 1, FPS, args.quality)
     print(f"{args.film}: {len(states)} states, {args.film.stat().st_size / 1e3:.0f} kB")
     return 0
 

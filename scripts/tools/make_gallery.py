@@ -78,7 +78,8 @@ def command(scene: Scene, device: str, root: Path = Path()) -> list[str]:
     """Return the command line that plays a scene, with files below a folder."""
     if "way" in scene:
         words = [str(root / "scripts/tools/film_way.py"), str(root / scene["way"]), f"{scene['name']}.mp4"]
-        words += ["--held", str(scene["held"])] if "held" in scene else []
+        for name in ("every", "quality", "held"):
+            words += [f"--{name}", str(scene[name])] if name in scene else []
         return [sys.executable, *words, "--task", scene["task"], *scene.get("overrides", [])]
     if "recording" in scene:
         file = str(root / scene["recording"])
@@ -100,13 +101,13 @@ def record(output: str, device: str) -> dict[str, Any]:
     return {"figures": figures, "device": device, "day": str(date.today())} | {"versions": versions()}
 
 
-def shrink(source: Path, target: Path, every: int, fps: float = 10.0) -> None:
+def shrink(source: Path, target: Path, every: int, fps: float = 10.0, quality: int = QUALITY) -> None:
     """Write one of so many frames of a video at half its size, whole or not at all, with ``fps`` frames a second."""
     import imageio_ffmpeg
 
     temporary = target.with_name(f".{target.name}.tmp.mp4")
     chosen = f"framestep={every},setpts=PTS/{every},scale=trunc(iw/4)*2:trunc(ih/4)*2"
-    filters = ["-vf", chosen, "-r", f"{fps:g}", "-crf", str(QUALITY), "-preset", "slow", "-an"]
+    filters = ["-vf", chosen, "-r", f"{fps:g}", "-crf", str(quality), "-preset", "slow", "-an"]
     tool = [imageio_ffmpeg.get_ffmpeg_exe(), "-y", "-loglevel", "error", "-i", str(source)]
     subprocess.run([*tool, *filters, "-movflags", "+faststart", str(temporary)], check=True)
     temporary.replace(target)

@@ -29,8 +29,16 @@ def test_the_page_is_that_of_the_scenes(gallery: ModuleType) -> None:
 
 
 def test_a_way_is_filmed_from_its_states(gallery: ModuleType) -> None:
-    way = {"name": "held", "way": "ways/a", "held": 4, "task": "ARC-Cecum-Magnetic", "overrides": ["env.seed=1"]}
+    way = {
+        "name": "held",
+        "way": "ways/a",
+        "held": 4,
+        "every": 2,
+        "task": "ARC-Cecum-Magnetic",
+        "overrides": ["env.seed=1"],
+    }
     words = gallery.command(way, "cpu")[1:]
     assert words == [
-        "scripts/tools/film_way.py", "ways/a", "held.mp4", "--held", "4", "--task", "ARC-Cecum-Magnetic", "env.seed=1"
+        "scripts/tools/film_way.py", "ways/a", "held.mp4", "--every", "2", "--held", "4",
+        "--task", "ARC-Cecum-Magnetic", "env.seed=1",
     ]  # fmt: skip
