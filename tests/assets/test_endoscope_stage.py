@@ -27,6 +27,8 @@ from arcgym.assets.endoscope_spec import (
     shared_stiffness,
 )
 from arcgym.assets.endoscope_stage import author_endoscopes, read_endoscope, write_endoscope
+from arcgym.envs.provenance import stage_hash
+from arcgym.recordings.restoring import REWRITTEN
 from arcgym.utils.paths import ASSETS_ENV, assets_dir
 
 SHIPPED = Path(__file__).parents[2] / "assets" / "usd" / "endoscopes"
@@ -73,6 +75,11 @@ def test_a_shipped_shaft_is_a_short_text_over_the_whole_stage(tmp_path: Path) ->
     assert (SHIPPED / "magnetic.usda").stat().st_size < 3000
     layered = Usd.Stage.Open(str(SHIPPED / "magnetic.usda"))
     assert layered.Flatten(False).ExportToString() == alone.Flatten(False).ExportToString()
+
+
+def test_recordings_know_a_shaft_from_before_its_stage_had_two_layers(tmp_path: Path) -> None:
+    texts = [write_endoscope(spec, tmp_path / f"{spec.name}.usda") for spec in (magnetic_spec(), proximal_spec())]
+    assert {stage_hash(SHIPPED / text.name): stage_hash(text) for text in texts} == REWRITTEN
 
 
 def test_proximal_dimensions() -> None:
