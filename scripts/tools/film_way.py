@@ -44,6 +44,8 @@ def main() -> int:
     parser.add_argument("--held", type=float, default=0.0, help="time that the expert goes on from the last state [s]")
     parser.add_argument("--device", default="cpu", help="device of the run")
     args, overrides = parser.parse_known_args()
+    if args.every < 1:
+        parser.error(f"--every is {args.every}, expected 1 or more states for one that is shown")
     from arcgym.benchmarks.experts.ways import read_way
     from arcgym.viewers import VideoRecorder
 

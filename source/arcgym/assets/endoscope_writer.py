@@ -39,10 +39,7 @@ def author_endoscopes(out_dir: Path) -> list[Path]:
     A scope with a shaft, of a hundred links and more, is a short text layer over a binary one, as a colon is.
     """
     out_dir.mkdir(parents=True, exist_ok=True)
-    return [
-        (write_endoscope if spec.root == "free" else _write_layers)(spec, out_dir / f"{spec.name}.usda")
-        for spec in endoscope_specs()
-    ]
+    return [_write_shipped(spec, out_dir / f"{spec.name}.usda") for spec in endoscope_specs()]
 
 
 def write_endoscope(spec: EndoscopeSpec, path: str | Path) -> Path:
@@ -65,8 +62,13 @@ def write_endoscope(spec: EndoscopeSpec, path: str | Path) -> Path:
     return Path(path)
 
 
-def _write_layers(spec: EndoscopeSpec, path: Path) -> Path:
-    """Write `path` (text: units, sources) over the whole stage in ``<path with .usdc>`` (binary). Returns `path`."""
+def _write_shipped(spec: EndoscopeSpec, path: Path) -> Path:
+    """Write the stage of a shipped endoscope. Returns `path`.
+
+    With a shaft `path` (text: units, sources) lies over the whole stage in ``<path with .usdc>`` (binary).
+    """
+    if spec.root == "free":
+        return write_endoscope(spec, path)
     whole = write_endoscope(spec, path.with_suffix(".usdc"))
     layer = Sdf.Layer.CreateAnonymous(".usda")
     _write_header(Usd.Stage.Open(layer), spec)

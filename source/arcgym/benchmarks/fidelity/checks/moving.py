@@ -30,7 +30,7 @@ def action_reaction(run: Run, material: str) -> list[Row]:
     sim = build(run, PROXIMAL_CFG, BEND, colon={"material": material})
     steps = round(CONTROL_STEP / sim.physics_dt)
     count = steps * round((DEPTH - sim.endoscope.rest_insertion) / (SPEED * CONTROL_STEP))
-    on_scope, on_wall, late = push(sim, count + 1)
+    on_scope, on_wall, late = forces_while_pushing(sim, count + 1)
     handed = on_wall - late
     handed[:-1] += late[1:]
     action, reaction = (
@@ -54,7 +54,7 @@ def action_reaction(run: Run, material: str) -> list[Row]:
     ]
 
 
-def push(sim: Any, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def forces_while_pushing(sim: Any, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Push for ``count`` physics steps.
 
     Returns:
