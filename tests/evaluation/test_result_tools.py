@@ -215,6 +215,9 @@ def test_what_is_the_agents_own_is_no_reason_to_refuse(tmp_path: Path) -> None:
         ("actions.tip.forward_velocity", 0.04, True),
         ("actions.tip.forward_velocity", 0.05, False),
         ("actions.tip.roll_scale", 18.0, False),
+        ("actions.tip.linear_scale", 0.01, True),
+        ("actions.capsule.linear_scale", 0.06, False),
+        ("actions.base.insertion_scale", 0.06, False),
         ("reward", "paper", True),
     ],
 )
@@ -237,6 +240,15 @@ def test_a_setting_that_a_policy_brings_along_may_be_put_back(tmp_path: Path) ->
     assert "change the task" in found
 
 
+def test_clinical_tissue_is_a_suites_own(tmp_path: Path) -> None:
+    """A run's list of one name is the suite's ``env.clinical=[all]``, and no other list is."""
+    for effects, fits in ((["all"], True), (["gas"], False)):
+        changes = {"ARC-LeftColon-Magnetic": {"clinical": [[], effects]}}
+        run = {**RUN, "suite": "population_clinical", "changes": changes}
+        found = problems(ResultFolder(tmp_path / effects[0], run).path)
+        assert any("clinical" in line for line in found) != fits
+
+
 def test_a_setting_of_the_suite_may_not_be_put_back(tmp_path: Path) -> None:
     suite = read_suites()["left_colon_in_situ"]
     run = {**RUN, "suite": "left_colon_in_situ", "changes": {suite.tasks("Magnetic")[0]: {}}}
@@ -256,6 +268,14 @@ def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
     assert fields["actions"]["tip"]["linear_scale"] == OWN_UP_TO["actions.tip.forward_velocity"]
     most = PullExpert.VARIED["roll"][1], PushExpert.VARIED["twist"][1]
     assert most == (OWN_UP_TO["actions.tip.roll_amplitude"], OWN_UP_TO["actions.base.roll_amplitude"])
+    for robot, action in (
+        ("Magnetic", "tip.linear_scale"),
+        ("Capsule", "capsule.linear_scale"),
+        ("Proximal", "base.insertion_scale"),
+    ):
+        actions = to_plain(load_cfg_from_registry(f"ARC-Sigmoid-{robot}", "env_cfg_entry_point"))["actions"]
+        term, scale = action.split(".")
+        assert actions[term][scale] == OWN_UP_TO[f"actions.{action}"]
     assert {"gas", "clinical", "sim", "scene", "events", "terminations", "metrics"} <= set(fields) - set(AGENTS_OWN)
 
 

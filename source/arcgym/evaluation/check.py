@@ -40,8 +40,12 @@ OWN_UP_TO = {
     "actions.tip.forward_velocity": 0.045,
     "actions.tip.roll_amplitude": 18.0,
     "actions.base.roll_amplitude": 9.0,
+    "actions.tip.linear_scale": 0.045,
+    "actions.capsule.linear_scale": 0.05,
+    "actions.base.insertion_scale": 0.05,
 }
 """Fields that are the agent's up to a value. A constant velocity of the tip: the largest that actions command [m/s]. A
+smaller scale of velocities than the task's: a policy that is slow might have been so by smaller actions [m/s]. A
 roll to and fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
 :class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]."""
 
@@ -114,9 +118,14 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
         allowed = dict(map(_path_and_value, suite.overrides_of(task)))
         for path, (registered, used) in changes.items():
             own = is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed})
-            if not own and str(used).lower() != allowed.get(path, "").lower():
+            if not own and _text(used) != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
     return found
+
+
+def _text(value: Any) -> str:
+    """Return a value as an override writes it: ``[all]`` for a list of one name."""
+    return str(value).replace("'", "").replace(", ", ",").lower()
 
 
 def _path_and_value(override: str) -> tuple[str, str]:
