@@ -29,6 +29,7 @@ from arcgym.rl.first_episodes import write_rows
 from arcgym.rl.params import RunParams, differences, read_params
 from arcgym.rl.pretrained import ABOUT, FILE, folder_of, policies_dir, write_small
 from arcgym.rl.run_folder import write_params
+from arcgym.rl.small_weights import LEVELS
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 from arcgym.utils.registry import load_cfg_from_registry
@@ -51,19 +52,24 @@ def main() -> None:
     parser.add_argument("--evaluation", type=Path, nargs="*", default=[], help="result folders of shipped policies")
     parser.add_argument("--curve", type=Path, help="curves.csv of a study's cell (default: of the run's own log)")
     parser.add_argument("--trained_on", help="patients of the training (default: as in the run's parameters)")
+    parser.add_argument(
+        "--levels", type=int, default=LEVELS, help="largest whole number of a weight: fewer make a smaller file"
+    )
     parser.add_argument("--out", type=Path, help="folder of all shipped policies (default: beside the USD assets)")
     args = parser.parse_args()
     out = args.out or policies_dir()
     try:
         if args.checkpoint:
-            print(f"written: {ship(args.checkpoint, out, args.curve, args.trained_on)}")
+            print(f"written: {ship(args.checkpoint, out, args.curve, args.trained_on, args.levels)}")
         for folder in args.evaluation:
             print(f"evaluation: {add_evaluation(folder, out)}")
     except UsageError as error:
         sys.exit(f"ship_policy: {error}")
 
 
-def ship(checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str | None = None) -> Path:
+def ship(
+    checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str | None = None, levels: int = LEVELS
+) -> Path:
     """Write a policy's folder, and return the file with its weights.
 
     Raises:
@@ -73,7 +79,7 @@ def ship(checkpoint: Path, out: Path, curve: Path | None = None, trained_on: str
     if saved is None:
         raise UsageError(f"{checkpoint.parent} has no params/, which names task and agent; expected a run's folder.")
     folder = out / folder_of(saved.task)
-    write_small(checkpoint, folder / FILE)
+    write_small(checkpoint, folder / FILE, levels)
     about = _about(checkpoint, folder, saved, trained_on) | {"trained_with": _other_draws(saved)}
     (folder / ABOUT).write_text(json.dumps(about, indent=1) + "\n")
     for name in OF_THE_MAKER:

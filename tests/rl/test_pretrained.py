@@ -89,6 +89,21 @@ def test_a_shipped_policy_is_the_actor_alone_with_what_it_took(tmp_path: Path) -
     assert small["actor_state_dict"]["steps"].item() == 70_000
 
 
+def test_fewer_levels_make_a_smaller_file(tmp_path: Path) -> None:
+    """A row that reaches from -1 to 1 is rounded to 63 levels, a 31st apart, of which each weight is within half."""
+    weights = torch.linspace(-1.0, 1.0, 8192)[torch.randperm(8192, generator=torch.Generator().manual_seed(1))]
+    torch.save({"actor_state_dict": {"mlp.0.weight": weights[None]}, "infos": {}}, tmp_path / "model_5.pt")
+    sizes = {}
+    for levels, bound in ((127, 0.5 / 127), (31, 0.5 / 31)):
+        write_small(tmp_path / "model_5.pt", out := tmp_path / f"{levels}.pt", levels)
+        sizes[levels] = out.stat().st_size
+        read = read_checkpoint(out)["actor_state_dict"]["mlp.0.weight"][0]
+        assert 0.9 * bound < float((read - weights).abs().max()) < 1.01 * bound
+    assert sizes[31] < 0.9 * sizes[127]
+    with pytest.raises(ValueError, match="levels is 128, expected 1 to 127"):
+        write_small(tmp_path / "model_5.pt", tmp_path / "more.pt", 128)
+
+
 def test_matrices_are_whole_numbers_with_a_scale_for_each_output(tmp_path: Path) -> None:
     """Off by at most half a level, 1/254 of a row's largest weight."""
     weights = torch.linspace(-1.0, 1.0, 64 * 100).view(64, 4, 5, 5) * torch.logspace(-3, 3, 64).view(64, 1, 1, 1)

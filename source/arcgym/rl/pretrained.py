@@ -9,10 +9,15 @@ the trials that this very file has run. ``scripts/tools/ship_policy.py`` makes i
 
 from __future__ import annotations
 
+import io
+import zipfile
 from pathlib import Path
 
-from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
-from arcgym.rl.small_weights import SCALES, shrink
+import torch
+
+from arcgym.rl.checkpoint import read_checkpoint
+from arcgym.rl.run_folder import write_whole
+from arcgym.rl.small_weights import LEVELS, SCALES, shrink
 from arcgym.utils.errors import UsageError
 from arcgym.utils.paths import assets_dir
 from arcgym.utils.registry import plain_task
@@ -70,14 +75,15 @@ def is_pretrained(checkpoint: Path) -> bool:
     return checkpoint.resolve().is_relative_to(policies_dir().resolve())
 
 
-def write_small(checkpoint: Path, out: Path) -> None:
+def write_small(checkpoint: Path, out: Path, levels: int = LEVELS) -> None:
     """Write the actor of a checkpoint alone and small, see :func:`arcgym.rl.small_weights.shrink`.
 
-    Actions change in their third digit: evaluate the file that is written.
+    Actions change in their third digit, with fewer levels in their second: evaluate the file that is written.
 
     Args:
         checkpoint: File that a runner has saved.
         out: File to write.
+        levels: Largest whole number of a weight.
 
     Raises:
         UsageError: The checkpoint is damaged or has no actor.
@@ -87,9 +93,20 @@ def write_small(checkpoint: Path, out: Path) -> None:
         raise UsageError(
             f"{checkpoint} has no actor_state_dict; expected a checkpoint of rsl-rl's PPO or a runner here."
         )
-    actor, scales = shrink(contents["actor_state_dict"])
+    actor, scales = shrink(contents["actor_state_dict"], levels)
     infos = contents["infos"] or {}
     kept = {name: infos[name] for name in ("transitions", "seconds") if name in infos}
     out.parent.mkdir(parents=True, exist_ok=True)
     small = {"actor_state_dict": actor, SCALES: scales, "iter": contents.get("iter", 0), "infos": kept}
-    write_checkpoint(out, small)
+    buffer = io.BytesIO()
+    torch.save(small, buffer)
+    write_whole(out, deflated(buffer.getvalue()))
+
+
+def deflated(archive: bytes) -> bytes:
+    """Return a zip archive with its files compressed, as torch, which writes them plain, reads them too."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(archive)) as plain, zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as out:
+        for name in plain.namelist():
+            out.writestr(zipfile.ZipInfo(name), plain.read(name), zipfile.ZIP_DEFLATED, compresslevel=9)
+    return packed.getvalue()

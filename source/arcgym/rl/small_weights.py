@@ -19,15 +19,21 @@ SCALES = "actor_scales"
 """Key of a checkpoint that holds the scales of its actor's matrices by name, each of shape (outputs,)."""
 
 
-def shrink(actor: dict[str, Any]) -> tuple[dict[str, Any], dict[str, torch.Tensor]]:
+def shrink(actor: dict[str, Any], levels: int = LEVELS) -> tuple[dict[str, Any], dict[str, torch.Tensor]]:
     """Return weights in a quarter to a half of their size, and the scales of those that are whole numbers.
 
-    A row of a matrix is rounded to the 255 multiples of its scale that reach its largest weight: each weight is off by
-    at most 1/254 of that.
+    A row of a matrix is rounded to the multiples of its scale that reach its largest weight, 255 by default: each
+    weight is then off by at most 1/254 of that.
 
     Args:
         actor: Weights by name; the outputs of matrices and kernels come first in their shapes.
+        levels: Largest whole number of a weight, up to 127. Smaller ones are rounder and compress better.
+
+    Raises:
+        ValueError: If ``levels`` is out of its bounds.
     """
+    if not 1 <= levels <= LEVELS:
+        raise ValueError(f"levels is {levels}, expected 1 to {LEVELS}.")
     small, scales = {}, {}
     for name, value in actor.items():
         if not torch.is_tensor(value) or not value.is_floating_point():
@@ -36,7 +42,7 @@ def shrink(actor: dict[str, Any]) -> tuple[dict[str, Any], dict[str, torch.Tenso
             small[name] = value.half()
         else:
             rows = value.float().flatten(1)
-            scales[name] = (rows.abs().amax(1) / LEVELS).clamp_min(torch.finfo(torch.float32).tiny)
+            scales[name] = (rows.abs().amax(1) / levels).clamp_min(torch.finfo(torch.float32).tiny)
             small[name] = torch.round(rows / scales[name][:, None]).to(torch.int8).view(value.shape)
     return small, scales
 
