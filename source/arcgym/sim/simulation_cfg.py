@@ -41,7 +41,8 @@ class ContactCfg:
     28 times as hard. So 100 N do not push a link through the wall, while light contacts stay soft. Beyond 1.5 times
     that depth it hardens faster: no wall is squeezed by more than its thickness."""
     damping: float = 0.0
-    """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
+    """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall; with 20 a tip that is
+    pushed hard into soft tissue does not flutter through it (docs/physics.md, what pierces)."""
     step_damping: float = 1.0
     """Share kept of what the implicit step adds to the normal damping of a link's contact that is faster than 20 mm/s:
     ``dt`` times its stiffness, 4 N s/m. With 0.5 slips come and go more as with smaller steps (docs/physics.md, known
