@@ -94,3 +94,24 @@ def test_damping_of_the_step_is_taken_off_the_force_alone(
     wp.launch(load, 1, [law(relief), gap, velocity], [out], device="cpu")
     wp.launch(load, 1, [law(), gap, velocity], [kept], device="cpu")
     assert out.numpy()[0, 0] == pytest.approx(force, rel=1e-3) and out.numpy()[0, 1] == kept.numpy()[0, 1]
+
+
+@pytest.mark.parametrize(
+    ("gap", "velocity", "damper"),
+    [
+        (-0.001, 0.4, 0.0),  # 1.8 mm deep at the end of the step: no deeper than the hardening depth
+        (-0.002, 0.5, 50.0),  # 3 mm: half way to twice that
+        (-0.005, 0.5, 100.0),  # 6 mm: in full
+        (-0.005, -0.5, 0.0),  # goes back
+    ],
+)
+def test_only_deep_contacts_are_damped_further_and_only_on_their_way_in(
+    gap: float, velocity: float, damper: float
+) -> None:
+    out, kept = (wp.zeros(1, dtype=wp.vec2, device="cpu") for _ in range(2))
+    damped = law()
+    damped.deep_damping = 100.0
+    wp.launch(load, 1, [damped, gap, velocity], [out], device="cpu")
+    wp.launch(load, 1, [law(), gap, velocity], [kept], device="cpu")
+    more = out.numpy()[0] - kept.numpy()[0]
+    assert more == pytest.approx([damper * velocity, DT * damper], rel=1e-3, abs=1e-6)

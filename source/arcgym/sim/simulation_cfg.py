@@ -41,8 +41,11 @@ class ContactCfg:
     28 times as hard. So 100 N do not push a link through the wall, while light contacts stay soft. Beyond 1.5 times
     that depth it hardens faster: no wall is squeezed by more than its thickness."""
     damping: float = 0.0
-    """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall; with 20 a tip that is
-    pushed hard into soft tissue does not flutter through it (docs/physics.md, what pierces)."""
+    """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
+    deep_damping: float = 0.0
+    """Added to it in contacts deeper than ``hardening``, in full at twice that depth [N s/m]. With 80 a tip that is
+    pushed hard into soft tissue does not flutter through it, and light contacts stay as they are (docs/physics.md, what
+    pierces)."""
     step_damping: float = 1.0
     """Share kept of what the implicit step adds to the normal damping of a link's contact that is faster than 20 mm/s:
     ``dt`` times its stiffness, 4 N s/m. With 0.5 slips come and go more as with smaller steps (docs/physics.md, known
@@ -96,7 +99,7 @@ class ContactCfg:
         require_at_least(self, 1, "static_friction")
         require_positive(self, "hardening", "search_gap", unit="m")
         require_positive(self, "slip_velocity", unit="m/s")
-        require_non_negative(self, "damping", unit="N s/m")
+        require_non_negative(self, "damping", "deep_damping", unit="N s/m")
         require(self, "step_damping", Range(0.5, 1.0))
         require_non_negative(self, "friction", "tissue_share")
         require_non_negative(self, "wall_radius", unit="m")

@@ -30,6 +30,8 @@ OF_DRIVES = ("play", "lag")
 """Fields of drives that change no state while they are zero."""
 OF_PARTS: dict[str, dict[str, float]] = {"contact": {"step_damping": 1.0}, "loops": {"bends": False}}
 """Fields of contact and loops that change no state while they have this value."""
+OF_MOTION = {"contact": "deep_damping"}
+"""Fields that act on what moves alone: what is at rest with one value is at rest with any."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,8 @@ def settings_of(cfg: Any) -> dict[str, Any]:
         for name, value in fields.items():
             if own.get(name) == value:
                 del own[name]
+    for part, name in OF_MOTION.items():
+        kept.get(part, {}).pop(name, None)
     return kept
 
 

@@ -74,6 +74,7 @@ class ContactLaw:
     tissue_share: float  # of it on a soft shell, over E t / (1 - nu^2); 0 where the wall itself is squeezed
     hardening: float  # depth at which the stiffness has doubled, as a secant [m]
     damping: float  # [N s/m], approach only
+    deep_damping: float  # added to it, in full at twice the depth ``hardening`` and none up to it [N s/m]
     relief: float  # share taken off the damping that the step adds
     friction_stiffness: float  # across the wall, of a contact that sticks [N/m]
     static_friction: float  # static over dynamic friction
@@ -113,6 +114,15 @@ def normal_force(law: ContactLaw, depth: float) -> wp.vec2:
     if hard >= MAX_HARDENING:
         return law.stiffness * wp.vec2(depth * secant, secant)
     return law.stiffness * wp.vec2(depth * secant, secant + 2.0 * hard * (hard + FURTHER * beyond))
+
+
+@wp.func
+def approach_damping(law: ContactLaw, depth: float) -> float:
+    """Return the damping of a contact of weight 1 at a depth [m] while link and wall approach [N s/m].
+
+    Where the law hardens, a link and the wall that take turns throw each other to and fro, more in every step.
+    """
+    return law.damping + law.deep_damping * wp.clamp(depth / law.hardening - 1.0, 0.0, 1.0)
 
 
 @wp.func

@@ -126,8 +126,8 @@ class ContactSearch:
 
     def _law(self, cfg: ContactCfg) -> ContactLaw:
         law = ContactLaw()
-        names = ("stiffness", "hardening", "damping", "friction_stiffness", "static_friction", "slip_velocity")
-        for name in (*names, "wall_radius", "search_gap"):
+        names = ("stiffness", "hardening", "damping", "deep_damping", "friction_stiffness", "static_friction")
+        for name in (*names, "slip_velocity", "wall_radius", "search_gap"):
             setattr(law, name, getattr(cfg, name))
         law.relief = 1.0 - cfg.step_damping
         return law

@@ -10,6 +10,7 @@ from arcgym.sim.contact.contact_kernels import (
     ContactLaw,
     ContactRecords,
     LinkShapes,
+    approach_damping,
     carried,
     contact_geometry,
     normal_force,
@@ -71,7 +72,7 @@ def contact_load(
         approach = wp.dot(normal, relative)
         damping = float(0.0)
         if approach > 0.0:
-            damping = share * law.damping
+            damping = share * approach_damping(law, -end)
         slip = relative - approach * normal
         now = share * normal_force(law, wp.max(-gap, 0.0))
         end_slide = slide - wp.dot(normal, slide) * normal + dt * slip

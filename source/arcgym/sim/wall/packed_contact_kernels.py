@@ -15,6 +15,7 @@ import warp as wp
 
 from arcgym.sim.contact.contact_kernels import (
     ContactLaw,
+    approach_damping,
     capsule_geometry,
     carried,
     normal_force,
@@ -149,7 +150,7 @@ def packed_force(
         slip = wp.quat_rotate(c.turn, p - c.center) + c.since
         opening = wp.dot(out.normal, slip)
         if opening < 0.0:
-            damping = c.share * law.damping / dt
+            damping = c.share * approach_damping(law, -geometry.gap) / dt
             out.normal_force -= damping * opening
             out.stiffness += damping
         slip = slip - out.normal * opening

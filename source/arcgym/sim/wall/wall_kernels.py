@@ -13,6 +13,7 @@ from arcgym.sim.contact.contact_kernels import (
     ContactLaw,
     ContactRecords,
     LinkShapes,
+    approach_damping,
     contact_geometry,
     normal_force,
     slide_stiffness,
@@ -131,7 +132,7 @@ def contact_force_at(contacts: WallContacts, slot: int, x: wp.array2d[wp.vec3], 
         slip = wp.transform_point(contacts.body_q_prev[row], local) - before
         opening = wp.dot(c.normal, slip)
         if opening < 0.0:
-            damping = share * contacts.law.damping / contacts.dt
+            damping = share * approach_damping(contacts.law, -c.gap) / contacts.dt
             out.normal_force -= damping * opening
             out.stiffness += damping
         slip = slip - c.normal * opening
