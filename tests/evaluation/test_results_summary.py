@@ -73,6 +73,13 @@ def test_a_roll_to_and_fro_is_named_and_takes_no_other_row(tmp_path: Path) -> No
     assert [one.agent for one in floors_of(find_results(folders)[0])] == []
 
 
+def test_slower_commands_than_the_tasks_are_named(tmp_path: Path) -> None:
+    task = "ARC-Withdrawal-Capsule"
+    slow = {"changes": {task: {"actions.capsule.linear_scale": [0.05, 0.0065]}}}
+    folder = write_result_folder(tmp_path / "slow", 25, task, "withdrawal", **slow)
+    assert f"| `{task}` | ppo_slow6.5 `abcdef01` | 50 | 50 (37–63) |" in page([folder], tmp_path)
+
+
 def test_the_robustness_of_a_policy_that_rolls_is_a_table_of_its_own(tmp_path: Path) -> None:
     task = "ARC-LeftColon-Magnetic:blur_2"
     of = {"robustness": ["none", "blur_2"]}
@@ -179,13 +186,15 @@ def test_a_copy_that_grew_keeps_no_rows_of_the_smaller_one(tmp_path: Path) -> No
 def test_limits_stand_beside_a_safe_one(tmp_path: Path) -> None:
     """A policy that learnt under limits with a roll to and fro; another robot's stands elsewhere."""
     training, task = [{"agent": LAGRANGIAN, "limits": {"tip_force": 0.3}}], "ARC-LeftColon-Proximal"
-    changes = {task: {"actions.base.roll_amplitude": [0.0, 8.0]}}
+    changes = {task: {"actions.base.roll_amplitude": [0.0, 8.0], "actions.base.roll_period": [4.0, 2.0]}}
     folders = [
         write_result_folder(tmp_path / "safe", 200, task, "population", training=training, changes=changes),
         write_result_folder(tmp_path / "other", 200, "ARC-LeftColon-Magnetic", "population", training=training),
     ]
     table = page(folders, tmp_path).partition("## Safe ones")[2].partition("## Robust")[0]
-    assert "| ppo_lagrangian_roll8 `abcdef01`, limit tip_force 0.3 | 200 | 100 (98–100) | 1.00 (1.00–1.00) |" in table
+    assert (
+        "| ppo_lagrangian_roll8_2s `abcdef01`, limit tip_force 0.3 | 200 | 100 (98–100) | 1.00 (1.00–1.00) |" in table
+    )
     assert "| 0.25 |" in table
     assert "Magnetic" not in table
 

@@ -52,6 +52,9 @@ roll to and fro: the largest amplitude that scripted experts draw, who are not t
 ROLLS = tuple(path for path in OWN_UP_TO if path.endswith(".roll_amplitude"))
 """Those of a roll to and fro, which tables name."""
 
+SCALES = tuple(path for path in OWN_UP_TO if path.endswith("_scale"))
+"""Those of the velocities that actions command, which tables name as well."""
+
 SWITCH = "enabled"
 """Field of an effect's configuration that says whether there is the effect at all."""
 

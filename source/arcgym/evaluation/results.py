@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.check import ROLLS, problems
+from arcgym.evaluation.check import ROLLS, SCALES, problems
 from arcgym.evaluation.physics_steps import steps_in, steps_registered
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.scope_lengths import other_length
@@ -106,8 +106,9 @@ class Result:
 def method_of(run: dict[str, Any], task: str) -> str:
     """Return the name of a method: its agent, with ``_paper`` where reward and velocity are the paper's.
 
-    ``_paper_free`` is the paper's reward alone, ``_velocity`` a constant velocity alone, and ``_roll9`` a roll to and
-    fro of 9 rad/s that is added to what it commands. Agents without training have their own name.
+    ``_paper_free`` is the paper's reward alone, ``_velocity`` a constant velocity alone, ``_slow6.5`` commands of up to
+    6.5 mm/s where the task's go farther, and ``_roll9`` a roll to and fro of 9 rad/s that is added to what it commands,
+    ``_roll8_2s`` one in another period than the task's. Agents without training have their own name.
     """
     changes = run.get("changes", {}).get(task, {})
     constant = changes.get("actions.tip.forward_velocity", [None, None])[1] is not None
@@ -118,7 +119,13 @@ def method_of(run: dict[str, Any], task: str) -> str:
     name = key.removesuffix("cfg_entry_point").removeprefix("rsl_rl").strip("_") or "ppo"
     reward = changes.get("reward", [None, None])[1]
     suffix = f"_{reward}" + ("" if constant else "_free") if reward else "_velocity" * constant
-    return name + suffix + roll_mark(run, task)
+    return name + suffix + _slow_mark(changes) + roll_mark(run, task)
+
+
+def _slow_mark(changes: dict[str, Any]) -> str:
+    """Return ``_slow6.5`` for velocities of up to 6.5 mm/s in place of the task's, and nothing for the task's."""
+    used = [changes[path][1] for path in SCALES if path in changes]
+    return f"_slow{1000.0 * used[0]:g}" if used else ""
 
 
 def roll_of(run: dict[str, Any], task: str) -> float:
@@ -128,9 +135,13 @@ def roll_of(run: dict[str, Any], task: str) -> float:
 
 
 def roll_mark(run: dict[str, Any], task: str) -> str:
-    """Return the end of an agent's name in tables: ``_roll9`` for a roll of 9 rad/s, and nothing without one."""
-    amplitude = roll_of(run, task)
-    return f"_roll{amplitude:g}" if amplitude else ""
+    """Return the end of an agent's name in tables: ``_roll9`` for a roll of 9 rad/s, and nothing without one.
+
+    ``_roll9_2s`` is one of 2 s, where the task's period is another.
+    """
+    amplitude, changes = roll_of(run, task), run.get("changes", {}).get(task, {})
+    periods = [f"_{used:g}s" for path, (_, used) in changes.items() if path.endswith(".roll_period")]
+    return f"_roll{amplitude:g}{''.join(periods)}" if amplitude else ""
 
 
 def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list[str]]]:

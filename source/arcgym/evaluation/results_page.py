@@ -72,7 +72,8 @@ suite's; other figures are interquartile means with bootstrap intervals. `–` w
 is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
 this policy and not of the method. † marks rules on actions that read the simulator's depth, which the policy does not
 see. ‡ marks trials of an earlier physics step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what
-an agent commands. What was run where is in the [last table](#what-was-run).
+an agent commands, `_roll8_2s` one of 8 rad/s in 2 s where others take 4; `_slow6.5` commands at most 6.5 mm/s. What was
+run where is in the [last table](#what-was-run).
 """
 
 
