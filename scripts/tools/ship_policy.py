@@ -63,7 +63,7 @@ def main() -> None:
             print(f"written: {ship(args.checkpoint, out, args.curve, args.trained_on, args.levels)}")
         for folder in args.evaluation:
             print(f"evaluation: {add_evaluation(folder, out)}")
-    except UsageError as error:
+    except (UsageError, ValueError) as error:
         sys.exit(f"ship_policy: {error}")
 
 
