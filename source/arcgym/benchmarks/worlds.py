@@ -9,7 +9,6 @@ from typing import Any
 
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
-from arcgym.utils.registry import load_cfg_from_registry
 
 
 def load_env_cfg(
@@ -27,6 +26,8 @@ def load_env_cfg(
     Raises:
         UsageError: If there is no such task or field, or a value does not fit its field.
     """
+    from arcgym.utils.registry import load_cfg_from_registry  # brings Gymnasium and numpy, which --help can do without
+
     try:
         cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
         apply_overrides({"env": cfg}, overrides)
