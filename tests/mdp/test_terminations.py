@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -27,6 +28,17 @@ def test_time_out_at_the_last_step(env) -> None:
 def test_scope_out_at_the_anal_verge(env) -> None:
     env.scope.tip_arc_length = torch.tensor([-0.001, 0.001])
     assert mdp.scope_out(env).tolist() == [True, False]
+
+
+def test_turned_round_beyond_an_angle(env) -> None:
+    # The tip's axis is +Z of its quaternion; turned by 90 and by 150 degrees about X from the lumen's direction.
+    quarter, most = math.pi / 4.0, math.radians(75.0)
+    env.scope.tip_quat_w = torch.tensor(
+        [[math.sin(quarter), 0.0, 0.0, math.cos(quarter)], [math.sin(most), 0.0, 0.0, math.cos(most)]]
+    )
+    env.scope.tip_lumen_direction_w = torch.tensor([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
+    assert mdp.turned_round(env).tolist() == [False, True]
+    assert mdp.turned_round(env, angle=math.radians(155.0)).tolist() == [False, False]
 
 
 def test_episode_cost_above_its_limit(env) -> None:

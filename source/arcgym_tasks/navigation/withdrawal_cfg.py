@@ -8,6 +8,7 @@ from __future__ import annotations
 from arcgym.envs import mdp
 from arcgym.managers import MetricsTermCfg as MetricsTerm
 from arcgym.managers import RewardTermCfg as RewTerm
+from arcgym.managers import TerminationTermCfg as DoneTerm
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.navigation_env_cfg import MetricsCfg, RewardsCfg, TerminationsCfg
 
@@ -29,6 +30,9 @@ class WithdrawalTerminationsCfg(TerminationsCfg):
     """Standing still to look is no failure."""
 
     stuck = None  # type: ignore[assignment]
+    turned_round: DoneTerm | None = None
+    """Off. Ends episodes in which the tip has turned towards the anus, for the training of a capsule:
+    ``DoneTerm(func=mdp.turned_round)``, or ``"env.terminations.turned_round={func: arcgym.envs.mdp:turned_round}"``."""
 
 
 @configclass

@@ -8,19 +8,29 @@ Limits of force, strain and pull are in :mod:`arcgym.envs.mdp.loads`, success in
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import torch
 
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.managers import ManagerTermBase, TerminationTermCfg
+from arcgym.utils.math import quat_apply_inverse
 from arcgym.utils.validation import FINITE, POSITIVE, Range, expects
 from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
 
-__all__ = ["episode_cost_above", "lumen_not_visible", "scope_out", "stuck", "time_out", "wall_penetrated"]
+__all__ = [
+    "episode_cost_above",
+    "lumen_not_visible",
+    "scope_out",
+    "stuck",
+    "time_out",
+    "turned_round",
+    "wall_penetrated",
+]
 
 
 def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
@@ -39,6 +49,21 @@ def scope_out(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
         arc_length: Arc length of the tip at which it counts as out [m].
     """
     return env.scene["endoscope"].data.tip_arc_length < arc_length
+
+
+@expects(angle=Range(0.0, math.pi))
+def turned_round(env: ManagerBasedRLEnv, angle: float = 2.1) -> torch.Tensor:
+    """Whether the tip looks back towards the anus, bool, shape (N,).
+
+    A capsule can turn round in the lumen. What it sees then looks like the way ahead, so that a policy without a memory
+    goes the wrong way: end such episodes in training, and it learns not to turn.
+
+    Args:
+        angle: Angle between the tip's axis and the lumen's direction, away from the anus, above which it has turned
+            [rad]. In a tight bend it is above pi / 2 now and then.
+    """
+    data = env.scene["endoscope"].data
+    return quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)[:, 2] < math.cos(angle)
 
 
 @expects(limit=FINITE)
