@@ -240,6 +240,17 @@ def test_the_way_to_the_cecum_has_a_longer_scope(robot: str, length: float | Non
         assert cfg.scene.endoscope.length is None
 
 
+@pytest.mark.parametrize(
+    ("way", "seconds"), [("Sigmoid", 6.0), ("LeftColon", 20.0), ("Cecum", 20.0), ("Withdrawal", None)]
+)
+def test_a_journey_has_longer_until_it_counts_as_stuck(way: str, seconds: float | None) -> None:
+    cfg = load_cfg_from_registry(f"ARC-{way}-Magnetic", "env_cfg_entry_point")
+    assert cfg.stuck_after_s == seconds
+    cfg.terminations.stuck = None
+    cfg.stuck_after_s = 20.0
+    assert cfg.stuck_after_s is None
+
+
 def test_a_scope_that_comes_in_one_length_keeps_it() -> None:
     """A stage of one's own, and a configuration whose scope comes later."""
     cfg = ProximalEnvCfg(segment="cecum")

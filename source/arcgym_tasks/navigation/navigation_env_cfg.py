@@ -349,6 +349,20 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         if has_lengths(str(getattr(self.scene.endoscope, "usd_path", ""))):
             self.scene.endoscope.length = length
 
+    @property
+    def stuck_after_s(self) -> float | None:
+        """Time without progress after which an episode ends [s], ``env.terminations.stuck.params.window_s``.
+
+        None where none ends so. A task that leaves ``stuck`` out leaves it out on a journey, too.
+        """
+        stuck = self.terminations.stuck
+        return None if stuck is None else stuck.params["window_s"]
+
+    @stuck_after_s.setter
+    def stuck_after_s(self, seconds: float) -> None:
+        if self.terminations.stuck is not None:
+            self.terminations.stuck.params["window_s"] = seconds
+
     def play(self) -> None:
         """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""
         self.scene.num_envs = 4
