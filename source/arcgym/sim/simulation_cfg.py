@@ -42,7 +42,7 @@ class ContactCfg:
     that depth it hardens faster: no wall is squeezed by more than its thickness."""
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
-    deep_damping: float = 80.0
+    deep_damping: float = 300.0
     """Added to it in contacts deeper than ``hardening``, in full at twice that depth [N s/m]: a tip that is pushed hard
     into soft tissue does not flutter through it, and light contacts stay as they are. 40 sufficed where it was looked
     for, and with 0 such a tip may go through the wall (docs/physics.md, what pierces)."""
