@@ -30,15 +30,18 @@ def test_scope_out_at_the_anal_verge(env) -> None:
     assert mdp.scope_out(env).tolist() == [True, False]
 
 
-def test_turned_round_beyond_an_angle(env) -> None:
-    # The tip's axis is +Z of its quaternion; turned by 90 and by 150 degrees about X from the lumen's direction.
-    quarter, most = math.pi / 4.0, math.radians(75.0)
+def test_facing_one_end_of_the_lumen(env) -> None:
+    # The tip's axis is +Z of its quaternion; turned by 30 and by 150 degrees about X from the way to the cecum.
+    few, most = math.radians(15.0), math.radians(75.0)
     env.scope.tip_quat_w = torch.tensor(
-        [[math.sin(quarter), 0.0, 0.0, math.cos(quarter)], [math.sin(most), 0.0, 0.0, math.cos(most)]]
+        [[math.sin(few), 0.0, 0.0, math.cos(few)], [math.sin(most), 0.0, 0.0, math.cos(most)]]
     )
     env.scope.tip_lumen_direction_w = torch.tensor([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    assert mdp.turned_round(env).tolist() == [False, True]
-    assert mdp.turned_round(env, angle=math.radians(155.0)).tolist() == [False, False]
+    env.episode_length_buf[:] = 11
+    assert mdp.facing(env, "cecum", after_s=10 * env.step_dt).tolist() == [True, False]
+    assert mdp.facing(env, "anus", after_s=10 * env.step_dt).tolist() == [False, True]
+    assert mdp.facing(env, "anus", angle=math.radians(29.0), after_s=0.0).tolist() == [False, False]
+    assert mdp.facing(env, "anus", after_s=11 * env.step_dt).tolist() == [False, False]
 
 
 def test_episode_cost_above_its_limit(env) -> None:

@@ -30,9 +30,11 @@ class WithdrawalTerminationsCfg(TerminationsCfg):
     """Standing still to look is no failure."""
 
     stuck = None  # type: ignore[assignment]
-    turned_round: DoneTerm | None = None
-    """Off. Ends episodes in which the tip has turned towards the anus, for the training of a capsule:
-    ``DoneTerm(func=mdp.turned_round)``, or ``"env.terminations.turned_round={func: arcgym.envs.mdp:turned_round}"``."""
+    facing: DoneTerm | None = None
+    """Off. Ends episodes in which the tip looks the wrong way, for the training of a capsule, which may turn round. For
+    one that goes back nose first:
+    ``"env.terminations.facing={func: 'arcgym.envs.mdp:facing', params: {towards: cecum}}"``.
+    """
 
 
 @configclass

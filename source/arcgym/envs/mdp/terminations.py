@@ -22,15 +22,7 @@ from arcgym.utils.worlds import fill_worlds
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedRLEnv
 
-__all__ = [
-    "episode_cost_above",
-    "lumen_not_visible",
-    "scope_out",
-    "stuck",
-    "time_out",
-    "turned_round",
-    "wall_penetrated",
-]
+__all__ = ["episode_cost_above", "facing", "lumen_not_visible", "scope_out", "stuck", "time_out", "wall_penetrated"]
 
 
 def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
@@ -51,19 +43,22 @@ def scope_out(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
     return env.scene["endoscope"].data.tip_arc_length < arc_length
 
 
-@expects(angle=Range(0.0, math.pi))
-def turned_round(env: ManagerBasedRLEnv, angle: float = 2.1) -> torch.Tensor:
-    """Whether the tip looks back towards the anus, bool, shape (N,).
+@expects(towards=("anus", "cecum"), angle=Range(0.0, math.pi), after_s=Range(0.0))
+def facing(env: ManagerBasedRLEnv, towards: str = "cecum", angle: float = 1.05, after_s: float = 10.0) -> torch.Tensor:
+    """Whether the tip looks along the lumen towards one of its ends, bool, shape (N,).
 
     A capsule can turn round in the lumen. What it sees then looks like the way ahead, so that a policy without a memory
     goes the wrong way: end such episodes in training, and it learns not to turn.
 
     Args:
-        angle: Angle between the tip's axis and the lumen's direction, away from the anus, above which it has turned
-            [rad]. In a tight bend it is above pi / 2 now and then.
+        towards: ``cecum``, or ``anus``.
+        angle: Largest angle between the tip's axis and the lumen's direction towards that end [rad].
+        after_s: Time from the start of an episode in which it may look where it likes [s].
     """
     data = env.scene["endoscope"].data
-    return quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)[:, 2] < math.cos(angle)
+    along = quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)[:, 2]
+    looks = (along if towards == "cecum" else -along) > math.cos(angle)
+    return looks & (env.episode_length_buf * env.step_dt > after_s)
 
 
 @expects(limit=FINITE)
