@@ -18,6 +18,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from arcgym.evaluation import patience
 from arcgym.evaluation.floors import FIGURES, Floor, floors_of, read_floors, updated, write_floors
 from arcgym.evaluation.physics_steps import as_text
 from arcgym.evaluation.results import find_results
@@ -88,6 +89,8 @@ def _origin(floors: Sequence[Floor]) -> str:
             about += f"; trials of {one.conditions}, an earlier version"
         if not one.is_of_present_steps:
             about += f"; physics steps of {as_text(one.physics_hz)}, an earlier default"
+        if not one.is_of_present_patience:
+            about += f"; stuck after {patience.as_text(one.stuck_after_s)}, an earlier default"
         groups.setdefault((one.commit, about), []).append(one)
     if len(groups) == 1:
         return "Commit {}; {}.\n".format(*next(iter(groups)))

@@ -181,7 +181,8 @@ def _check_tasks(tasks: list[str]) -> None:
 def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
     """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top.
 
-    Events stay the task's: they draw the trials, which are the same for all agents, however a training drew its own.
+    Events and terminations stay the task's: they draw the trials and end them, the same for all agents, however a
+    training drew and ended its own.
     """
     from arcgym.cli.arguments import RunArguments, TaskArguments
     from arcgym.cli.task import load_cfgs, load_run_cfgs
@@ -190,6 +191,6 @@ def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tup
         return load_cfgs(TaskArguments(task=task, overrides=list(overrides)))
     env_cfg, agent_cfg, _ = load_run_cfgs(
         RunArguments(task=task, checkpoint=str(_checkpoint(str(checkpoint)).resolve()), overrides=list(overrides)),
-        as_registered=("events",),
+        as_registered=("events", "terminations"),
     )
     return env_cfg, agent_cfg

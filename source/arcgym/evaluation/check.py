@@ -163,7 +163,7 @@ def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool
     for task in tasks:
         found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
         for name in path.split("."):
-            found = getattr(found, name, "")
+            found = found.get(name, "") if isinstance(found, dict) else getattr(found, name, "")
         of_suite = dict(map(_path_and_value, suite.overrides_of(task)))
         if path in of_suite or (str(found).lower() != value.lower() and found != yaml.safe_load(value)):
             return False

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.patience import ENTRY as PATIENCE
+from arcgym.evaluation.patience import patience_in, patience_registered
 from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.physics_steps import UNSAID, steps_registered
 from arcgym.evaluation.result_folder import UNTRAINED
@@ -41,7 +43,7 @@ FIGURES = {
 BOUNDS = ("", "_low", "_high")
 """Ends of the columns of an estimate and of its bounds."""
 
-ABOUT = ("suite", "conditions", "task", "agent", "trials", "commit", "machine", "physics_hz")
+ABOUT = ("suite", "conditions", "task", "agent", "trials", "commit", "machine", "physics_hz", "stuck_after_s")
 """Columns before those of the figures."""
 
 DIGITS = 4
@@ -68,6 +70,8 @@ class Floor:
     """Processor and accelerator."""
     physics_hz: float
     """Physics steps a second."""
+    stuck_after_s: float | None
+    """Time without progress after which an episode was stuck [s]; None where none ends so."""
     figures: dict[str, Interval]
     """Estimates with their bounds, by name in :data:`FIGURES`."""
 
@@ -78,13 +82,19 @@ class Floor:
 
     @property
     def is_current(self) -> bool:
-        """Whether trials and physics steps are those that suite and task have now."""
-        return self.conditions == read_suites()[self.suite].conditions and self.is_of_present_steps
+        """Whether trials, physics steps and patience are those that suite and task have now."""
+        of_now = self.is_of_present_steps and self.is_of_present_patience
+        return self.conditions == read_suites()[self.suite].conditions and of_now
 
     @property
     def is_of_present_steps(self) -> bool:
         """Whether the task has as many physics steps a second now."""
         return self.physics_hz == steps_registered(self.task)
+
+    @property
+    def is_of_present_patience(self) -> bool:
+        """Whether an episode of the task is stuck after that time now."""
+        return self.stuck_after_s == patience_registered(self.task)
 
 
 def floors_of(results: Iterable[Result]) -> list[Floor]:
@@ -156,12 +166,14 @@ def _floor(result: Result) -> Floor:
         result.commit,
         result.run["machine"],
         result.steps,
+        result.patience,
     )
     return Floor(*about, figures)
 
 
 def _cells(one: Floor) -> dict[str, Any]:
     cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT} | {STEPS: f"{one.physics_hz:g}"}
+    cells[PATIENCE] = "" if one.stuck_after_s is None else f"{one.stuck_after_s:g}"
     for name, of in one.figures.items():
         values = zip(BOUNDS, (of.value, of.low, of.high), strict=True)
         cells |= {name + bound: f"{value:.{DIGITS}g}" for bound, value in values}
@@ -174,4 +186,6 @@ def _read(row: dict[str, str]) -> Floor:
     }
     about: dict[str, Any] = {name: row.get(name) for name in ABOUT}
     about |= {"trials": int(row["trials"]), STEPS: float(row.get(STEPS) or UNSAID)}
+    said = {row["task"]: float(row[PATIENCE])} if row.get(PATIENCE) else {}
+    about[PATIENCE] = patience_in({PATIENCE: said}, row["task"])
     return Floor(**about, figures=figures)

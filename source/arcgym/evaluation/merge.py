@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.patience import ENTRY as PATIENCE
 from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.result_folder import DROPPED, ResultFolder, read_run, read_trial_rows
 from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
@@ -53,6 +54,7 @@ def _merge_settings(folder: ResultFolder, part: Path, run: dict[str, Any]) -> No
         "changes": folder.note_changes,
         STEPS: folder.note_steps,
         LENGTH: folder.note_length,
+        PATIENCE: folder.note_patience,
     }
     for entry, note in notes.items():
         before = read_run(folder.path).get(entry, {})

@@ -21,6 +21,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
+from arcgym.evaluation.patience import ENTRY as PATIENCE
 from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.run_shape import fault
 from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
@@ -111,6 +112,13 @@ class ResultFolder:
         run = read_run(self.path)
         if length is not None:
             run.setdefault(LENGTH, {})[task] = length
+            _write_run(self.path / RUN_FILE, run)
+
+    def note_patience(self, task: str, seconds: float | None) -> None:
+        """Write down after how long without progress a task's episode is stuck [s]; None, never, is not written."""
+        run = read_run(self.path)
+        if seconds is not None:
+            run.setdefault(PATIENCE, {})[task] = seconds
             _write_run(self.path / RUN_FILE, run)
 
     def note_dropped(self, task: str, contacts: int) -> None:

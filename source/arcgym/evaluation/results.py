@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.evaluation.check import ROLLS, SCALES, problems
+from arcgym.evaluation.patience import patience_in, patience_registered
 from arcgym.evaluation.physics_steps import steps_in, steps_registered
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.scope_lengths import other_length
@@ -73,8 +74,9 @@ class Result:
 
     @property
     def is_current(self) -> bool:
-        """Whether trials and physics steps are those that suite and task have now, not those of an earlier version."""
-        return self.conditions == read_suites()[self.suite].conditions and self.is_of_present_steps
+        """Whether trials, steps and patience are those that suite and task have now, not earlier ones."""
+        of_now = self.is_of_present_steps and self.is_of_present_patience
+        return self.conditions == read_suites()[self.suite].conditions and of_now
 
     @property
     def steps(self) -> float:
@@ -85,6 +87,16 @@ class Result:
     def is_of_present_steps(self) -> bool:
         """Whether the task has as many physics steps a second now."""
         return self.steps == steps_registered(self.task)
+
+    @property
+    def patience(self) -> float | None:
+        """Time without progress after which an episode was stuck [s]."""
+        return patience_in(self.run, self.task)
+
+    @property
+    def is_of_present_patience(self) -> bool:
+        """Whether the task has that time now."""
+        return self.patience == patience_registered(self.task)
 
     @property
     def checkpoints(self) -> list[str]:

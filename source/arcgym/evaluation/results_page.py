@@ -14,7 +14,9 @@ from typing import Any
 
 import yaml
 
+from arcgym.evaluation import patience
 from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
+from arcgym.evaluation.patience import PATIENCE_MARK
 from arcgym.evaluation.physics_steps import STEP_MARK, as_text
 from arcgym.evaluation.result_folder import Row
 from arcgym.evaluation.results import Result, best, roll_mark
@@ -63,6 +65,12 @@ EARLIER_STEP = (
 )
 """Stands above tables in which some trials had another physics step than the task has now."""
 
+EARLIER_PATIENCE = (
+    "§{names} counted as stuck after {seconds} without progress, an earlier default: not to be compared with what has"
+    " none ([why](evaluation.md#stuck))."
+)
+"""Stands above tables in which some episodes ended as stuck sooner than they do now."""
+
 INTRODUCTION = """# Results
 
 Made by `{command}`
@@ -107,11 +115,11 @@ def results_page(
 
 
 def _earlier(results: Sequence[Result], named: bool) -> list[str]:
-    """Return sentences on what is of an earlier version, trials or the physics step; none if nothing is.
+    """Return sentences on what is of an earlier version, trials, physics step or patience; none if nothing is.
 
     Args:
         results: What the table shows.
-        named: Whether to name the agents of another physics step, which the table does not mark.
+        named: Whether to name the agents of another physics step or patience, which the table does not mark.
     """
     suites = read_suites()
     names = sorted({one.conditions for one in results if one.conditions != suites[one.suite].conditions})
@@ -121,6 +129,11 @@ def _earlier(results: Sequence[Result], named: bool) -> list[str]:
         agents = dict.fromkeys(_agent(one) for one in old if one.steps == steps)
         which = f" {', '.join(agents)}" if named else ""
         found.append(EARLIER_STEP.format(names=which, length=as_text(steps)))
+    hasty = [one for one in results if not one.is_of_present_patience]
+    for seconds in sorted({one.patience or 0.0 for one in hasty}):
+        agents = dict.fromkeys(_agent(one) for one in hasty if one.patience == seconds)
+        which = f" {', '.join(agents)}" if named else ""
+        found.append(EARLIER_PATIENCE.format(names=which, seconds=patience.as_text(seconds)))
     return found
 
 
@@ -215,8 +228,13 @@ def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
     figures = [_interval(of[name], METRICS[name][1]) if name in of else _mean(result.rows, name) for name in metrics]
     name += f", limit {result.limits}" if result.limits else ""
     name += "" if result.conditions == read_suites()[result.suite].conditions else f", {result.conditions}"
-    name += "" if result.is_of_present_steps else STEP_MARK
+    name += _marks(result)
     return [f"`{result.task}`", name, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
+
+
+def _marks(result: Result) -> str:
+    """Return the marks of a result whose physics step or patience is another than the task's now."""
+    return STEP_MARK * (not result.is_of_present_steps) + PATIENCE_MARK * (not result.is_of_present_patience)
 
 
 def _mean(rows: Sequence[Row], name: str) -> str:
@@ -254,7 +272,7 @@ def _cell(result: Result | None, metric: str) -> str:
     if result is None:
         return NOTHING
     (of,) = summarize(result.rows).values()
-    mark = "" if result.is_of_present_steps else STEP_MARK
+    mark = _marks(result)
     if metric != "success":
         return _interval(of[metric], METRICS[metric][1]) + mark
     seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""

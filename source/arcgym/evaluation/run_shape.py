@@ -44,6 +44,7 @@ SHAPES: dict[str, tuple[type, Callable[[Any], bool], str]] = {
     "changes": (dict, _is_changes, "registered and used value by field, by task"),
     "physics_hz": (dict, _is_positive, "physics steps a second by task"),
     "scope_length": (dict, _is_positive, "length of the scope by task [m]"),
+    "stuck_after_s": (dict, _is_positive, "time without progress after which an episode ended by task [s]"),
     "dropped_contacts": (dict, _is_counts, "contacts by task"),
     "inputs": (dict, _is_inputs, "'sees' and 'simulator_depth' by task"),
 }

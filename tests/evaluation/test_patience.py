@@ -1,0 +1,64 @@
+# Copyright (c) 2026, The ARCGym Developers.
+# SPDX-License-Identifier: BSD-3-Clause
+"""Results of a journey whose episodes counted as stuck sooner."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from result_folders import write_result_folder
+
+from arcgym.evaluation.compare import notes
+from arcgym.evaluation.floors import floors_of, read_floors, updated, write_floors
+from arcgym.evaluation.patience import patience_in, patience_registered
+from arcgym.evaluation.physics_steps import steps_registered
+from arcgym.evaluation.result_folder import ResultFolder, read_run
+from arcgym.evaluation.results import Result, find_results
+from arcgym.evaluation.results_page import _earlier, _newest
+from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.trials import read_conditions
+
+TASK = "ARC-LeftColon-Magnetic"
+
+
+@pytest.fixture
+def results(tmp_path: Path) -> dict[str, Result]:
+    """The expert's trials of before, which do not say, and of now."""
+    of: dict[str, Any] = {"suite": "left_colon", "agent": "expert", "checkpoint": [], "checkpoint_sha256": []}
+    of |= {"training": [], "changes": {TASK: {}}, "physics_hz": {TASK: steps_registered(TASK)}}
+    for name, said in (("old", {}), ("new", {"stuck_after_s": {TASK: 20.0}})):
+        folder = write_result_folder(tmp_path / name, 0, TASK, **of | said)
+        for trial in read_conditions(read_suites()["left_colon"].conditions_path).trials:
+            row = {"task": TASK, "agent": "expert", **vars(trial), "success": 0, "end": "stuck", "progress": 0.5}
+            more = {"reward": 1.0, "seconds": 2.0, "s_c": 0.5, "centered_rate": 0.5, "tip_time_above_unsafe": 0.25}
+            ResultFolder(folder, read_run(folder)).add(row | more)
+    found, left_out = find_results([tmp_path])
+    assert left_out == {}
+    return {one.folder.name: one for one in found}
+
+
+def test_the_time_of_a_run() -> None:
+    assert patience_registered("ARC-Sigmoid-Magnetic") == 6.0
+    assert patience_in({}, TASK) == 6.0 and patience_in({"stuck_after_s": {TASK: 20.0}}, TASK) == 20.0
+    assert patience_in({}, "ARC-Withdrawal-Capsule") is None
+
+
+def test_what_had_less_is_shown_and_marked_until_there_is_what_has_not(results: dict[str, Result]) -> None:
+    old, new = results["old"], results["new"]
+    assert (old.patience, old.is_current) == (6.0, False)
+    assert (new.patience, new.is_current) == (20.0, True)
+    assert _newest([old, new]) == [new] and _newest([old]) == [old]
+    (sentence,) = _earlier([old], named=True)
+    assert sentence.startswith("§ expert counted as stuck after 6 s") and _earlier([new], named=True) == []
+    assert f"note: {TASK} stuck after is 6 s in {old.folder} and 20 s in {new.folder}" in notes(old.folder, new.folder)
+
+
+def test_a_floor_gives_way_to_one_of_now(results: dict[str, Result], tmp_path: Path) -> None:
+    (old,), (new,) = floors_of([results["old"]]), floors_of([results["new"]])
+    assert (old.stuck_after_s, old.is_current) == (6.0, False) and new.is_current
+    assert updated([old], [new]) == [new] and updated([new], [old]) == [new]
+    write_floors(tmp_path / "floors.csv", [new])
+    (read,) = read_floors(tmp_path / "floors.csv")
+    assert read.stuck_after_s == 20.0
