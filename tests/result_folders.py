@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from arcgym.evaluation.patience import patience_registered
 from arcgym.evaluation.physics_steps import steps_registered
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
@@ -41,6 +42,7 @@ def write_result_folder(
         "versions": {"arcgym commit": "abc1234"},
         "machine": "a machine",
         "physics_hz": {task: steps_registered(task)},
+        "stuck_after_s": {} if (patience := patience_registered(task)) is None else {task: patience},
     }
     out = ResultFolder(path, about | run)
     for trial in conditions.trials[::every]:
