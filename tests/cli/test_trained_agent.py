@@ -99,6 +99,25 @@ def test_a_scope_of_another_length_goes_with_its_policy_and_is_told(tmp_path: Pa
         assert (note in capsys.readouterr().out) == (trained in task and not override)
 
 
+def test_a_run_that_was_stuck_sooner_says_so_and_its_trials_are_not(tmp_path: Path, capsys) -> None:
+    task, field = "ARC-LeftColon-Magnetic", "env.terminations.stuck.params.window_s"
+    env_cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
+    env_cfg.stuck_after_s = 6.0
+    agent_cfg = load_cfg_from_registry(task, "rsl_rl_cfg_entry_point")
+    write_params(tmp_path, run={"task": task, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    checkpoint = tmp_path / "model_0.pt"
+    checkpoint.write_bytes(b"")
+    note = (
+        f"note: an episode is stuck after 6 s, as in the run; in {task} it is after 20 s now, which {field}=20 gives it"
+    )
+    for overrides, seconds in ((), 6.0), ([f"{field}=6.0"], 6.0), ([f"{field}=20.0"], 20.0):
+        args = RunArguments(task=task, checkpoint=str(checkpoint), overrides=list(overrides))
+        assert load_run_cfgs(args)[0].stuck_after_s == seconds
+        assert (note in capsys.readouterr().out) == (not overrides)
+    assert _load(task, checkpoint, ())[0].stuck_after_s == 20.0
+    assert "note: " not in capsys.readouterr().out
+
+
 def test_trials_are_drawn_by_the_task_however_the_training_drew(tmp_path: Path) -> None:
     env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
     own = tuple(env_cfg.events.friction.params["friction"])

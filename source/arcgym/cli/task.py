@@ -111,6 +111,7 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
         if path not in passing:
             print(f"changed: {path}: {old} -> {new}")
     _tell_length(args, env_cfg)
+    _tell_patience(args, env_cfg)
     return env_cfg, agent_cfg, checkpoint
 
 
@@ -124,6 +125,17 @@ def _tell_length(args: RunArguments, env_cfg: Any) -> None:
     value = "null" if own is None else f"{own:g}"
     told = f"a scope of {as_text(used)}, as the run had; {args.task} has one of {as_text(own)} now"
     print(f"note: {told}, which env.{FIELD}={value} gives it")
+
+
+def _tell_patience(args: RunArguments, env_cfg: Any) -> None:
+    """Print that a run's episodes count as stuck sooner or later than the task's, unless an override says when."""
+    from arcgym.evaluation.patience import FIELD, as_text, patience_of, patience_registered
+
+    used, own = patience_of(env_cfg), patience_registered(args.task)
+    if None in (used, own) or used == own or any(text.startswith(f"env.{FIELD}=") for text in args.overrides):
+        return
+    told = f"an episode is stuck after {as_text(used)}, as in the run; in {args.task} it is after {as_text(own)} now"
+    print(f"note: {told}, which env.{FIELD}={own:g} gives it")
 
 
 def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:

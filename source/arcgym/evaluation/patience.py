@@ -12,6 +12,9 @@ from arcgym.evaluation.suites import split_task
 ENTRY = "stuck_after_s"
 """Entry of ``run.json``: the time by task [s], where a task ends episodes that are stuck."""
 
+FIELD = "terminations.stuck.params.window_s"
+"""Field of the environment that has it."""
+
 UNSAID = 6.0
 """That time in runs that do not say [s]: the default of all tasks before it was written down."""
 
