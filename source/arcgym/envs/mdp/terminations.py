@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import torch
 
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
+from arcgym.envs.mdp.observations import tip_lumen_direction
 from arcgym.managers import ManagerTermBase, TerminationTermCfg
-from arcgym.utils.math import quat_apply_inverse
 from arcgym.utils.validation import FINITE, POSITIVE, Range, expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -55,8 +55,7 @@ def facing(env: ManagerBasedRLEnv, towards: str = "cecum", angle: float = 1.05, 
         angle: Largest angle between the tip's axis and the lumen's direction towards that end [rad].
         after_s: Time from the start of an episode in which it may look where it likes [s].
     """
-    data = env.scene["endoscope"].data
-    along = quat_apply_inverse(data.tip_quat_w, data.tip_lumen_direction_w)[:, 2]
+    along = tip_lumen_direction(env)[:, 2]
     looks = (along if towards == "cecum" else -along) > math.cos(angle)
     return looks & (env.episode_length_buf * env.step_dt > after_s)
 
