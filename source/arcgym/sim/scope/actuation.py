@@ -35,8 +35,9 @@ class Actuation:
         self.actuators = endoscope.actuators
         for actuator in self.actuators.values():
             actuator.allocate(model, num_envs, device)
-        self.resistance = wp.zeros((self.link_count, num_envs), dtype=wp.spatial_vector, device=device)
-        """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W)."""
+        self.resistance = wp.zeros((num_envs, self.link_count), dtype=wp.spatial_vector, device=device).transpose()
+        """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W); the links
+        of a world lie side by side."""
         self._guide = self._introducer(endoscope)
         gravity = cfg.weight.gravity(cfg.weight.posture) if cfg.weight.enabled else cfg.gravity
         self.gravity = wp.full(num_envs, wp.vec3(*gravity), dtype=wp.vec3, device=device)
@@ -77,7 +78,7 @@ class Actuation:
         inputs = [state.body_q, state.body_qd, self.body_mass, self.gravity, self._mass_scaling, self._guide]
         inputs += [state.joint_q, self.coords, link_ring, dt]
         outputs = [state.body_f, self.resistance]
-        shape = (self.link_count, self.num_envs)
+        shape = (self.num_envs, self.link_count)
         wp.launch(kernels.load_links, shape, inputs=inputs, outputs=outputs, device=self.device)
         for actuator in self.actuators.values():
             actuator.apply(state, control, self.resistance, dt)

@@ -54,13 +54,13 @@ def load_links(
     body_f: wp.array[wp.spatial_vector],
     resistance: wp.array2d[wp.spatial_vector],
 ):
-    """Weight of every link, and the springs of the introducer near the colon's first rings. Launch (L, W).
+    """Weight of every link, and the springs of the introducer near the colon's first rings. Launch (W, L).
 
     What is low of a link is pulled sideways onto the Z axis. The base's slide tells how high each would be in a
     straight shaft; a link up to ``SPHINCTER`` lower than that, and lower than ``min_height``, is lifted. ``ring`` has
     the shape (W, L), ``gravity`` the shape (W,).
     """
-    link, w = wp.tid()
+    w, link = wp.tid()
     i = w * resistance.shape[0] + link
     force = body_mass[i] * (gravity[w] / mass_scaling)
     held = wp.vec3(0.0)
