@@ -20,7 +20,7 @@ from arcgym.sim.contact.contact_kernels import (
 from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.warp_setup import FAST
-from arcgym.utils.warp_vote_kernels import group_sum_matrix, group_sum_vector
+from arcgym.utils.warp_vote_kernels import group_sum_matrix, group_sum_vector, votes
 
 SLOW = wp.constant(0.02)
 """Speed along the normal below which a contact keeps more of the damping that the step adds [m/s]: without it contacts
@@ -264,10 +264,18 @@ def load_contacts_in_groups(
     w, link, thread = wp.tid()
     count = loads.wrench.shape[0]
     total = ArticulatedBody()
+    k = int(0)
+    end = int(0)
+    if link < count:
+        k = records.start[w, link] + thread
+        end = records.start[w, link + 1]
+    if votes(k < end) == 0:  # none of the warp's links touches the wall
+        if thread == 0 and link < count:
+            write_load(link, w, total, loads)
+        return
     if link < count:
         motion = link_motion(w * count + link, link, body_q, body_qd, com, body_q_prev)
-        k = records.start[w, link] + thread
-        while k < records.start[w, link + 1]:
+        while k < end:
             slot = w * records.capacity + k
             one = load_at(slot, link, w, motion, x, v, links, records, law, friction, elapsed, dt, penetrated)
             total = summed(total, one)
