@@ -287,26 +287,3 @@ def load_contacts_in_groups(
     total.torque = group_sum_vector(total.torque)
     if thread == 0 and link < count:
         write_load(link, w, total, loads)
-
-
-@wp.kernel
-def record_forces(
-    loads: LinkLoads,
-    acc_lin: wp.array2d[wp.vec3],
-    acc_ang: wp.array2d[wp.vec3],
-    weight: float,
-    wall_force: wp.array[wp.vec3],
-):
-    """Add up each link's contact force at the end of the substep. Launch (L, W).
-
-    Args:
-        loads: Loads of the links.
-        acc_lin: Accelerations of the centres of mass [m/s^2], shape (L, W).
-        acc_ang: Angular accelerations [rad/s^2], shape (L, W).
-        weight: Share of the substep in the mean.
-        wall_force: Mean force on each link [N], shape (W*L,); added to.
-    """
-    link, w = wp.tid()
-    row = w * loads.wrench.shape[0] + link
-    given = loads.ll[link, w] * acc_lin[link, w] + loads.la[link, w] * acc_ang[link, w]
-    wall_force[row] = wall_force[row] + weight * (wp.spatial_top(loads.wrench[link, w]) - given)

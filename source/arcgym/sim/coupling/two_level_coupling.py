@@ -108,7 +108,7 @@ class TwoLevelCoupling:
 
     def _move_scope(self) -> None:
         """Advance the scope by all substeps of a physics step; of the wall, positions and velocities are read."""
-        sim, state = self.sim, self.sim.state
+        sim, state, work = self.sim, self.sim.state, self.solver.work
         count = sim.cfg.scope_substeps
         dt = sim.cfg.dt / count
         for k in range(count):
@@ -117,8 +117,10 @@ class TwoLevelCoupling:
                     self._drive()
             self.load_contacts(k * dt, dt)
             self._drives.join()
-            self.solver.move(state, state, dt)
-            self._record(1.0 / count)
+            self.solver.move(state, state, dt, sim.scope_readout.step_force, 1.0 / count)
+            with self._drives.work():
+                sim.actuation.record(work.drive_force, work.acc_lin, 1.0 / count)
+        self._drives.join()
 
     def _drive(self) -> None:
         """Write what drives and joints do in a substep that begins, for which no contact has to be known."""
@@ -148,17 +150,6 @@ class TwoLevelCoupling:
             device=sim.device,
             block_dim=GPU_BLOCK,
         )
-
-    def _record(self, weight: float) -> None:
-        loads, work = self.solver.loads, self.solver.work
-        wp.launch(
-            kernels.record_forces,
-            loads.wrench.shape,
-            inputs=[loads, work.acc_lin, work.acc_ang, weight],
-            outputs=[self.sim.scope_readout.step_force],
-            device=self.sim.device,
-        )
-        self.sim.actuation.record(work.drive_force, work.acc_lin, weight)
 
     def forward(self, world_mask: wp.array) -> None:
         """Recompute the links' poses in ``world_mask``, shape (W,), bool, after joints were written to."""

@@ -9,143 +9,151 @@ the body of one function and share its variables, so that their order is that of
 
 from __future__ import annotations
 
+from arcgym.sim.scope.aba_cuda_link_code import PREPARE
+
 READ = """
     using namespace wp;
-    constexpr int L = LINKS, D = DOFS, Q = (L + 31) / 32;
+    constexpr int L = LINKS, D = DOFS, Q = (L + 31) / 32, J = (D + 31) / 32;
     constexpr unsigned ALL = 0xffffffffu;
-    __shared__ float joints[D][14];  // axis 0-2, then stop, 4 stop_inertia, 5 drive, 6 drive_inertia, gains, 13 effort
-    __shared__ float links[L][15];  // arm 0-2, drift 3-8, bias force
-    __shared__ int starts[L + 1];
-    constexpr int OFFSET = 3, RATE = 4, DRIVE = 5, INERTIA = 6, GAIN = 7, EFFORT = 13, DRIFT = 3, FORCE = 9;
-    const long long worlds = work.ll.shape[1];
+    __shared__ __align__(16) float joints[D][12];  // see below
+    __shared__ float links[L][9];  // arm, drift
+    // 32 links of the walk inwards: ll, la, aa, bias force and torque; then accelerations of all links, six a link
+    constexpr int OWN = 33, ROOM = 32 * OWN > 6 * L ? 32 * OWN : 6 * L;
+    __shared__ float room[ROOM];
+    __shared__ short starts[L + 1];  // first joint of each link
+    constexpr int DRIFT = 3, FORCE = 27;
+    // a joint first: its own axis, then the world's; stop, stop_inertia, drive, drive_inertia; effort, negative if it
+    // slides; rate, coordinate; whether it slides
+    constexpr int STOP = 3, STOP_INERTIA = 4, DRIVE = 5, INERTIA = 6, EFFORT = 7, V = 8, X = 9, SLIDES = 10;
+    // eliminated: axis, offset, six gains, whether it slides, acceleration
+    constexpr int OFFSET = 3, GAIN = 4, FOUND = 11;
     const bool free_root = chain.free == 1;
-    const int first_joint = free_root ? 6 : 0;
+    const int first_joint = free_root ? 6 : 0, extra = chain.coords - chain.dofs;
+    float* const v_now = joint_qd.data + (long long)world * D;
+    float* const x_now = joint_q.data + (long long)world * chain.coords + extra;  // a free root's are elsewhere
 
-    for (int d = lane; d < D; d += 32) {
-        const long long at = d * worlds + world;
-        float* const to = joints[d];
-        const vec3 axis = work.axis.data[at];
-        for (int k = 0; k < 3; ++k) to[k] = axis[k];
-        to[OFFSET] = work.stop.data[at];
-        to[RATE] = work.stop_inertia.data[at];
-        to[DRIVE] = work.drive.data[at];
-        to[INERTIA] = work.drive_inertia.data[at];
-        to[EFFORT] = chain.linear.data[d] == 1 ? -1.0f - chain.effort.data[d] : chain.effort.data[d];
-    }
-    for (int link = lane; link < L; link += 32) {
-        const long long at = link * worlds + world;
-        float* const to = links[link];
-        const vec3 arm = work.arm.data[at], lin = work.drift_lin.data[at], ang = work.drift_ang.data[at];
-        const vec3 force = work.force.data[at], torque = work.torque.data[at];
-        for (int k = 0; k < 3; ++k) {
-            to[k] = arm[k];
-            to[DRIFT + k] = lin[k];
-            to[DRIFT + 3 + k] = ang[k];
-            to[FORCE + k] = force[k];
-            to[FORCE + 3 + k] = torque[k];
+    #pragma unroll
+    for (int n = 0; n < J; ++n) {
+        const int d = lane + 32 * n;
+        if (d < D) {
+            float* const to = joints[d];
+            const vec3 axis = chain.axis.data[d];
+            const bool slides = chain.linear.data[d] == 1;
+            for (int i = 0; i < 3; ++i) to[i] = axis[i];
+            to[STOP] = *address(work.stop, d, world);
+            to[STOP_INERTIA] = *address(work.stop_inertia, d, world);
+            to[DRIVE] = *address(work.drive, d, world);
+            to[INERTIA] = *address(work.drive_inertia, d, world);
+            to[EFFORT] = slides ? -1.0f - chain.effort.data[d] : chain.effort.data[d];
+            to[V] = v_now[d];
+            to[X] = x_now[d];
+            to[SLIDES] = slides ? 1.0f : 0.0f;
         }
     }
     for (int link = lane; link <= L; link += 32) starts[link] = chain.dof_start.data[link];
-
-    // this lane's column of a link's matrix: two runs of three numbers
-    const int column = lane < 6 ? lane : 5, k = column % 3;
-    const bool angular = column >= 3;
-    const float* const ll = (const float*)work.ll.data;
-    const float* const la = (const float*)work.la.data;
-    const float* const aa = (const float*)work.aa.data;
-    const float* const upper = angular ? la + k : ll + 3 * k;
-    const float* const lower = angular ? aa + 3 * k : la + 3 * k;
-    const int upper_stride = angular ? 3 : 1;
-    auto load = [&](int link, float* to) {
-        const long long at = 9 * (link * worlds + world);
-        for (int r = 0; r < 3; ++r) to[r] = upper[at + r * upper_stride];
-        for (int r = 0; r < 3; ++r) to[3 + r] = lower[at + r];
-    };
 """
-"""Copies joints and links to shared memory, and tells each lane where its column of a link's matrix is."""
+"""Copies joints to shared memory."""
 
 GATHER = """
-    const int one = (k + 1) % 3, two = (k + 2) % 3;
-    float m[6], p[6], own[6], next[6];
+    // this lane's column of a link's matrix: two runs of three numbers
+    const int column = lane < 6 ? lane : 5, k = column % 3, one = (k + 1) % 3, two = (k + 2) % 3;
+    const bool angular = column >= 3;
+    const int upper = angular ? 9 + k : 3 * k, stride = angular ? 3 : 1, lower = 9 + 3 * k + (angular ? 9 : 0);
+    float m[6], p[6], next[12];
     for (int r = 0; r < 6; ++r) m[r] = p[r] = 0.0f;
-    load(L - 1, next);
-    __syncwarp();
+    auto load = [&](const float* row) {
+        for (int r = 0; r < 3; ++r) {
+            next[r] = row[upper + r * stride];
+            next[3 + r] = row[lower + r];
+        }
+        for (int r = 0; r < 6; ++r) next[6 + r] = row[FORCE + r];
+    };
     float ahead[8];  // axis, stop, stop_inertia, drive, drive_inertia, effort of the next joint
     auto look = [&](int d) {
-        const float* const joint = joints[d > 0 ? d : 0];
-        for (int n = 0; n < 7; ++n) ahead[n] = joint[n];
-        ahead[7] = joint[EFFORT];
+        const float4* const joint = (const float4*)joints[d > 0 ? d : 0];
+        const float4 near = joint[0], far = joint[1];
+        ahead[0] = near.x, ahead[1] = near.y, ahead[2] = near.z, ahead[3] = near.w;
+        ahead[4] = far.x, ahead[5] = far.y, ahead[6] = far.z, ahead[7] = far.w;
     };
-    look(D - 1);
-    for (int link = L - 1; link >= 0; --link) {
-        for (int r = 0; r < 6; ++r) own[r] = next[r];
-        load(link > 0 ? link - 1 : 0, next);
-        const float* const row = links[link];
-        for (int r = 0; r < 6; ++r) {
-            m[r] += own[r];
-            p[r] += row[FORCE + r];
-        }
-        if (link == 0 && free_root) break;
-        const float arm[3] = {row[0], row[1], row[2]};
-        const float a = angular ? row[two] : 0.0f, b = angular ? row[one] : 0.0f;
-        float drift[6];
-        for (int r = 0; r < 6; ++r) drift[r] = row[DRIFT + r];
-        for (int d = starts[link + 1] - 1; d >= starts[link]; --d) {
-            float* const joint = joints[d];
-            const float s[3] = {ahead[0], ahead[1], ahead[2]};
-            const bool slides = ahead[7] < 0.0f;
-            const float effort = slides ? -1.0f - ahead[7] : ahead[7];
-            const float stop = ahead[OFFSET], stop_inertia = ahead[RATE];
-            float drive = ahead[DRIVE], inertia = ahead[INERTIA];
-            look(d - 1);
-            const float u = slides ? m[0] * s[0] + m[1] * s[1] + m[2] * s[2] : m[3] * s[0] + m[4] * s[1] + m[5] * s[2];
-            float all[6];
-            for (int r = 0; r < 6; ++r) all[r] = __shfl_sync(ALL, u, r);
-            float pivot, rest;
-            if (slides) {
-                pivot = s[0] * all[0] + s[1] * all[1] + s[2] * all[2];
-                rest = stop - (s[0] * p[0] + s[1] * p[1] + s[2] * p[2]);
-            } else {
-                pivot = s[0] * all[3] + s[1] * all[4] + s[2] * all[5];
-                rest = stop - (s[0] * p[3] + s[1] * p[4] + s[2] * p[5]);
+    auto reciprocal = [](float x) {
+        float y;
+        asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+        return y;
+    };
+    for (int base = (L - 1) / 32 * 32; base >= 0; base -= 32) {
+        __syncwarp();
+        if (base + lane < L) prepare(base + lane, room + OWN * lane);
+        __syncwarp();
+        const int end = base + 32 < L ? base + 32 : L;
+        load(room + OWN * (end - 1 - base));
+        int until = starts[end], from = starts[end - 1];  // joints of the link
+        look(until - 1);
+        for (int link = end - 1; link >= base; --link) {
+            for (int r = 0; r < 6; ++r) {
+                m[r] += next[r];
+                p[r] += next[6 + r];
             }
-            pivot += stop_inertia;
-            float scale = __fdividef(1.0f, pivot + inertia);
-            const float at_end = drive - inertia * ((rest + drive) * scale);
-            __syncwarp();
-            if (fabsf(at_end) > effort) {
-                drive = at_end < 0.0f ? -effort : effort;
-                inertia = 0.0f;
-                scale = __fdividef(1.0f, pivot);
-                if (lane == 7) {
-                    joint[DRIVE] = drive;
-                    joint[INERTIA] = inertia;
+            load(room + OWN * (link > base ? link - 1 - base : 0));
+            if (link == 0 && free_root) break;
+            const float* const row = links[link];
+            const float arm[3] = {row[0], row[1], row[2]};
+            const float a = angular ? row[two] : 0.0f, b = angular ? row[one] : 0.0f;
+            float drift[6];
+            for (int r = 0; r < 6; ++r) drift[r] = row[DRIFT + r];
+            const int first = from;
+            from = starts[link > 0 ? link - 1 : 0];
+            for (int d = until - 1; d >= first; --d) {
+                float* const joint = joints[d];
+                const float s[3] = {ahead[0], ahead[1], ahead[2]};
+                const bool slides = ahead[EFFORT] < 0.0f;
+                const float effort = slides ? -1.0f - ahead[EFFORT] : ahead[EFFORT];
+                const float stop = ahead[STOP], stop_inertia = ahead[STOP_INERTIA];
+                const float drive = ahead[DRIVE], inertia = ahead[INERTIA];
+                look(d - 1);
+                float met[3], pushed[3], all[6];
+                for (int r = 0; r < 3; ++r) met[r] = slides ? m[r] : m[3 + r];
+                for (int r = 0; r < 3; ++r) pushed[r] = slides ? p[r] : p[3 + r];
+                const float u = met[0] * s[0] + met[1] * s[1] + met[2] * s[2];
+                const float rest = stop - (s[0] * pushed[0] + s[1] * pushed[1] + s[2] * pushed[2]);
+                for (int r = 5; r >= 0; --r) all[r] = __shfl_sync(ALL, u, r);
+                for (int r = 0; r < 3; ++r) met[r] = slides ? all[r] : all[3 + r];
+                const float pivot = s[0] * met[0] + s[1] * met[1] + s[2] * met[2] + stop_inertia;
+                const float if_held = reciprocal(pivot + inertia), if_limited = reciprocal(pivot);
+                const float at_end = drive - inertia * ((rest + drive) * if_held);
+                const bool limited = fabsf(at_end) > effort;
+                const float limit = at_end < 0.0f ? -effort : effort, scale = limited ? if_limited : if_held;
+                const float offset = scale * (rest + (limited ? limit : drive)), gain = scale * u;
+                for (int r = 0; r < 6; ++r) {
+                    m[r] -= (all[r] * u) * scale;
+                    p[r] += offset * all[r];
+                }
+                __syncwarp();  // all have read what is overwritten now
+                if (lane < 6) joint[GAIN + lane] = gain;
+                if (lane == 6) joint[OFFSET] = offset;
+                if (lane == 7 && limited) {
+                    *address(work.drive, d, world) = limit;
+                    *address(work.drive_inertia, d, world) = 0.0f;
                 }
             }
-            const float offset = scale * (rest + drive), gain = scale * u;
+            until = first;
+            float carried = 0.0f;
+            for (int r = 0; r < 6; ++r) carried += m[r] * drift[r];
+            for (int r = 0; r < 6; ++r) p[r] += __shfl_sync(ALL, carried, r);
             for (int r = 0; r < 6; ++r) {
-                m[r] -= all[r] * gain;
-                p[r] += offset * all[r];
+                const float left = __shfl_sync(ALL, m[r], one), right = __shfl_sync(ALL, m[r], two);
+                m[r] += b * right - a * left;
             }
-            if (lane < 6) joint[GAIN + lane] = gain;
-            if (lane == 6) joint[OFFSET] = offset;
+            m[3] += arm[1] * m[2] - arm[2] * m[1];
+            m[4] += arm[2] * m[0] - arm[0] * m[2];
+            m[5] += arm[0] * m[1] - arm[1] * m[0];
+            p[3] += arm[1] * p[2] - arm[2] * p[1];
+            p[4] += arm[2] * p[0] - arm[0] * p[2];
+            p[5] += arm[0] * p[1] - arm[1] * p[0];
         }
-        float carried = 0.0f;
-        for (int r = 0; r < 6; ++r) carried += m[r] * drift[r];
-        for (int r = 0; r < 6; ++r) p[r] += __shfl_sync(ALL, carried, r);
-        for (int r = 0; r < 6; ++r) {
-            const float left = __shfl_sync(ALL, m[r], one), right = __shfl_sync(ALL, m[r], two);
-            m[r] += b * right - a * left;
-        }
-        m[3] += arm[1] * m[2] - arm[2] * m[1];
-        m[4] += arm[2] * m[0] - arm[0] * m[2];
-        m[5] += arm[0] * m[1] - arm[1] * m[0];
-        p[3] += arm[1] * p[2] - arm[2] * p[1];
-        p[4] += arm[2] * p[0] - arm[0] * p[2];
-        p[5] += arm[0] * p[1] - arm[1] * p[0];
     }
 """
-"""Walks from the tip to the base: eliminates the joints of each link, and carries its matrix on to the one before."""
+"""Walks from the tip to the base, 32 links at a time, which the lanes prepare side by side: eliminates the joints of
+each link, and carries its matrix on to the one before."""
 
 ACCELERATE = """
     vec3 lin(0.0f, 0.0f, 0.0f), ang(0.0f, 0.0f, 0.0f);
@@ -165,55 +173,102 @@ ACCELERATE = """
         lin = sub(-mul(inverted, force), mul(coupled, ang));
     }
     __syncwarp();
-    float coming[11], link_row[9];  // axis, offset, gains and effort of the next joint; arm and drift of the next link
+    float4 coming[3];  // of the next joint: axis and offset; gains; whether it slides
+    float link_row[9];  // arm and drift of the next link
     auto look_out = [&](int d) {
-        const float* const joint = joints[d < D ? d : D - 1];
-        for (int n = 0; n < 4; ++n) coming[n] = joint[n];
-        for (int n = 0; n < 6; ++n) coming[4 + n] = joint[GAIN + n];
-        coming[10] = joint[EFFORT];
+        const float4* const joint = (const float4*)joints[d < D ? d : D - 1];
+        for (int n = 0; n < 3; ++n) coming[n] = joint[n];
     };
     auto look_at_link = [&](int link) {
         for (int n = 0; n < 9; ++n) link_row[n] = links[link < L ? link : L - 1][n];
     };
     look_out(first_joint);
     look_at_link(0);
+    int d = first_joint, until = starts[1];
     for (int link = 0; link < L; ++link) {
-        float* const row = links[link];
         const vec3 arm(link_row[0], link_row[1], link_row[2]);
         const vec3 drift_lin(link_row[3], link_row[4], link_row[5]), drift_ang(link_row[6], link_row[7], link_row[8]);
+        const int end = until;
         look_at_link(link + 1);
+        until = starts[link + 2 < L ? link + 2 : L];
         if (link > 0 || !free_root) {
             lin = lin + cross(ang, arm) + drift_lin;
             ang = ang + drift_ang;
-            for (int d = starts[link]; d < starts[link + 1]; ++d) {
-                const vec3 axis(coming[0], coming[1], coming[2]);
-                const vec3 by_lin(coming[4], coming[5], coming[6]), by_ang(coming[7], coming[8], coming[9]);
-                const float found = coming[OFFSET] - dot(by_lin, lin) - dot(by_ang, ang);
-                const bool slides = coming[10] < 0.0f;
+            for (; d < end; ++d) {
+                const float4 first = coming[0], second = coming[1], third = coming[2];
+                const float along = third.z, about = 1.0f - along;
+                const vec3 axis(first.x, first.y, first.z), slide = along * axis, turn = about * axis;
+                const vec3 by_lin(second.x, second.y, second.z), by_ang(second.w, third.x, third.y);
+                const float found = first.w - dot(by_lin, lin) - dot(by_ang, ang);
                 look_out(d + 1);
-                if (slides) lin = lin + found * axis;
-                else ang = ang + found * axis;
-                if (lane == 0) joints[d][RATE] = found;
+                lin = lin + found * slide;
+                ang = ang + found * turn;
+                if (lane == 0) joints[d][FOUND] = found;
             }
         }
         if (lane == 0)
             for (int r = 0; r < 3; ++r) {
-                row[FORCE + r] = lin[r];
-                row[FORCE + 3 + r] = ang[r];
+                room[6 * link + r] = lin[r];
+                room[6 * link + 3 + r] = ang[r];
             }
     }
     __syncwarp();
 """
 """Walks from the base to the tip: finds the accelerations of all joints and links."""
 
+RECORD = """
+    #pragma unroll
+    for (int q = 0; q < Q; ++q) {
+        const int link = lane + 32 * q;
+        if (link < L) {
+            const long long row = (long long)world * L + link;
+            const float* const found = room + 6 * link;
+            const vec3 omega = spatial_bottom(body_qd.data[row]), lever = *address(work.lever, link, world);
+            const vec3 a_lin(found[0], found[1], found[2]), a_ang(found[3], found[4], found[5]);
+            const vec3 acc = a_lin + cross(a_ang, lever) + cross(omega, cross(omega, lever));
+            if (mean_load.data) {
+                const mat33 ll = *address(loads.ll, link, world), la = *address(loads.la, link, world);
+                const vec3 held = spatial_top(*address(loads.wrench, link, world));
+                mean_load.data[row] = mean_load.data[row] + weight * (held - (mul(ll, acc) + mul(la, a_ang)));
+            }
+            *address(work.acc_lin, link, world) = acc;
+            *address(work.acc_ang, link, world) = a_ang;
+        }
+    }
+"""
+"""Writes the accelerations of all links' centres of mass, and adds up the forces of their loads."""
+
 MOVE = """
+    float speeds[J], coordinates[J], forces[J];
+    #pragma unroll
+    for (int n = 0; n < J; ++n) {
+        const int d = lane + 32 * n;
+        if (d >= first_joint && d < D) {
+            const float found = joints[d][FOUND];
+            const float drive = *address(work.drive, d, world), inertia = *address(work.drive_inertia, d, world);
+            speeds[n] = v_now[d] + dt * found;
+            coordinates[n] = x_now[d] + dt * speeds[n];
+            forces[n] = drive - inertia * found;
+        }
+    }
+    #pragma unroll
+    for (int n = 0; n < J; ++n) {
+        const int d = lane + 32 * n;
+        if (d >= first_joint && d < D) {
+            const vec3 axis = chain.axis.data[d];
+            for (int i = 0; i < 3; ++i) joints[d][i] = axis[i];
+            joints[d][V] = v_now[d] = speeds[n];
+            joints[d][X] = x_now[d] = coordinates[n];
+            *address(work.drive_force, d, world) = forces[n];
+        }
+    }
+    __syncwarp();
     // each lane moves Q links in a row
     const int begin = lane * Q;
     transform poses[Q];
     vec3 spins[Q], rates[Q], places[Q];
     transform so_far(vec3(0.0f, 0.0f, 0.0f), quat(0.0f, 0.0f, 0.0f, 1.0f));
     const transform still = so_far;
-    const int coords = chain.coords, extra = chain.coords - chain.dofs;
     vec3 root_lin(0.0f, 0.0f, 0.0f), root_ang(0.0f, 0.0f, 0.0f);
     #pragma unroll
     for (int q = 0; q < Q; ++q) {
@@ -221,11 +276,9 @@ MOVE = """
         transform local = still;
         spins[q] = rates[q] = places[q] = vec3(0.0f, 0.0f, 0.0f);
         if (link == 0 && free_root) {
-            float* const v = joint_qd.data + (long long)world * D;
-            float* const x = joint_q.data + (long long)world * coords;
-            const float* const found = links[0] + FORCE;
-            root_lin = vec3(v[0], v[1], v[2]) + dt * vec3(found[0], found[1], found[2]);
-            root_ang = vec3(v[3], v[4], v[5]) + dt * vec3(found[3], found[4], found[5]);
+            float *const v = v_now, *const x = x_now - extra;
+            root_lin = vec3(v[0], v[1], v[2]) + dt * vec3(room[0], room[1], room[2]);
+            root_ang = vec3(v[3], v[4], v[5]) + dt * vec3(room[3], room[4], room[5]);
             const transform before = body_q.data[(long long)world * L];
             const float turn = length(root_ang) * dt;
             quat rot = before.q;
@@ -243,15 +296,9 @@ MOVE = """
             quat rot(0.0f, 0.0f, 0.0f, 1.0f);
             for (int d = starts[link]; d < starts[link + 1]; ++d) {
                 const float* const joint = joints[d];
-                const float found = joint[RATE];
-                float& v_now = joint_qd.data[(long long)world * D + d];
-                float& x_now = joint_q.data[(long long)world * coords + d + extra];
-                const float v = v_now + dt * found, x = x_now + dt * v;
-                v_now = v;
-                x_now = x;
-                work.drive_force.data[d * worlds + world] = joint[DRIVE] - joint[INERTIA] * found;
-                const vec3 axis = chain.axis.data[d];
-                if (joint[EFFORT] < 0.0f) {
+                const float v = joint[V], x = joint[X];
+                const vec3 axis(joint[0], joint[1], joint[2]);
+                if (joint[SLIDES] != 0.0f) {
                     shift = shift + x * axis;
                     rates[q] = rates[q] + v * axis;
                 } else {
@@ -327,24 +374,29 @@ CHAIN_UP = """
         rates[q] = total;
     }
     const vec3 rate_before = sum_behind(total);
+    // by way of shared memory, of which the rows of links and accelerations are not needed any more
+    float *const poses_of_all = links[0], *const twists_of_all = room;
     #pragma unroll
     for (int q = 0; q < Q; ++q) {
         const int link = begin + q;
         if (link < L) {
-            const long long at = link * worlds + world, row = (long long)world * L + link;
-            const float* const found = links[link] + FORCE;
-            const spatial_vector old = body_qd.data[row];
-            const vec3 omega(old[3], old[4], old[5]), lever = work.lever.data[at];
-            const vec3 a_lin(found[0], found[1], found[2]), a_ang(found[3], found[4], found[5]);
-            work.acc_lin.data[at] = a_lin + cross(a_ang, lever) + cross(omega, cross(omega, lever));
-            work.acc_ang.data[at] = a_ang;
             const vec3 v = rates[q] + rate_before;
-            body_q_out.data[row] = poses[q];
-            body_qd_out.data[row] = spatial_vector(v, spins[q]);
+            for (int i = 0; i < 3; ++i) {
+                poses_of_all[7 * link + i] = poses[q].p[i];
+                twists_of_all[6 * link + i] = v[i];
+                twists_of_all[6 * link + 3 + i] = spins[q][i];
+            }
+            for (int i = 0; i < 4; ++i) poses_of_all[7 * link + 3 + i] = poses[q].q[i];
         }
     }
+    __syncwarp();
+    float* const pose_out = (float*)(body_q_out.data + (long long)world * L);
+    float* const twist_out = (float*)(body_qd_out.data + (long long)world * L);
+    for (int n = lane; n < 7 * L; n += 32) pose_out[n] = poses_of_all[n];
+    for (int n = lane; n < 6 * L; n += 32) twist_out[n] = twists_of_all[n];
 """
-"""Chains the lanes up, and writes the poses, velocities and accelerations of all links."""
+"""Chains the lanes up, and writes the poses and velocities of all links."""
 
-SOLVE = "\n#if defined(__CUDA_ARCH__)" + "".join((READ, GATHER, ACCELERATE, MOVE, CHAIN_UP)) + "#endif\n"
+PARTS = (READ, PREPARE, GATHER, ACCELERATE, RECORD, MOVE, CHAIN_UP)
+SOLVE = "\n#if defined(__CUDA_ARCH__)" + "".join(PARTS) + "#endif\n"
 """Body of the function that solves the chain of a world; empty on a CPU."""

@@ -7,7 +7,8 @@ Linearly implicit Euler: springs, dampers and contacts act with their values at 
 the acceleration. All vectors have world axes. Inertias refer to the link's joint (its *anchor*; the centre of mass of a
 free root) and accelerations are those of the material point there, so that lengths stay short and float32 suffices.
 
-W worlds, L links, D degrees of freedom a world; scratch is world-fastest, shape (L, W) or (D, W).
+W worlds, L links, D degrees of freedom a world. Scratch has the shape (L, W) or (D, W), world-fastest but where a warp
+solves a world, whose rows lie side by side then.
 """
 
 import warp as wp
@@ -247,7 +248,7 @@ def prepare_joints(
     dt: float,
     work: ChainWork,
 ):
-    """Compute the forces of drives and stops if the joints keep their velocities. Launch (D, W).
+    """Compute the forces of drives and stops if the joints keep their velocities. Launch (W, D).
 
     A spring K that acts with its value at the end of the step loses energy as if it had a damper dt K. That much is
     taken off the drive's own damper, and the two together lose what the damper should.
@@ -261,7 +262,7 @@ def prepare_joints(
         dt: Substep [s].
         work: Scratch; ``drive``, ``drive_inertia``, ``stop`` and ``stop_inertia`` are written.
     """
-    d, w = wp.tid()
+    w, d = wp.tid()
     if chain.free == 1 and d < 6:
         return
     i = w * chain.coords + d + chain.coords - chain.dofs
@@ -278,3 +279,26 @@ def prepare_joints(
         stop_inertia += dt * (chain.stop_damping[d] + dt * chain.stop_stiffness[d])
     work.stop[d, w] = stop
     work.stop_inertia[d, w] = stop_inertia
+
+
+@wp.kernel
+def record_loads(
+    loads: LinkLoads,
+    acc_lin: wp.array2d[wp.vec3],
+    acc_ang: wp.array2d[wp.vec3],
+    weight: float,
+    mean_load: wp.array[wp.vec3],
+):
+    """Add up the force of each link's loads at the end of the step. Launch (L, W).
+
+    Args:
+        loads: Loads of the links.
+        acc_lin: Accelerations of the centres of mass [m/s^2], shape (L, W).
+        acc_ang: Angular accelerations [rad/s^2], shape (L, W).
+        weight: Share of the step in the mean.
+        mean_load: Mean force on each link [N], shape (W*L,); added to.
+    """
+    link, w = wp.tid()
+    row = w * loads.wrench.shape[0] + link
+    given = loads.ll[link, w] * acc_lin[link, w] + loads.la[link, w] * acc_ang[link, w]
+    mean_load[row] = mean_load[row] + weight * (wp.spatial_top(loads.wrench[link, w]) - given)

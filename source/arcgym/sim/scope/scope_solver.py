@@ -49,13 +49,26 @@ class SolverArticulatedChain(SolverBase):
         links, dofs, worlds = self.chain.links, self.chain.dofs, self.num_envs
         on_gpu = wp.get_device(model.device).is_cuda and fits(links, dofs)
         self._by_warp = warp_kernel(links, dofs) if on_gpu else None
-        self.work = _scratch(kernels.ChainWork(), links, dofs, worlds, model.device)
-        self.loads = kernels.LinkLoads()
-        self.loads.wrench = wp.zeros((links, worlds), dtype=wp.spatial_vector, device=model.device)
+        self.work, self.loads = kernels.ChainWork(), kernels.LinkLoads()
+        for rows, dtype, names in (
+            (links, wp.mat33, "ll la aa"),
+            (links, wp.vec3, "force torque arm lever drift_lin drift_ang acc_lin acc_ang"),
+            (dofs, wp.vec3, "axis gain_lin gain_ang"),
+            (dofs, float, "drive drive_inertia stop stop_inertia offset drive_force"),
+        ):
+            for name in names.split():
+                setattr(self.work, name, self._rows(rows, dtype))
         for name in ("ll", "la", "aa"):
-            setattr(self.loads, name, wp.zeros((links, worlds), dtype=wp.mat33, device=model.device))
+            setattr(self.loads, name, self._rows(links, wp.mat33))
+        self.loads.wrench = self._rows(links, wp.spatial_vector)
         self.resistance = wp.zeros((links, worlds), dtype=wp.spatial_vector, device=model.device)
         """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W)."""
+
+    def _rows(self, count: int, dtype: type) -> wp.array:
+        """Return zeros of shape (``count``, W); where a warp reads them, those of a world lie side by side."""
+        if self._by_warp is None:
+            return wp.zeros((count, self.num_envs), dtype=dtype, device=self.model.device)
+        return wp.zeros((self.num_envs, count), dtype=dtype, device=self.model.device).transpose()
 
     def _chain(self) -> kernels.Chain:
         model, worlds = self.model, self.num_envs
@@ -120,52 +133,44 @@ class SolverArticulatedChain(SolverBase):
         chain = self.chain
         wp.launch(
             kernels.prepare_joints,
-            (chain.dofs, self.num_envs),
+            (self.num_envs, chain.dofs),
             inputs=[chain, state.joint_q, state.joint_qd, control.joint_target_q, control.joint_f, dt],
             outputs=[self.work],
             device=self.model.device,
         )
 
-    def move(self, state_in: newton.State, state_out: newton.State, dt: float) -> None:
-        """End a step that :meth:`prepare` began; the joints of ``state_out`` begin where those of ``state_in`` do."""
-        chain, work, worlds, device = self.chain, self.work, self.num_envs, self.model.device
-        wp.launch(
-            kernels.prepare_links,
-            (chain.links, worlds),
-            inputs=[
-                chain,
-                state_in.body_q,
-                state_in.body_qd,
-                state_in.body_f,
-                state_in.joint_q,
-                state_in.joint_qd,
-                self.resistance,
-                self.loads,
-            ],
-            outputs=[work],
-            device=device,
-        )
-        by_warp = self._by_warp
-        wp.launch(
-            solve_chain if by_warp is None else by_warp,
-            worlds if by_warp is None else (worlds, THREADS),
-            inputs=[chain, state_in.body_q, state_in.body_qd, dt],
-            outputs=[work, state_out.joint_q, state_out.joint_qd, state_out.body_q, state_out.body_qd],
-            device=device,
-            block_dim=self._block if by_warp is None else THREADS,
-        )
+    def move(
+        self,
+        state_in: newton.State,
+        state_out: newton.State,
+        dt: float,
+        mean_load: wp.array | None = None,
+        weight: float = 0.0,
+    ) -> None:
+        """End a step that :meth:`prepare` began.
 
-
-def _scratch(work: kernels.ChainWork, links: int, dofs: int, worlds: int, device: wp.Device) -> kernels.ChainWork:
-    for rows, dtype, names in (
-        (links, wp.mat33, "ll la aa"),
-        (links, wp.vec3, "force torque arm lever drift_lin drift_ang acc_lin acc_ang"),
-        (dofs, wp.vec3, "axis gain_lin gain_ang"),
-        (dofs, float, "drive drive_inertia stop stop_inertia offset drive_force"),
-    ):
-        for name in names.split():
-            setattr(work, name, wp.zeros((rows, worlds), dtype=dtype, device=device))
-    return work
+        Args:
+            state_in: State at the start of the step.
+            state_out: State at its end; its joints begin where those of ``state_in`` do.
+            dt: Step [s].
+            mean_load: Force of :attr:`loads` on each link [N], shape (W*L,); that at the end of the step is added.
+            weight: Share of the step in ``mean_load``.
+        """
+        chain, work, loads, device = self.chain, self.work, self.loads, self.model.device
+        poses, joints = [state_in.body_q, state_in.body_qd], [state_in.joint_q, state_in.joint_qd]
+        outputs = [work, state_out.joint_q, state_out.joint_qd, state_out.body_q, state_out.body_qd]
+        shape, worlds = (chain.links, self.num_envs), self.num_envs
+        if self._by_warp is not None:
+            inputs = [chain, *poses, state_in.body_f, self.resistance, loads, dt, weight]
+            outputs += [mean_load]
+            wp.launch(self._by_warp, (worlds, THREADS), inputs, outputs, device=device, block_dim=THREADS)
+            return
+        inputs = [chain, *poses, state_in.body_f, *joints, self.resistance, loads]
+        wp.launch(kernels.prepare_links, shape, inputs, [work], device=device)
+        wp.launch(solve_chain, worlds, [chain, *poses, dt], outputs, device=device, block_dim=self._block)
+        if mean_load is not None:
+            inputs = [loads, work.acc_lin, work.acc_ang, weight]
+            wp.launch(kernels.record_loads, shape, inputs, [mean_load], device=device)
 
 
 def _linear(model: newton.Model, links: int, dofs: int) -> np.ndarray:
