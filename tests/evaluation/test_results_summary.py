@@ -250,7 +250,14 @@ def test_each_tenth_trial_is_a_share_and_says_how_many(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("changes", "name"),
-    [({}, "ppo"), (REWARD, "ppo_paper_free"), (VELOCITY, "ppo_velocity"), (REWARD | VELOCITY, "ppo_paper")],
+    [
+        ({}, "ppo"),
+        (REWARD, "ppo_paper_free"),
+        (VELOCITY, "ppo_velocity"),
+        (REWARD | VELOCITY, "ppo_paper"),
+        (REWARD | {"actions.capsule.forward_velocity": [None, 0.04]}, "ppo_paper"),
+        (REWARD | {"actions.base.insertion_velocity": [None, 0.04]}, "ppo_paper"),
+    ],
 )
 def test_a_method_is_named_after_agent_reward_and_velocity(changes: dict[str, Any], name: str) -> None:
     assert method_of({"agent": "checkpoint", "training": [{"agent": PPO}], "changes": {TASK: changes}}, TASK) == name

@@ -64,6 +64,14 @@ def test_the_grid_comes_on_top_of_the_algorithm_and_the_algorithm_on_top_of_the_
     ]
 
 
+def test_an_algorithm_has_settings_of_a_robot_on_top_of_its_own():
+    """A capsule's velocity is 2, as the algorithm has it for capsules; a magnetic scope's is 1, as it has else."""
+    algorithm = {"env": {"velocity": 1}, "num_envs": 4, "robots": {"Capsule": {"env": {"velocity": 2}, "num_envs": 8}}}
+    grid = {"robot": ["Capsule", "Magnetic"]}
+    cells = all_cells(study(task="rectum", algorithms={"ppo": algorithm}, grid=grid), FOLDER)
+    assert [(cell.overrides, cell.num_envs) for cell in cells] == [(("env.velocity=2",), 8), (("env.velocity=1",), 4)]
+
+
 def test_the_command_line_sweeps_too():
     cells = all_cells(study(grid={"seed": [1, 2]}), FOLDER, ["seed=5,6,7", "++agent.algorithm.gamma=0.9,0.99"])
     assert [(cell.seed, cell.axes["agent.algorithm.gamma"]) for cell in cells] == [
@@ -184,6 +192,8 @@ def test_values_are_written_in_the_grammar_of_hydra(value, text):
         ("nme: x", "has the field 'nme'. Did you mean 'name'"),
         ("minutes: 0", "minutes is 0"),
         ("grid: {sed: [1]}", "varies 'sed'"),
+        ("algorithms: {ppo: {robot: {}}}", "gives 'ppo' 'robot'. Did you mean 'robots'"),
+        ("algorithms: {ppo: {robots: {Capsule: {evn: {}}}}}", "gives 'Capsule' 'evn'. Did you mean 'env'"),
         ("grid: {seed: []}", "gives 'seed' no values"),
         ("{grid: {seed: [1]}, skip: [{gamma: 1}]}", "names 'gamma', expected names of the grid"),
         ("algorithms: {sac: {worlds: 4}}", "gives 'sac' 'worlds'"),
@@ -202,6 +212,16 @@ def test_shipped_studies_are_whole(path):
     cells = all_cells(read_study(find_study(path.stem, SHIPPED)), FOLDER)
     check_cells(cells)
     assert len(cells) > 1
+
+
+@pytest.mark.parametrize("path", sorted(SHIPPED.glob("*.yaml")), ids=lambda path: path.stem)
+def test_settings_of_shipped_studies_fit_their_tasks(path):
+    """Of the first seed: each override names a field of the cell's task or agent."""
+    cells = all_cells(read_study(find_study(path.stem, SHIPPED)), FOLDER)
+    for cell in (cell for cell in cells if cell.seed == cells[0].seed):
+        env_cfg = load_cfg_from_registry(cell.task, "env_cfg_entry_point")
+        agent_cfg = load_cfg_from_registry(cell.task, agent_key(cell.like or cell.algorithm))
+        apply_overrides({"env": env_cfg, "agent": agent_cfg}, cell.overrides)
 
 
 def test_cells_that_are_skipped_are_not_there():

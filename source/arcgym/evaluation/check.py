@@ -38,16 +38,21 @@ ROOM = ("sim.contact.capacity", "sim.contact.patch_capacity")
 
 OWN_UP_TO = {
     "actions.tip.forward_velocity": 0.045,
+    "actions.capsule.forward_velocity": 0.05,
+    "actions.base.insertion_velocity": 0.05,
     "actions.tip.roll_amplitude": 18.0,
     "actions.base.roll_amplitude": 9.0,
     "actions.tip.linear_scale": 0.045,
     "actions.capsule.linear_scale": 0.05,
     "actions.base.insertion_scale": 0.05,
 }
-"""Fields that are the agent's up to a value. A constant velocity of the tip: the largest that actions command [m/s]. A
-smaller scale of velocities than the task's: a policy that is slow might have been so by smaller actions [m/s]. A
-roll to and fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
+"""Fields that are the agent's up to a value. A constant velocity: the largest that actions command [m/s]. A smaller
+scale of velocities than the task's: a policy that is slow might have been so by smaller actions [m/s]. A roll to and
+fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
 :class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]."""
+
+VELOCITIES = tuple(path for path in OWN_UP_TO if path.endswith("_velocity"))
+"""Those of a constant velocity, which tables name."""
 
 ROLLS = tuple(path for path in OWN_UP_TO if path.endswith(".roll_amplitude"))
 """Those of a roll to and fro, which tables name."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.check import ROLLS, SCALES, problems
+from arcgym.evaluation.check import ROLLS, SCALES, VELOCITIES, problems
 from arcgym.evaluation.patience import patience_in, patience_registered
 from arcgym.evaluation.physics_steps import steps_in, steps_registered
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
@@ -123,7 +123,7 @@ def method_of(run: dict[str, Any], task: str) -> str:
     ``_roll8_2s`` one in another period than the task's. Agents without training have their own name.
     """
     changes = run.get("changes", {}).get(task, {})
-    constant = changes.get("actions.tip.forward_velocity", [None, None])[1] is not None
+    constant = any(changes.get(path, [None, None])[1] is not None for path in VELOCITIES)
     if run["agent"] != "checkpoint":
         return str(run["agent"]) + "_velocity" * constant + roll_mark(run, task)
     training = (run.get("training") or [{}])[0]

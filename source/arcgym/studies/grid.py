@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from arcgym.studies.cell import Cell
-from arcgym.studies.study_cfg import AXES, StudyCfg
+from arcgym.studies.study_cfg import AXES, ROBOTS, StudyCfg
 
 NAMED = ("algorithm", "task", "robot", "seed")
 """Axes that every cell's name has; others are appended."""
@@ -49,7 +49,8 @@ def is_left_out(values: Mapping[str, Any]) -> bool:
 def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
     """Return a cell from a study's configuration in which each name of the grid has one value.
 
-    Settings of the task come on top of the study's, those of the algorithm on top of both, and the grid's last.
+    Settings of the task come on top of the study's, those of the algorithm on top of both, then those that the
+    algorithm has for the robot, and the grid's last.
 
     Args:
         values: Fields of :class:`StudyCfg` as plain values, ``axes``, the names that the grid varies, and
@@ -57,12 +58,13 @@ def make_cell(values: Mapping[str, Any], study: Path) -> Cell:
         study: Folder of the study.
     """
     task = _full_name(str(values["task"]), values["robot"]) if values.get("robot") else values["task"]
-    groups = [values["tasks"].get(task, {}), values["algorithms"].get(values["algorithm"], {})]
+    own = values["algorithms"].get(values["algorithm"], {})
+    groups = [values["tasks"].get(task, {}), own, own.get(ROBOTS, {}).get(task.rpartition("-")[2], {})]
     merged = {name: values[name] for name in ("num_envs", "minutes", "max_iterations", "suites")}
     overrides: dict[str, Any] = {}
     whole: list[str] = []
     for group in ({"env": values["env"], "agent": values["agent"]}, *groups):
-        merged |= {name: value for name, value in group.items() if name not in ("env", "agent", "overrides")}
+        merged |= {name: value for name, value in group.items() if name not in ("env", "agent", "overrides", ROBOTS)}
         whole += group.get("overrides", ())
         for kind in ("env", "agent"):
             overrides |= dict(_leaves(group.get(kind, {}), kind))

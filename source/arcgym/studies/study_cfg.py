@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,9 @@ AXES = ("algorithm", "task", "robot", "seed", "num_envs", "minutes", "max_iterat
 
 GROUP_FIELDS = ("num_envs", "minutes", "max_iterations", "env", "agent", "after", "like", "overrides", "suites")
 """Names that the settings of one algorithm or one task may have."""
+
+ROBOTS = "robots"
+"""Name, in the settings of an algorithm, of further ones by robot."""
 
 
 @configclass
@@ -74,7 +78,8 @@ class StudyCfg:
     """Settings of single algorithms, on top of those. ``after`` names an algorithm of the grid that must be finished
     first; the text ``{checkpoint}`` in a value stands for its last checkpoint with the same task and seed. ``like``
     names the agent of an algorithm that is another one with other settings. ``overrides`` is a list of texts as on the
-    command line, for values that are given whole: ``["agent.algorithm.limits={tip_force: 0.2}"]``."""
+    command line, for values that are given whole: ``["agent.algorithm.limits={tip_force: 0.2}"]``. ``robots`` has
+    settings that are of one robot's tasks alone: ``{"Capsule": {"env": {"actions": {"capsule": …}}}}``."""
 
     grid: dict[str, list[Any]] = {}
     """Values by name: ``algorithm``, ``task``, ``robot``, ``seed``, ``num_envs``, ``minutes``, ``max_iterations``, or a
@@ -101,7 +106,9 @@ class StudyCfg:
                 raise FieldError(self, "grid", f"varies '{name}', expected {paths} or one of: {', '.join(AXES)}.")
             if not values:
                 raise FieldError(self, "grid", f"gives '{name}' no values, expected one or more.")
-        own = [one.get("suites", ()) for one in (*self.tasks.values(), *self.algorithms.values())]
+        of_robots = [one for settings in self.algorithms.values() for one in settings.get(ROBOTS, {}).values()]
+        groups = [*self.tasks.values(), *self.algorithms.values(), *of_robots]
+        own = [one.get("suites", ()) for one in groups]
         known = read_suites()
         for name in [*self.suites, *(name for names in own for name in names)]:
             if name not in known:
@@ -109,11 +116,17 @@ class StudyCfg:
         for name in (name for names in self.skip for name in names):
             if name not in ("algorithm", "task", "robot", "seed") and name not in self.grid:
                 raise FieldError(self, "skip", f"names '{name}', expected names of the grid: {', '.join(self.grid)}.")
-        for kind in ("tasks", "algorithms"):
-            for owner, settings in getattr(self, kind).items():
-                for name in settings:
-                    if name not in GROUP_FIELDS:
-                        raise FieldError(self, kind, f"gives '{owner}' '{name}'. {did_you_mean(name, GROUP_FIELDS)}")
+        self._check_groups("tasks", self.tasks, GROUP_FIELDS)
+        self._check_groups("algorithms", self.algorithms, (*GROUP_FIELDS, ROBOTS))
+        for settings in self.algorithms.values():
+            self._check_groups("algorithms", settings.get(ROBOTS, {}), GROUP_FIELDS)
+
+    def _check_groups(self, field: str, groups: dict[str, dict[str, Any]], known: Sequence[str]) -> None:
+        """Raise if settings of ``field`` have a name that is not known."""
+        for owner, settings in groups.items():
+            for name in settings:
+                if name not in known:
+                    raise FieldError(self, field, f"gives '{owner}' '{name}'. {did_you_mean(name, known)}")
 
 
 def find_study(name: str, folder: Path) -> Path:

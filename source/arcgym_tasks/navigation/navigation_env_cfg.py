@@ -224,7 +224,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     reward: Literal["shaped", "paper", "s_c", "s_1", "s_2", "s_o"] = "shaped"
     """``shaped``: all terms of ``rewards``. ``paper``: the paper's lumen reward alone, whatever ``rewards`` has;
     ``s_c``, ``s_1``, ``s_2`` and ``s_o``: that part of it alone, as in the paper's ablation. Its
-    magnetic and capsule tasks move forward at a constant speed, ``env.actions.tip.forward_velocity`` [m/s]."""
+    tasks move forward at a constant speed [m/s]: ``env.actions.tip.forward_velocity``, of a capsule
+    ``env.actions.capsule.forward_velocity``, of a pushed scope ``env.actions.base.insertion_velocity``."""
 
     robustness: str = NONE
     """Variant that the task is made harder by, such as ``blur_2``, a kind and one of three strengths; see
