@@ -68,7 +68,8 @@ def film(scene: Scene, device: str) -> str | None:
         if "way" in scene:  # made small by its tool
             video_of(scene).write_bytes(videos[0].read_bytes())
         else:
-            shrink(videos[0], video_of(scene), 1 if "recording" in scene else scene.get("every", 1))
+            every = 1 if "recording" in scene else scene.get("every", 1)
+            shrink(videos[0], video_of(scene), every, quality=scene.get("quality", QUALITY))
         video_of(scene).with_suffix(".json").write_text(json.dumps(record(result.stdout, device), indent=1) + "\n")
     print(f"{scene['name']}: {video_of(scene).stat().st_size / 1e6:.1f} MB", flush=True)
     return None
