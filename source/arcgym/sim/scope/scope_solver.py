@@ -163,14 +163,16 @@ class SolverArticulatedChain(SolverBase):
         if self._by_warp is not None:
             inputs = [chain, *poses, state_in.body_f, self.resistance, loads, dt, weight]
             outputs += [mean_load]
-            wp.launch(self._by_warp, (worlds, THREADS), inputs, outputs, device=device, block_dim=THREADS)
+            shape = (worlds, THREADS)
+            wp.launch(self._by_warp, shape, inputs=inputs, outputs=outputs, device=device, block_dim=THREADS)
             return
         inputs = [chain, *poses, state_in.body_f, *joints, self.resistance, loads]
-        wp.launch(kernels.prepare_links, shape, inputs, [work], device=device)
-        wp.launch(solve_chain, worlds, [chain, *poses, dt], outputs, device=device, block_dim=self._block)
+        wp.launch(kernels.prepare_links, shape, inputs=inputs, outputs=[work], device=device)
+        inputs = [chain, *poses, dt]
+        wp.launch(solve_chain, worlds, inputs=inputs, outputs=outputs, device=device, block_dim=self._block)
         if mean_load is not None:
             inputs = [loads, work.acc_lin, work.acc_ang, weight]
-            wp.launch(kernels.record_loads, shape, inputs, [mean_load], device=device)
+            wp.launch(kernels.record_loads, shape, inputs=inputs, outputs=[mean_load], device=device)
 
 
 def _linear(model: newton.Model, links: int, dofs: int) -> np.ndarray:
