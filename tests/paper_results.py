@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from arcgym.evaluation.physics_steps import steps_registered
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.task_settings import PHYSICS_STEP
 from arcgym.evaluation.trials import read_conditions
 
 CONDITIONS = read_conditions(read_suites()["paper"].conditions_path)
@@ -22,7 +22,7 @@ RUN = {
 TASKS = read_suites()["paper"].tasks("Magnetic")
 RUN |= {"changes": {task: {} for task in TASKS}}
 RUN |= {"inputs": {task: {"sees": ["policy"], "simulator_depth": False} for task in TASKS}}
-RUN |= {"physics_hz": {task: steps_registered(task) for task in TASKS}}
+RUN |= {"physics_hz": {task: PHYSICS_STEP.registered(task) for task in TASKS}}
 
 
 def changed(task: str, **fields) -> dict:

@@ -7,10 +7,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.patience import patience_registered
-from arcgym.evaluation.physics_steps import steps_registered
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 from arcgym.evaluation.trials import read_conditions
 
 TASK = "ARC-Rectum-Magnetic"
@@ -41,8 +40,8 @@ def write_result_folder(
         "overrides": [],
         "versions": {"arcgym commit": "abc1234"},
         "machine": "a machine",
-        "physics_hz": {task: steps_registered(task)},
-        "stuck_after_s": {} if (patience := patience_registered(task)) is None else {task: patience},
+        "physics_hz": {task: PHYSICS_STEP.registered(task)},
+        "stuck_after_s": {} if (patience := PATIENCE.registered(task)) is None else {task: patience},
     }
     out = ResultFolder(path, about | run)
     for trial in conditions.trials[::every]:

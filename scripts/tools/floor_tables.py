@@ -18,12 +18,11 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from arcgym.evaluation import patience
 from arcgym.evaluation.floors import FIGURES, Floor, floors_of, read_floors, updated, write_floors
-from arcgym.evaluation.physics_steps import as_text
 from arcgym.evaluation.results import find_results
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE, FLOORS = DOCS / "evaluation.md", DOCS / "data" / "floors.csv"
@@ -88,9 +87,9 @@ def _origin(floors: Sequence[Floor]) -> str:
         if one.conditions != suites[one.suite].conditions:
             about += f"; trials of {one.conditions}, an earlier version"
         if not one.is_of_present_steps:
-            about += f"; physics steps of {as_text(one.physics_hz)}, an earlier default"
+            about += f"; physics steps of {PHYSICS_STEP.as_text(one.physics_hz)}, an earlier default"
         if not one.is_of_present_patience:
-            about += f"; stuck after {patience.as_text(one.stuck_after_s)}, an earlier default"
+            about += f"; stuck after {PATIENCE.as_text(one.stuck_after_s)}, an earlier default"
         groups.setdefault((one.commit, about), []).append(one)
     if len(groups) == 1:
         return "Commit {}; {}.\n".format(*next(iter(groups)))

@@ -12,10 +12,9 @@ from result_folders import write_result_folder
 
 from arcgym.evaluation.compare import notes
 from arcgym.evaluation.floors import floors_of, read_floors, updated, write_floors
-from arcgym.evaluation.patience import patience_in, patience_registered
-from arcgym.evaluation.physics_steps import steps_registered
 from arcgym.evaluation.results import Result, find_results
 from arcgym.evaluation.results_page import _earlier, _newest
+from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 
 TASK = "ARC-LeftColon-Magnetic"
 
@@ -24,7 +23,7 @@ TASK = "ARC-LeftColon-Magnetic"
 def results(tmp_path: Path) -> dict[str, Result]:
     """The expert's trials of before, which do not say, and of now."""
     of: dict[str, Any] = {"suite": "left_colon", "agent": "expert", "checkpoint": [], "checkpoint_sha256": []}
-    of |= {"training": [], "changes": {TASK: {}}, "physics_hz": {TASK: steps_registered(TASK)}}
+    of |= {"training": [], "changes": {TASK: {}}, "physics_hz": {TASK: PHYSICS_STEP.registered(TASK)}}
     for name, said in (("old", {"stuck_after_s": {}}), ("new", {"stuck_after_s": {TASK: 20.0}})):
         write_result_folder(tmp_path / name, 0, TASK, **of | said)
     found, left_out = find_results([tmp_path])
@@ -33,9 +32,9 @@ def results(tmp_path: Path) -> dict[str, Result]:
 
 
 def test_the_time_of_a_run() -> None:
-    assert patience_registered("ARC-Sigmoid-Magnetic") == 6.0
-    assert patience_in({}, TASK) == 6.0 and patience_in({"stuck_after_s": {TASK: 20.0}}, TASK) == 20.0
-    assert patience_in({}, "ARC-Withdrawal-Capsule") is None
+    assert PATIENCE.registered("ARC-Sigmoid-Magnetic") == 6.0
+    assert PATIENCE.in_run({}, TASK) == 6.0 and PATIENCE.in_run({"stuck_after_s": {TASK: 20.0}}, TASK) == 20.0
+    assert PATIENCE.in_run({}, "ARC-Withdrawal-Capsule") is None
 
 
 def test_what_had_less_is_shown_and_marked_until_there_is_what_has_not(results: dict[str, Result]) -> None:

@@ -11,10 +11,10 @@ from result_folders import write_result_folder
 
 from arcgym.evaluation.check import problems
 from arcgym.evaluation.compare import notes
-from arcgym.evaluation.physics_steps import steps_registered
 from arcgym.evaluation.result_folder import ResultFolder, read_run
 from arcgym.evaluation.results import find_results
 from arcgym.evaluation.suites import read_suites
+from arcgym.evaluation.task_settings import PHYSICS_STEP
 from arcgym.evaluation.trials import read_conditions
 
 
@@ -24,7 +24,7 @@ def test_results_of_a_shorter_scope_are_no_results_of_the_task(tmp_path: Path) -
     task, other = "ARC-Cecum-Magnetic", "ARC-LeftColon-Magnetic"
     of |= {
         "changes": {task: {}, other: {}},
-        "physics_hz": {task: steps_registered(task), other: steps_registered(other)},
+        "physics_hz": {task: PHYSICS_STEP.registered(task), other: PHYSICS_STEP.registered(other)},
     }
     conditions = read_conditions(read_suites()["ct"].conditions_path)
     for name, lengths in (("old", {}), ("new", {"scope_length": {task: 2.2}})):

@@ -110,32 +110,27 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
     for path, (old, new) in differences(before, after).items():
         if path not in passing:
             print(f"changed: {path}: {old} -> {new}")
-    _tell_length(args, env_cfg)
-    _tell_patience(args, env_cfg)
+    _tell_settings(args, env_cfg)
     return env_cfg, agent_cfg, checkpoint
 
 
-def _tell_length(args: RunArguments, env_cfg: Any) -> None:
-    """Print that a run's scope is not as long as the task's, unless an override says how long it is."""
-    from arcgym.evaluation.scope_lengths import FIELD, as_text, length_of, length_registered
+def _tell_settings(args: RunArguments, env_cfg: Any) -> None:
+    """Print where scope or patience of a run are not those of the task now, unless an override gives them."""
+    from arcgym.evaluation.task_settings import PATIENCE, SCOPE_LENGTH
 
-    used, own = length_of(env_cfg), length_registered(args.task)
-    if used == own or any(text.startswith(f"env.{FIELD}=") for text in args.overrides):
-        return
-    value = "null" if own is None else f"{own:g}"
-    told = f"a scope of {as_text(used)}, as the run had; {args.task} has one of {as_text(own)} now"
-    print(f"note: {told}, which env.{FIELD}={value} gives it")
-
-
-def _tell_patience(args: RunArguments, env_cfg: Any) -> None:
-    """Print that a run's episodes count as stuck sooner or later than the task's, unless an override says when."""
-    from arcgym.evaluation.patience import FIELD, as_text, patience_of, patience_registered
-
-    used, own = patience_of(env_cfg), patience_registered(args.task)
-    if None in (used, own) or used == own or any(text.startswith(f"env.{FIELD}=") for text in args.overrides):
-        return
-    told = f"an episode is stuck after {as_text(used)}, as in the run; in {args.task} it is after {as_text(own)} now"
-    print(f"note: {told}, which env.{FIELD}={own:g} gives it")
+    sentences = {
+        SCOPE_LENGTH: "a scope of {used}, as the run had; {task} has one of {own} now",
+        PATIENCE: "an episode is stuck after {used}, as in the run; in {task} it is after {own} now",
+    }
+    for setting, sentence in sentences.items():
+        used, own = setting.of(env_cfg), setting.registered(args.task)
+        if used == own or any(text.startswith(f"env.{setting.field}=") for text in args.overrides):
+            continue
+        if setting is PATIENCE and None in (used, own):  # one of them never ends an episode as stuck
+            continue
+        told = sentence.format(used=setting.as_text(used), task=args.task, own=setting.as_text(own))
+        value = "null" if own is None else f"{own:g}"
+        print(f"note: {told}, which env.{setting.field}={value} gives it")
 
 
 def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:

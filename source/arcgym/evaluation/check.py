@@ -22,8 +22,8 @@ from arcgym.evaluation.result_folder import (
     read_run,
     read_trial_rows,
 )
-from arcgym.evaluation.scope_lengths import other_length
 from arcgym.evaluation.suites import Suite, read_suites, split_task
+from arcgym.evaluation.task_settings import SCOPE_LENGTH
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
 
 AGENTS_OWN = (
@@ -153,6 +153,15 @@ def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
     if conditions.name == suite.conditions:
         return []
     return [f"trials are of {conditions.name}, an earlier version of {suite.conditions}: evaluate again"]
+
+
+def other_length(run: dict[str, Any], task: str) -> list[str]:
+    """Return a problem if the scope of a task has another length now; none where ``changes`` of the run say so."""
+    if SCOPE_LENGTH.is_present(run, task) or SCOPE_LENGTH.field in run.get("changes", {}).get(task, {}):
+        return []
+    length = SCOPE_LENGTH.as_text(SCOPE_LENGTH.in_run(run, task))
+    now = SCOPE_LENGTH.as_text(SCOPE_LENGTH.registered(task))
+    return [f"{task} was run with a scope of {length}, and has a scope of {now} now: evaluate again"]
 
 
 def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool:

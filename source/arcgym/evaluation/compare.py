@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.evaluation import patience, physics_steps, scope_lengths
 from arcgym.evaluation.check import is_agents
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
 from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS
+from arcgym.evaluation.task_settings import SETTINGS
 from arcgym.utils.errors import UsageError
 
 SAME = ("suite", "conditions_sha256")
@@ -67,16 +67,16 @@ def notes(first: Path, second: Path) -> list[str]:
 def _settings(run: dict[str, Any]) -> dict[str, Any]:
     """Return physics step, scope and patience, and all settings that are not as registered and not the agent's."""
     tasks = run.get("changes", {})
-    steps = {f"{task} physics step": physics_steps.as_text(physics_steps.steps_in(run, task)) for task in tasks}
-    lengths = {f"{task} scope": scope_lengths.as_text(scope_lengths.length_in(run, task)) for task in tasks}
-    stuck = {f"{task} stuck after": patience.as_text(patience.patience_in(run, task)) for task in tasks}
+    recorded = {
+        f"{task} {setting.name}": setting.as_text(setting.in_run(run, task)) for setting in SETTINGS for task in tasks
+    }
     others = {
         f"{task} {path}": used
         for task, changes in tasks.items()
         for path, (_, used) in changes.items()
         if not is_agents(path, used)
     }
-    return steps | lengths | stuck | others
+    return recorded | others
 
 
 def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:

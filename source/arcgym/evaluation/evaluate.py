@@ -13,13 +13,11 @@ from typing import Any
 from arcgym.evaluation.agents import inputs_of, trained_agent
 from arcgym.evaluation.identity import changes_of, run_record
 from arcgym.evaluation.options import PATIENTS, WORLDS, EvaluationOptions, LoadCfgs
-from arcgym.evaluation.patience import patience_of
-from arcgym.evaluation.physics_steps import steps_of
 from arcgym.evaluation.result_folder import ResultFolder, alone_in
 from arcgym.evaluation.run_trials import run_trials
-from arcgym.evaluation.scope_lengths import length_of
 from arcgym.evaluation.sharing import gather
 from arcgym.evaluation.suites import split_task
+from arcgym.evaluation.task_settings import SETTINGS
 from arcgym.evaluation.trial_queue import give_patient_of_trial
 from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.managers import EventTermCfg
@@ -97,9 +95,8 @@ def _run_batch(
     patients = patients_of(trials)
     cfgs = load_cfgs(task, checkpoint_of(agent))
     folder.note_changes(task, changes_of(task, cfgs[0]))
-    folder.note_steps(task, steps_of(cfgs[0]))
-    folder.note_length(task, length_of(cfgs[0]))
-    folder.note_patience(task, patience_of(cfgs[0]))
+    for setting in SETTINGS:
+        folder.note_setting(setting, task, setting.of(cfgs[0]))
     if agent not in UNTRAINED:
         folder.note_inputs(task, inputs_of(*cfgs))
     with opened(task, agent, trials, cfgs, options) as (env, make_policy):

@@ -14,15 +14,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.patience import ENTRY as PATIENCE
-from arcgym.evaluation.patience import patience_in, patience_registered
-from arcgym.evaluation.physics_steps import ENTRY as STEPS
-from arcgym.evaluation.physics_steps import UNSAID, steps_registered
 from arcgym.evaluation.result_folder import UNTRAINED
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
+from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 from arcgym.utils.errors import UsageError
 
 AGENTS = UNTRAINED
@@ -89,12 +86,12 @@ class Floor:
     @property
     def is_of_present_steps(self) -> bool:
         """Whether the task has as many physics steps a second now."""
-        return self.physics_hz == steps_registered(self.task)
+        return self.physics_hz == PHYSICS_STEP.registered(self.task)
 
     @property
     def is_of_present_patience(self) -> bool:
         """Whether an episode of the task is stuck after that time now."""
-        return self.stuck_after_s == patience_registered(self.task)
+        return self.stuck_after_s == PATIENCE.registered(self.task)
 
 
 def floors_of(results: Iterable[Result]) -> list[Floor]:
@@ -172,8 +169,9 @@ def _floor(result: Result) -> Floor:
 
 
 def _cells(one: Floor) -> dict[str, Any]:
-    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT} | {STEPS: f"{one.physics_hz:g}"}
-    cells[PATIENCE] = "" if one.stuck_after_s is None else f"{one.stuck_after_s:g}"
+    cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT}
+    for entry in (PHYSICS_STEP.entry, PATIENCE.entry):
+        cells[entry] = "" if cells[entry] is None else f"{cells[entry]:g}"
     for name, of in one.figures.items():
         values = zip(BOUNDS, (of.value, of.low, of.high), strict=True)
         cells |= {name + bound: f"{value:.{DIGITS}g}" for bound, value in values}
@@ -185,7 +183,8 @@ def _read(row: dict[str, str]) -> Floor:
         name: Interval(*(float(row[name + bound]) for bound in BOUNDS)) for name in FIGURES if row.get(name, "") != ""
     }
     about: dict[str, Any] = {name: row.get(name) for name in ABOUT}
-    about |= {"trials": int(row["trials"]), STEPS: float(row.get(STEPS) or UNSAID)}
-    said = {row["task"]: float(row[PATIENCE])} if row.get(PATIENCE) else {}
-    about[PATIENCE] = patience_in({PATIENCE: said}, row["task"])
+    about["trials"] = int(row["trials"])
+    for setting in (PHYSICS_STEP, PATIENCE):
+        said = {row["task"]: float(row[setting.entry])} if row.get(setting.entry) else {}
+        about[setting.entry] = setting.in_run({setting.entry: said}, row["task"])
     return Floor(**about, figures=figures)

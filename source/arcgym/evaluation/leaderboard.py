@@ -13,13 +13,12 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.check import problems
-from arcgym.evaluation.patience import PATIENCE_MARK, patience_in, patience_registered
-from arcgym.evaluation.physics_steps import STEP_MARK, as_text, steps_in, steps_registered
 from arcgym.evaluation.result_folder import COMMIT, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.results import roll_of
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
+from arcgym.evaluation.task_settings import PHYSICS_STEP, marks
 from arcgym.utils.errors import UsageError
 
 ENTRY_FILE = "entry.yaml"
@@ -179,13 +178,11 @@ def _lines(folder: Path) -> list[tuple[str, bool, float, str]]:
     lines = []
     for task, of in summarize(read_trial_rows(folder)).items():
         figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
-        steps = steps_in(run, task)
-        marks = STEP_MARK * (steps != steps_registered(task))
-        marks += PATIENCE_MARK * (patience_in(run, task) != patience_registered(task))
+        earlier = marks(run, task)
         rolls = f", with a roll to and fro of {amplitude:g} rad/s" if (amplitude := roll_of(run, task)) else ""
         cells = [f"`{task}`", name + rolls, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
-        cells += [as_text(steps) + marks, marked]
-        lines.append((task, bool(marks), -of["success"].value, f"| {' | '.join(cells)} |"))
+        cells += [PHYSICS_STEP.as_text(PHYSICS_STEP.in_run(run, task)) + earlier, marked]
+        lines.append((task, bool(earlier), -of["success"].value, f"| {' | '.join(cells)} |"))
     return lines
 
 

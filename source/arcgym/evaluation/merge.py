@@ -6,13 +6,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.patience import ENTRY as PATIENCE
-from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.result_folder import DROPPED, ResultFolder, read_run, read_trial_rows
-from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
+from arcgym.evaluation.task_settings import SETTINGS
 from arcgym.utils.errors import UsageError
 
 
@@ -50,12 +49,8 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
 
 
 def _merge_settings(folder: ResultFolder, part: Path, run: dict[str, Any]) -> None:
-    notes: dict[str, Callable[[str, Any], None]] = {
-        "changes": folder.note_changes,
-        STEPS: folder.note_steps,
-        LENGTH: folder.note_length,
-        PATIENCE: folder.note_patience,
-    }
+    notes: dict[str, Callable[[str, Any], None]] = {"changes": folder.note_changes}
+    notes |= {setting.entry: partial(folder.note_setting, setting) for setting in SETTINGS}
     for entry, note in notes.items():
         before = read_run(folder.path).get(entry, {})
         for task, of in run.get(entry, {}).items():

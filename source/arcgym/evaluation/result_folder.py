@@ -21,10 +21,8 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-from arcgym.evaluation.patience import ENTRY as PATIENCE
-from arcgym.evaluation.physics_steps import ENTRY as STEPS
 from arcgym.evaluation.run_shape import fault
-from arcgym.evaluation.scope_lengths import ENTRY as LENGTH
+from arcgym.evaluation.task_settings import TaskSetting
 from arcgym.utils.errors import UsageError
 
 TRIALS_FILE = "trials.csv"
@@ -101,24 +99,11 @@ class ResultFolder:
         run.setdefault("changes", {})[task] = changes
         _write_run(self.path / RUN_FILE, run)
 
-    def note_steps(self, task: str, steps: float) -> None:
-        """Write down how many physics steps a second a task was run with."""
+    def note_setting(self, setting: TaskSetting, task: str, value: float | None) -> None:
+        """Write down the value that a setting of a task had; None is not written."""
         run = read_run(self.path)
-        run.setdefault(STEPS, {})[task] = steps
-        _write_run(self.path / RUN_FILE, run)
-
-    def note_length(self, task: str, length: float | None) -> None:
-        """Write down the length of a task's scope [m]; None, that of its stage, is not written."""
-        run = read_run(self.path)
-        if length is not None:
-            run.setdefault(LENGTH, {})[task] = length
-            _write_run(self.path / RUN_FILE, run)
-
-    def note_patience(self, task: str, seconds: float | None) -> None:
-        """Write down after how long without progress a task's episode is stuck [s]; None, never, is not written."""
-        run = read_run(self.path)
-        if seconds is not None:
-            run.setdefault(PATIENCE, {})[task] = seconds
+        if value is not None:
+            run.setdefault(setting.entry, {})[task] = value
             _write_run(self.path / RUN_FILE, run)
 
     def note_dropped(self, task: str, contacts: int) -> None:

@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.check import ROLLS, SCALES, VELOCITIES, problems
-from arcgym.evaluation.patience import patience_in, patience_registered
-from arcgym.evaluation.physics_steps import steps_in, steps_registered
+from arcgym.evaluation.check import ROLLS, SCALES, VELOCITIES, other_length, problems
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
-from arcgym.evaluation.scope_lengths import other_length
 from arcgym.evaluation.suites import read_suites, split_task
+from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP, marks
 
 LARGEST_SHARE = 10
 """Shares of a suite's trials that are shown: all of them to each tenth one."""
@@ -75,28 +73,24 @@ class Result:
     @property
     def is_current(self) -> bool:
         """Whether trials, steps and patience are those that suite and task have now, not earlier ones."""
-        of_now = self.is_of_present_steps and self.is_of_present_patience
-        return self.conditions == read_suites()[self.suite].conditions and of_now
+        return self.conditions == read_suites()[self.suite].conditions and not self.marks
+
+    @property
+    def marks(self) -> str:
+        """Marks of physics step and patience, each where the task has another now."""
+        return marks(self.run, self.task)
 
     @property
     def steps(self) -> float:
         """Physics steps a second."""
-        return steps_in(self.run, self.task)
-
-    @property
-    def is_of_present_steps(self) -> bool:
-        """Whether the task has as many physics steps a second now."""
-        return self.steps == steps_registered(self.task)
+        steps = PHYSICS_STEP.in_run(self.run, self.task)
+        assert steps is not None  # every task has them
+        return steps
 
     @property
     def patience(self) -> float | None:
         """Time without progress after which an episode was stuck [s]."""
-        return patience_in(self.run, self.task)
-
-    @property
-    def is_of_present_patience(self) -> bool:
-        """Whether the task has that time now."""
-        return self.patience == patience_registered(self.task)
+        return PATIENCE.in_run(self.run, self.task)
 
     @property
     def checkpoints(self) -> list[str]:

@@ -14,16 +14,14 @@ from typing import Any
 
 import yaml
 
-from arcgym.evaluation import patience
 from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
-from arcgym.evaluation.patience import PATIENCE_MARK
-from arcgym.evaluation.physics_steps import STEP_MARK, as_text
 from arcgym.evaluation.result_folder import Row
 from arcgym.evaluation.results import Result, best, roll_mark
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.strengths import strengths_tables
 from arcgym.evaluation.suites import FOLDER, read_suites
 from arcgym.evaluation.summary import summarize
+from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 
 SECTIONS_FILE = FOLDER / "results.yaml"
 """Sections of the page."""
@@ -60,13 +58,13 @@ EARLIER = (
 """Stands above tables in which some trials are no longer the suite's."""
 
 EARLIER_STEP = (
-    "‡{names} ran with physics steps of {length}, an earlier default: not to be compared with what has none"
+    "‡{names} ran with physics steps of {value}, an earlier default: not to be compared with what has none"
     " ([why](physics.md#a-step-twice-as-long))."
 )
 """Stands above tables in which some trials had another physics step than the task has now."""
 
 EARLIER_PATIENCE = (
-    "§{names} counted as stuck after {seconds} without progress, an earlier default: not to be compared with what has"
+    "§{names} counted as stuck after {value} without progress, an earlier default: not to be compared with what has"
     " none ([why](evaluation.md#stuck))."
 )
 """Stands above tables in which some episodes ended as stuck sooner than they do now."""
@@ -124,16 +122,12 @@ def _earlier(results: Sequence[Result], named: bool) -> list[str]:
     suites = read_suites()
     names = sorted({one.conditions for one in results if one.conditions != suites[one.suite].conditions})
     found = [EARLIER.format(names=", ".join(f"`{name}`" for name in names))] if names else []
-    old = [one for one in results if not one.is_of_present_steps]
-    for steps in sorted({one.steps for one in old}):
-        agents = dict.fromkeys(_agent(one) for one in old if one.steps == steps)
-        which = f" {', '.join(agents)}" if named else ""
-        found.append(EARLIER_STEP.format(names=which, length=as_text(steps)))
-    hasty = [one for one in results if not one.is_of_present_patience]
-    for seconds in sorted({one.patience or 0.0 for one in hasty}):
-        agents = dict.fromkeys(_agent(one) for one in hasty if one.patience == seconds)
-        which = f" {', '.join(agents)}" if named else ""
-        found.append(EARLIER_PATIENCE.format(names=which, seconds=patience.as_text(seconds)))
+    for setting, sentence in ((PHYSICS_STEP, EARLIER_STEP), (PATIENCE, EARLIER_PATIENCE)):
+        old = [(one, setting.in_run(one.run, one.task)) for one in results if not setting.is_present(one.run, one.task)]
+        for value in sorted({had for _, had in old if had is not None}):
+            agents = dict.fromkeys(_agent(one) for one, had in old if had == value)
+            which = f" {', '.join(agents)}" if named else ""
+            found.append(sentence.format(names=which, value=setting.as_text(value)))
     return found
 
 
@@ -228,13 +222,8 @@ def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
     figures = [_interval(of[name], METRICS[name][1]) if name in of else _mean(result.rows, name) for name in metrics]
     name += f", limit {result.limits}" if result.limits else ""
     name += "" if result.conditions == read_suites()[result.suite].conditions else f", {result.conditions}"
-    name += _marks(result)
+    name += result.marks
     return [f"`{result.task}`", name, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
-
-
-def _marks(result: Result) -> str:
-    """Return the marks of a result whose physics step or patience is another than the task's now."""
-    return STEP_MARK * (not result.is_of_present_steps) + PATIENCE_MARK * (not result.is_of_present_patience)
 
 
 def _mean(rows: Sequence[Row], name: str) -> str:
@@ -272,12 +261,11 @@ def _cell(result: Result | None, metric: str) -> str:
     if result is None:
         return NOTHING
     (of,) = summarize(result.rows).values()
-    mark = _marks(result)
     if metric != "success":
-        return _interval(of[metric], METRICS[metric][1]) + mark
+        return _interval(of[metric], METRICS[metric][1]) + result.marks
     seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""
     few = f" of {of['trials']}" if of["trials"] != 30 else ""
-    return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "") + mark
+    return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "") + result.marks
 
 
 def _provenance(results: Sequence[Result]) -> str:
@@ -289,7 +277,7 @@ def _provenance(results: Sequence[Result]) -> str:
         of = [result for result in results if (result.folder, result.task.partition(":")[0]) == one]
         hashes = ", ".join(digest[:12] for digest in of[0].checkpoints)
         transitions = f"{of[0].transitions:,.0f}".replace(",", " ") if of[0].transitions else ""
-        about = [str(sum(len(result.rows) for result in of)), transitions, hashes, as_text(of[0].steps)]
+        about = [str(sum(len(result.rows) for result in of)), transitions, hashes, PHYSICS_STEP.as_text(of[0].steps)]
         about += [of[0].commit, of[0].run["machine"], one[0].name]
         lines.append(_row([of[0].suite, of[0].conditions, f"`{one[1]}`", of[0].method, *about]))
     return "\n".join(lines) + "\n"
