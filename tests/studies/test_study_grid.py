@@ -247,4 +247,5 @@ def test_the_papers_table_has_three_seeds_where_the_paper_has_them():
         "env.reward=paper",
         "env.actions.tip.forward_velocity=0.04",
     }
-    assert by_name["sigmoid-proximal_ppo_seed1"].overrides == ("agent.max_transitions=307200",)
+    assert by_name["sigmoid-proximal_ppo_seed1"].overrides == ("agent.max_transitions=614400",)
+    assert by_name["sigmoid-proximal_ppo_seed1"].num_envs == 1024
