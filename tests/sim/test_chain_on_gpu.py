@@ -4,13 +4,17 @@
 
 from __future__ import annotations
 
+from unittest import mock
+
 import numpy as np
 import pytest
 import warp as wp
+from load_rows import write_rows
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import newton
 
+from arcgym.sim.scope import scope_solver
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
 
 pytestmark = pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA")
@@ -57,11 +61,16 @@ def loaded(solver: SolverArticulatedChain, generator: np.random.Generator) -> tu
     scale = np.float32([1.0, 1.0, 1.0, 0.01, 0.01, 0.01])
     state.body_f.assign(np.float32(generator.normal(0.0, 0.05, (WORLDS * links, 6)) * scale))
     solver.resistance.assign(np.float32(generator.uniform(0.0, 0.01, (links, WORLDS, 6)) * scale**2))
-    solver.loads.wrench.assign(np.float32(generator.normal(0.0, 0.1, (links, WORLDS, 6)) * scale))
+    free = generator.uniform(size=(links, WORLDS, 1)) < 0.3  # links that touch nothing
+    wrench = np.where(free, 0.0, np.float32(generator.normal(0.0, 0.1, (links, WORLDS, 6)) * scale))
     root = generator.normal(0.0, 0.05, (links, WORLDS, 6, 6)) * scale[:, None]
-    whole = np.float32(root @ root.swapaxes(2, 3))
-    for name, block in (("ll", whole[..., :3, :3]), ("la", whole[..., :3, 3:]), ("aa", whole[..., 3:, 3:])):
-        getattr(solver.loads, name).assign(np.ascontiguousarray(block))
+    whole = np.where(free[..., None], 0.0, np.float32(root @ root.swapaxes(2, 3)))
+    loads = {"ll": whole[..., :3, :3], "la": whole[..., :3, 3:], "aa": whole[..., 3:, 3:], "wrench": wrench}
+    if solver.by_warp:
+        write_rows(solver.loads, **loads)
+        return state, control
+    for name, values in loads.items():
+        getattr(solver.loads, name).assign(np.ascontiguousarray(np.float32(values)))
     return state, control
 
 
@@ -74,10 +83,9 @@ def test_a_warp_solves_a_chain_as_plain_kernels_do(free: bool) -> None:
     found = []
     for by_warp in (True, False):
         generator = np.random.default_rng(5)
-        solver = SolverArticulatedChain(model(free, generator))
-        assert solver._by_warp is not None
-        if not by_warp:
-            solver._by_warp = None
+        with mock.patch.object(scope_solver, "fits", lambda links, dofs, by_warp=by_warp: by_warp):
+            solver = SolverArticulatedChain(model(free, generator))
+        assert solver.by_warp == by_warp
         state, control = loaded(solver, generator)
         load = wp.ones(WORLDS * LINKS, dtype=wp.vec3, device="cuda:0")
         solver.prepare(state, control, DT)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from arcgym.sim.contact.contact_kernels import ContactLaw, normal_force
-from arcgym.sim.contact.link_load_kernels import contact_load
+from arcgym.sim.contact.link_load_kernels import contact_push, load_of
 
 from arcgym.utils import warp_setup  # noqa: F401  isort: skip
 import warp as wp
@@ -57,7 +57,7 @@ def test_its_stiffness_is_the_slope_of_its_force(depth: float) -> None:
 @wp.kernel
 def load(law: ContactLaw, gap: float, velocity: float, out: wp.array(dtype=wp.vec2)):
     n = wp.vec3(1.0, 0.0, 0.0)
-    body = contact_load(law, 1.0, 0.0, gap, n, velocity * n, wp.vec3(0.0), wp.vec3(0.0), 0.002)
+    body = load_of(contact_push(law, 1.0, 0.0, gap, n, velocity * n, wp.vec3(0.0), wp.vec3(0.0), 0.002))
     out[0] = wp.vec2(body.force[0], body.ll[0, 0])
 
 

@@ -12,7 +12,6 @@ from tiny_sim import TinySim
 
 from arcgym.sim import Simulation
 from arcgym.sim.contact import contact_list_kernels
-from arcgym.sim.contact.link_load_kernels import load_contacts_in_groups
 from arcgym.sim.contact.patch_list_kernels import find_patches
 from arcgym.sim.wall import shell_kernels, shell_measure_cuda_kernels
 from arcgym.sim.wall.packed_contact_kernels import FOURS
@@ -89,25 +88,6 @@ def test_patches_are_found_side_by_side(touching: Simulation) -> None:
                 np.testing.assert_array_equal(now[world, :count], before[world, :count])
         else:
             np.testing.assert_array_equal(now, before)
-
-
-def test_loads_are_summed_in_groups(touching: Simulation) -> None:
-    sim, loads = touching, touching.coupling.solver.loads
-    names = ("ll", "la", "aa", "wrench")
-    wp.to_torch(sim.state.body_qd)[:, :3] = torch.tensor([-0.02, 0.01, 0.03])
-    sim.coupling.load_contacts(0.001, 0.002)
-    expected = [getattr(loads, name).numpy().copy() for name in names]
-    for name in names:
-        getattr(loads, name).fill_(7.0)
-    contact = sim.contact
-    inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
-    inputs += [contact.links, contact.records, contact.law, contact.friction, sim.coupling.body_q_prev, 0.001, 0.002]
-    outputs, shape = [loads, sim.scope_readout.penetrated], (2, len(contact.links.radius) + 1, 1)
-    wp.launch(load_contacts_in_groups, shape, inputs=[*inputs, 1], outputs=outputs, device=sim.device)
-    assert np.abs(expected[0]).max() > 1e-6
-    for name, before in zip(names, expected, strict=True):
-        scale = np.abs(before).max()
-        np.testing.assert_allclose(getattr(loads, name).numpy(), before, rtol=0.0, atol=1e-5 * scale)
 
 
 def test_triangles_around_a_vertex_follow_one_another() -> None:

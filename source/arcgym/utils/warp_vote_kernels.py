@@ -13,7 +13,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 LANES = 32
 """Threads of a warp on a GPU."""
 GROUP = 8
-"""Neighbouring threads that ``group_sum_...`` adds up, a divisor of ``LANES``."""
+"""Neighbouring threads that add up together, a divisor of ``LANES``."""
 
 
 @wp.func_native("""
@@ -82,29 +82,6 @@ def warp_sum(value: int) -> int:
     ...
 
 
-_GROUP = """
-#if defined(__CUDA_ARCH__)
-    for (int k = 0; k < SIZE; ++k) {
-        float& one = ((float*)&value)[k];
-        for (int step = GROUP / 2; step > 0; step /= 2) one += __shfl_xor_sync(0xffffffffu, one, step);
-    }
-#endif
-    return value;
-""".replace("GROUP", str(GROUP))
-
-
-@wp.func_native(_GROUP.replace("SIZE", "9"))
-def group_sum_matrix(value: wp.mat33) -> wp.mat33:
-    """Return the sum over the ``GROUP`` neighbouring threads; all of the warp have to call this."""
-    ...
-
-
-@wp.func_native(_GROUP.replace("SIZE", "3"))
-def group_sum_vector(value: wp.vec3) -> wp.vec3:
-    """Return the sum over the ``GROUP`` neighbouring threads; all of the warp have to call this."""
-    ...
-
-
 @wp.func_native(
     """
 #if defined(__CUDA_ARCH__)
@@ -120,6 +97,6 @@ def group_sum_vector(value: wp.vec3) -> wp.vec3:
 def sum_of_group(value: wp.vec3) -> wp.vec3:
     """Return the sum over the ``GROUP`` neighbouring threads, the same bits in each; all of them have to call it.
 
-    Other groups of the warp may be elsewhere, which those of ``group_sum_...`` may not.
+    Other groups of the warp may be elsewhere.
     """
     ...

@@ -1,7 +1,10 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 # mypy: ignore-errors
-"""Contact loads on the links, implicit in their motion. W worlds, L links, V wall vertices a world."""
+"""Contact loads on the links, implicit in their motion. W worlds, L links, V wall vertices a world.
+
+A GPU whose warps solve the chains sums them up with :mod:`.link_load_block_kernels`.
+"""
 
 import warp as wp
 
@@ -19,16 +22,25 @@ from arcgym.sim.contact.contact_kernels import (
 )
 from arcgym.sim.scope.scope_kernels import ArticulatedBody, LinkLoads, shift_origin
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.warp_setup import FAST
-from arcgym.utils.warp_vote_kernels import group_sum_matrix, group_sum_vector, votes
 
 SLOW = wp.constant(0.02)
 """Speed along the normal below which a contact keeps more of the damping that the step adds [m/s]: without it contacts
 at rest tremble, and friction lets go."""
 
 
+@wp.struct
+class ContactPush:
+    """Force of a link on the wall at one contact: ``force`` and inertia times the acceleration of the link's point."""
+
+    force: wp.vec3  # if the point keeps its velocity [N]
+    normal: wp.vec3  # from the scope into the wall
+    along: float  # inertia along the normal [kg]
+    across: float  # across it [kg]
+    lever: wp.vec3  # from the link's centre of mass to the point [m]
+
+
 @wp.func
-def contact_load(
+def contact_push(
     law: ContactLaw,
     share: float,
     friction: float,
@@ -38,8 +50,8 @@ def contact_load(
     wall_v: wp.vec3,
     slide: wp.vec3,
     dt: float,
-) -> ArticulatedBody:
-    """Return the load of one contact at its point as function of the acceleration of that point.
+) -> ContactPush:
+    """Return what one contact does to a link, as function of the acceleration of its point.
 
     Springs and damper act with their values at the end of the step; the stiffness of the normal spring is a secant that
     keeps it from pulling.
@@ -65,7 +77,8 @@ def contact_load(
         dt: Substep [s].
 
     """
-    out = ArticulatedBody()
+    out = ContactPush()
+    out.normal = normal
     end = gap - dt * wp.dot(normal, lin)
     if end < 0.0:
         relative = lin - wall_v
@@ -85,13 +98,23 @@ def contact_load(
             depth = relief * (-gap) + (1.0 - relief) * (-end)
             early = share * normal_force(law, wp.max(depth, 0.0))
             out.force = (damping * approach + early[0]) * normal + hold * end_slide
-        along = wp.outer(normal, normal)
-        across = wp.identity(n=3, dtype=float) - along
-        out.ll = (dt * (damping + dt * stiffness)) * along + (dt * dt * hold) * across
+        out.along = dt * (damping + dt * stiffness)
+        out.across = dt * dt * hold
     elif gap < law.search_gap:
         resting = share * normal_force(law, wp.max(-gap, 1.0e-6))
         stiffness = wp.max(resting[0] / wp.max(-gap, 1.0e-6), 0.5 * resting[1])
-        out.ll = (dt * dt * stiffness * (1.0 - wp.max(gap, 0.0) / law.search_gap)) * wp.outer(normal, normal)
+        out.along = dt * dt * stiffness * (1.0 - wp.max(gap, 0.0) / law.search_gap)
+    return out
+
+
+@wp.func
+def load_of(push: ContactPush) -> ArticulatedBody:
+    """Return a contact as a load at its point."""
+    along = wp.outer(push.normal, push.normal)
+    across = wp.identity(n=3, dtype=float) - along
+    out = ArticulatedBody()
+    out.ll = push.along * along + push.across * across
+    out.force = push.force
     return out
 
 
@@ -106,7 +129,7 @@ class LinkMotion:
 
 
 @wp.func
-def load_at(
+def push_at(
     slot: int,
     link: int,
     w: int,
@@ -120,8 +143,8 @@ def load_at(
     elapsed: float,
     dt: float,
     penetrated: wp.array[int],
-) -> ArticulatedBody:
-    """Return the load of the contact in ``slot`` about its link's centre of mass; see :func:`load_contacts`."""
+) -> ContactPush:
+    """Return what the contact in ``slot`` does to its link; see :func:`load_contacts`."""
     if elapsed == 0.0:
         records.point[slot] = touched(records, slot, x, w)
         records.point_vel[slot] = carried(v, records.corners[slot], records.bary[slot], w)
@@ -133,8 +156,9 @@ def load_at(
         penetrated[w] = 1
     lin = wp.spatial_top(motion.velocity) + wp.cross(wp.spatial_bottom(motion.velocity), p - motion.center)
     slide = records.slide[slot] + p - wp.transform_point(motion.back, p) - elapsed * wall_v
-    load = contact_load(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, slide, dt)
-    return shift_origin(load, p - motion.center)
+    out = contact_push(law, records.weight[slot], friction[w], c.gap, c.normal, lin, wall_v, slide, dt)
+    out.lever = p - motion.center
+    return out
 
 
 @wp.func
@@ -216,74 +240,6 @@ def load_contacts(
     total = ArticulatedBody()
     for k in range(records.start[w, link], records.start[w, link + 1]):
         slot = w * records.capacity + k
-        one = load_at(slot, link, w, motion, x, v, links, records, law, friction, elapsed, dt, penetrated)
-        total = summed(total, one)
+        one = push_at(slot, link, w, motion, x, v, links, records, law, friction, elapsed, dt, penetrated)
+        total = summed(total, shift_origin(load_of(one), one.lever))
     write_load(link, w, total, loads)
-
-
-@wp.kernel(module="unique", module_options=FAST)
-def load_contacts_in_groups(
-    body_q: wp.array[wp.transform],
-    body_qd: wp.array[wp.spatial_vector],
-    com: wp.array[wp.vec3],
-    x: wp.array2d[wp.vec3],
-    v: wp.array2d[wp.vec3],
-    links: LinkShapes,
-    records: ContactRecords,
-    law: ContactLaw,
-    friction: wp.array[float],
-    body_q_prev: wp.array[wp.transform],
-    elapsed: float,
-    dt: float,
-    group: int,
-    loads: LinkLoads,
-    penetrated: wp.array[int],
-):
-    """Do as :func:`load_contacts` on a GPU, by ``GROUP`` threads a link. Launch (W, N, ``group``).
-
-    N is L or a little more, so that all warps are whole. One thread would wait for what each contact leads to, one
-    contact after the other; these take as many at a time.
-
-    Args:
-        body_q: Link poses, shape (W*L,).
-        body_qd: Link velocities [m/s, rad/s], shape (W*L,).
-        com: Centres of mass in the links' frames [m], shape (W*L,).
-        x: Wall positions [m], shape (V, W).
-        v: Wall velocities [m/s], shape (V, W).
-        links: Capsules of one world.
-        records: Contacts; as in :func:`load_contacts`.
-        law: Contact law.
-        friction: Coulomb coefficient of each world, shape (W,).
-        body_q_prev: Link poses at the start of the physics step, shape (W*L,).
-        elapsed: Time since then [s].
-        dt: Substep [s].
-        group: ``GROUP``; on a CPU 1.
-        loads: Loads of the links; written.
-        penetrated: As in :func:`load_contacts`.
-    """
-    w, link, thread = wp.tid()
-    count = loads.wrench.shape[0]
-    total = ArticulatedBody()
-    k = int(0)
-    end = int(0)
-    if link < count:
-        k = records.start[w, link] + thread
-        end = records.start[w, link + 1]
-    if votes(k < end) == 0:  # none of the warp's links touches the wall
-        if thread == 0 and link < count:
-            write_load(link, w, total, loads)
-        return
-    if link < count:
-        motion = link_motion(w * count + link, link, body_q, body_qd, com, body_q_prev)
-        while k < end:
-            slot = w * records.capacity + k
-            one = load_at(slot, link, w, motion, x, v, links, records, law, friction, elapsed, dt, penetrated)
-            total = summed(total, one)
-            k += group
-    total.ll = group_sum_matrix(total.ll)
-    total.la = group_sum_matrix(total.la)
-    total.aa = group_sum_matrix(total.aa)
-    total.force = group_sum_vector(total.force)
-    total.torque = group_sum_vector(total.torque)
-    if thread == 0 and link < count:
-        write_load(link, w, total, loads)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Protocol
 
 import warp as wp
 
+from arcgym.sim.contact import link_load_block_kernels as block_kernels
 from arcgym.sim.contact import link_load_kernels as kernels
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
 from arcgym.utils.beside import Beside
 from arcgym.utils.stages import at_the_same_time
-from arcgym.utils.warp_setup import GPU_BLOCK
-from arcgym.utils.warp_vote_kernels import GROUP, LANES
+from arcgym.utils.warp_vote_kernels import GROUP
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -57,6 +57,8 @@ class TwoLevelCoupling:
         self.solver.resistance = sim.actuation.resistance
         self.body_q_prev = wp.clone(sim.state.body_q)
         """Link poses at the start of the last step, shape (W*L,), transform."""
+        rows = self.body_q_prev.shape[0] if self.solver.by_warp else 0
+        self._motions = wp.zeros(rows, dtype=kernels.LinkMotion, device=sim.device)
         self._on_gpu = wp.get_device(sim.device).is_cuda
         self._scope_stream = wp.Stream(sim.device, priority=-1) if self._on_gpu else None
         self._beside, self._drives = Beside(sim.device), Beside(sim.device)
@@ -135,20 +137,21 @@ class TwoLevelCoupling:
 
     def load_contacts(self, elapsed: float, dt: float) -> None:
         """Write the loads of the contacts on the links for a substep of ``dt`` [s], ``elapsed`` [s] into a step."""
-        sim, contact, loads = self.sim, self.sim.contact, self.solver.loads
+        sim, contact, solver = self.sim, self.sim.contact, self.solver
         inputs = [sim.state.body_q, sim.state.body_qd, sim.model.body_com, sim.nodal_pos, sim.nodal_vel]
         inputs += [contact.links, contact.records, contact.law, contact.friction, self.body_q_prev, elapsed, dt]
-        outputs, (links, worlds) = [loads, sim.scope_readout.penetrated], loads.wrench.shape
-        if not self._on_gpu:
-            wp.launch(kernels.load_contacts, (links, worlds), inputs=inputs, outputs=outputs, device=sim.device)
+        outputs, worlds = [solver.loads, sim.scope_readout.penetrated], solver.num_envs
+        if not solver.by_warp:
+            shape = (solver.chain.links, worlds)
+            wp.launch(kernels.load_contacts, shape, inputs=inputs, outputs=outputs, device=sim.device)
             return
         wp.launch(
-            kernels.load_contacts_in_groups,
-            (worlds, links + -links % (LANES // GROUP), GROUP),
-            inputs=[*inputs, GROUP],
-            outputs=outputs,
+            block_kernels.load_contacts_by_block,
+            (worlds, block_kernels.THREADS),
+            inputs=[*inputs, block_kernels.THREADS, GROUP],
+            outputs=[self._motions, *outputs],
             device=sim.device,
-            block_dim=GPU_BLOCK,
+            block_dim=block_kernels.THREADS,
         )
 
     def forward(self, world_mask: wp.array) -> None:

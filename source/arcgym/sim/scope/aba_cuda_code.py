@@ -28,6 +28,13 @@ READ = """
     constexpr int STOP = 3, STOP_INERTIA = 4, DRIVE = 5, INERTIA = 6, EFFORT = 7, V = 8, X = 9, SLIDES = 10;
     // eliminated: axis, offset, six gains, whether it slides, acceleration
     constexpr int OFFSET = 3, GAIN = 4, FOUND = 11;
+    constexpr int LL = 3, LA = 9, TORQUE = 18, AA = 21;  // of a load, after its force
+    unsigned loaded = 0;  // a bit for each of this lane's links, which are 32 apart
+    #pragma unroll
+    for (int q = 0; q < Q; ++q) {
+        const int link = lane + 32 * q;
+        if (link < L && loads.loaded.data[(long long)world * L + link] != 0) loaded |= 1u << q;
+    }
     const bool free_root = chain.free == 1;
     const int first_joint = free_root ? 6 : 0, extra = chain.coords - chain.dofs;
     float* const v_now = joint_qd.data + (long long)world * D;
@@ -53,7 +60,7 @@ READ = """
     }
     for (int link = lane; link <= L; link += 32) starts[link] = chain.dof_start.data[link];
 """
-"""Copies joints to shared memory."""
+"""Copies joints to shared memory, and looks which links are loaded."""
 
 GATHER = """
     // this lane's column of a link's matrix: two runs of three numbers
@@ -227,10 +234,12 @@ RECORD = """
             const vec3 omega = spatial_bottom(body_qd.data[row]), lever = *address(work.lever, link, world);
             const vec3 a_lin(found[0], found[1], found[2]), a_ang(found[3], found[4], found[5]);
             const vec3 acc = a_lin + cross(a_ang, lever) + cross(omega, cross(omega, lever));
-            if (mean_load.data) {
-                const mat33 ll = *address(loads.ll, link, world), la = *address(loads.la, link, world);
-                const vec3 held = spatial_top(*address(loads.wrench, link, world));
-                mean_load.data[row] = mean_load.data[row] + weight * (held - (mul(ll, acc) + mul(la, a_ang)));
+            if (mean_load.data && loaded >> q & 1) {
+                float load[28];
+                load_of(link, load);
+                const vec3 force(load[0], load[1], load[2]);
+                const vec3 given = mul(symmetric(load + LL), acc) + mul(general(load + LA), a_ang);
+                mean_load.data[row] = mean_load.data[row] - weight * (force + given);
             }
             *address(work.acc_lin, link, world) = acc;
             *address(work.acc_ang, link, world) = a_ang;

@@ -15,7 +15,8 @@ import functools
 import warp as wp
 
 from arcgym.sim.scope.aba_cuda_code import SOLVE
-from arcgym.sim.scope.scope_kernels import Chain, ChainWork, LinkLoads
+from arcgym.sim.scope.load_row_kernels import LoadRows
+from arcgym.sim.scope.scope_kernels import Chain, ChainWork
 from arcgym.utils import warp_setup  # noqa: F401
 
 THREADS = 32
@@ -48,7 +49,7 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
         body_qd: wp.array[wp.spatial_vector],
         body_f: wp.array[wp.spatial_vector],
         resistance: wp.array2d[wp.spatial_vector],
-        loads: LinkLoads,
+        loads: LoadRows,
         dt: float,
         weight: float,
         work: ChainWork,
@@ -70,7 +71,7 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
         body_qd: wp.array[wp.spatial_vector],
         body_f: wp.array[wp.spatial_vector],
         resistance: wp.array2d[wp.spatial_vector],
-        loads: LinkLoads,
+        loads: LoadRows,
         dt: float,
         weight: float,
         work: ChainWork,
@@ -83,9 +84,9 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
         """Prepare links, solve and record. Launch (W, ``THREADS``) in blocks of ``THREADS``.
 
         Does as :func:`~.scope_kernels.prepare_links`, :func:`~.aba_kernels.solve_chain` and
-        :func:`~.scope_kernels.record_loads` do one after the other, whose arguments these are; a ``mean_load`` of None
-        is not recorded. Of ``work`` the rows of the joints are read; limited drives, ``drive_force``, ``lever`` and
-        the accelerations are written, the rest is left alone.
+        :func:`~.scope_kernels.record_loads` do one after the other, whose arguments these are; just ``loads``
+        are rows here, and a ``mean_load`` of None is not recorded. Of ``work`` the rows of the joints are read; limited
+        drives, ``drive_force``, ``lever`` and the accelerations are written, the rest is left alone.
         """
         world, lane = wp.tid()
         solve_world(

@@ -51,18 +51,34 @@ PREPARE = """
             links[link][DRIFT + 3 + i] = drift_ang[i];
         }
     };
+    // force, ll, la, torque, aa of a link's load, as in a LoadSum, and one more: this lane's of 32 links in a row
+    auto load_of = [&](int link, float* load) {
+        const float4* const row = (const float4*)loads.fours.data + 8 * ((long long)world * L + link);
+        #pragma unroll
+        for (int n = 0; n < 7; ++n) {
+            float4 four = make_float4(0.0f, 0.0f, 0.0f, 0.0f);
+            if (loaded >> link / 32 & 1) four = row[n];
+            load[4 * n] = four.x, load[4 * n + 1] = four.y, load[4 * n + 2] = four.z, load[4 * n + 3] = four.w;
+        }
+    };
+    auto symmetric = [](const float* of) {  // xx, yy, zz, yz, zx, xy
+        return mat33(of[0], of[5], of[4], of[5], of[1], of[3], of[4], of[3], of[2]);
+    };
+    auto general = [](const float* of) { return mat33(of[0], of[1], of[2], of[3], of[4], of[5], of[6], of[7], of[8]); };
     auto prepare = [&](int link, float* to) {
         const long long row = (long long)world * L + link;
         const transform pose = body_q.data[row];
         const vec3 omega = spatial_bottom(body_qd.data[row]);
-        const spatial_vector push = body_f.data[row], wrench = *address(loads.wrench, link, world);
-        const spatial_vector resists = *address(resistance, link, world);
+        const spatial_vector push = body_f.data[row], resists = *address(resistance, link, world);
+        float load[28];
+        load_of(link, load);
         const float mass = chain.mass.data[link];
         const vec3 here = anchor(link, pose), lever = transform_point(pose, chain.com.data[link]) - here;
-        mat33 ll = *address(loads.ll, link, world);
-        const mat33 la = *address(loads.la, link, world);
-        mat33 aa = add(*address(loads.aa, link, world), diag(spatial_bottom(resists)));
-        vec3 force = -spatial_top(wrench) - spatial_top(push), torque = -spatial_bottom(wrench) - spatial_bottom(push);
+        mat33 ll = symmetric(load + LL);
+        const mat33 la = general(load + LA);
+        mat33 aa = add(symmetric(load + AA), diag(spatial_bottom(resists)));
+        vec3 force = vec3(load[0], load[1], load[2]) - spatial_top(push);
+        vec3 torque = vec3(load[TORQUE], load[TORQUE + 1], load[TORQUE + 2]) - spatial_bottom(push);
         for (int i = 0; i < 3; ++i) ll.data[i][i] = ll.data[i][i] + resists[i] + mass;
         const mat33 rot = quat_to_matrix(pose.q);
         const mat33 inertia = mul(mul(rot, chain.inertia.data[link]), transpose(rot));

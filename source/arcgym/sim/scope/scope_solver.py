@@ -15,6 +15,7 @@ from newton.solvers import SolverBase
 from arcgym.sim.scope import scope_kernels as kernels
 from arcgym.sim.scope.aba_cuda_kernels import THREADS, fits, warp_kernel
 from arcgym.sim.scope.aba_kernels import chain_kinematics, solve_chain
+from arcgym.sim.scope.load_row_kernels import FOURS, LoadRows
 
 JOINTS = (JointType.REVOLUTE, JointType.PRISMATIC, JointType.D6, JointType.FIXED)
 """Joint types that may join two links; a D6 joint with any axes, those that slide first."""
@@ -49,7 +50,7 @@ class SolverArticulatedChain(SolverBase):
         links, dofs, worlds = self.chain.links, self.chain.dofs, self.num_envs
         on_gpu = wp.get_device(model.device).is_cuda and fits(links, dofs)
         self._by_warp = warp_kernel(links, dofs) if on_gpu else None
-        self.work, self.loads = kernels.ChainWork(), kernels.LinkLoads()
+        self.work = kernels.ChainWork()
         for rows, dtype, names in (
             (links, wp.mat33, "ll la aa"),
             (links, wp.vec3, "force torque arm lever drift_lin drift_ang acc_lin acc_ang"),
@@ -58,11 +59,28 @@ class SolverArticulatedChain(SolverBase):
         ):
             for name in names.split():
                 setattr(self.work, name, self._rows(rows, dtype))
-        for name in ("ll", "la", "aa"):
-            setattr(self.loads, name, self._rows(links, wp.mat33))
-        self.loads.wrench = self._rows(links, wp.spatial_vector)
+        self.loads: kernels.LinkLoads | LoadRows = self._no_loads(links)
+        """Further loads of the links; rows where :attr:`by_warp`."""
         self.resistance = wp.zeros((links, worlds), dtype=wp.spatial_vector, device=model.device)
         """Diagonal of the drop of ``state.body_f`` by the links' acceleration [kg], [kg m^2], shape (L, W)."""
+
+    @property
+    def by_warp(self) -> bool:
+        """Whether a warp of a GPU solves the chain of a world."""
+        return self._by_warp is not None
+
+    def _no_loads(self, links: int) -> kernels.LinkLoads | LoadRows:
+        device, worlds = self.model.device, self.num_envs
+        if self.by_warp:
+            rows = LoadRows()
+            rows.fours = wp.zeros(worlds * links * FOURS, dtype=wp.vec4, device=device)
+            rows.loaded = wp.zeros(worlds * links, dtype=int, device=device)
+            return rows
+        loads = kernels.LinkLoads()
+        for name in ("ll", "la", "aa"):
+            setattr(loads, name, self._rows(links, wp.mat33))
+        loads.wrench = self._rows(links, wp.spatial_vector)
+        return loads
 
     def _rows(self, count: int, dtype: type) -> wp.array:
         """Return zeros of shape (``count``, W); where a warp reads them, those of a world lie side by side."""
