@@ -57,6 +57,7 @@ def loaded(solver: SolverArticulatedChain, generator: np.random.Generator) -> tu
     state.joint_q.assign(np.float32(angles.ravel()))
     state.joint_qd.assign(np.float32(generator.normal(0.0, 0.5, WORLDS * dofs)))
     control.joint_target_q.assign(np.float32(generator.normal(0.0, 0.3, WORLDS * coords)))
+    control.joint_f.assign(np.float32(generator.normal(0.0, 0.02, WORLDS * dofs)))
     solver.forward(state, wp.ones(WORLDS, dtype=wp.bool, device="cuda:0"))
     scale = np.float32([1.0, 1.0, 1.0, 0.01, 0.01, 0.01])
     state.body_f.assign(np.float32(generator.normal(0.0, 0.05, (WORLDS * links, 6)) * scale))
@@ -89,7 +90,7 @@ def test_a_warp_solves_a_chain_as_plain_kernels_do(free: bool) -> None:
         state, control = loaded(solver, generator)
         load = wp.ones(WORLDS * LINKS, dtype=wp.vec3, device="cuda:0")
         solver.prepare(state, control, DT)
-        solver.move(state, state, DT, load, 0.25)
+        solver.move(state, state, control, DT, load, 0.25)
         work, arrays = solver.work, [state.joint_q, state.joint_qd, state.body_q, state.body_qd, load]
         arrays += [work.lever, work.acc_lin, work.acc_ang, work.drive, work.drive_inertia, work.drive_force]
         found.append([array.numpy() for array in arrays])

@@ -119,7 +119,7 @@ class TwoLevelCoupling:
                     self._drive()
             self.load_contacts(k * dt, dt)
             self._drives.join()
-            self.solver.move(state, state, dt, sim.scope_readout.step_force, 1.0 / count)
+            self.solver.move(state, state, sim.control, dt, sim.scope_readout.step_force, 1.0 / count)
             with self._drives.work():
                 sim.actuation.record(work.drive_force, work.acc_lin, 1.0 / count)
         self._drives.join()

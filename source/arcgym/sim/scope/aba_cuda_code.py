@@ -48,19 +48,30 @@ READ = """
             const vec3 axis = chain.axis.data[d];
             const bool slides = chain.linear.data[d] == 1;
             for (int i = 0; i < 3; ++i) to[i] = axis[i];
-            to[STOP] = *address(work.stop, d, world);
-            to[STOP_INERTIA] = *address(work.stop_inertia, d, world);
-            to[DRIVE] = *address(work.drive, d, world);
-            to[INERTIA] = *address(work.drive_inertia, d, world);
+            const float v = v_now[d], x = x_now[d], spring = chain.stiffness.data[d];
+            const float goal = target.data[(long long)world * chain.coords + extra + d];
+            const float damper = fmaxf(chain.damping.data[d] - dt * spring, 0.0f);
+            const float beyond = fminf(x - chain.lower.data[d], 0.0f) + fmaxf(x - chain.upper.data[d], 0.0f);
+            const float stop_spring = chain.stop_stiffness.data[d], stop_damper = chain.stop_damping.data[d];
+            const float stop = joint_f.data[(long long)world * D + d], armature = chain.armature.data[d];
+            const float pushed = stop - (stop_spring * (beyond + dt * v) + stop_damper * v);
+            to[STOP] = beyond != 0.0f ? pushed : stop;
+            to[STOP_INERTIA] = beyond != 0.0f ? armature + dt * (stop_damper + dt * stop_spring) : armature;
+            to[DRIVE] = spring * (goal - (x + dt * v)) - damper * v;
+            to[INERTIA] = dt * (damper + dt * spring);
             to[EFFORT] = slides ? -1.0f - chain.effort.data[d] : chain.effort.data[d];
-            to[V] = v_now[d];
-            to[X] = x_now[d];
+            to[V] = v;
+            to[X] = x;
             to[SLIDES] = slides ? 1.0f : 0.0f;
         }
     }
+    for (int d = lane; d < D; d += 32) {  // once all has been read: no read waits for a write
+        *address(work.drive, d, world) = joints[d][DRIVE];
+        *address(work.drive_inertia, d, world) = joints[d][INERTIA];
+    }
     for (int link = lane; link <= L; link += 32) starts[link] = chain.dof_start.data[link];
 """
-"""Copies joints to shared memory, and looks which links are loaded."""
+"""Prepares the joints in shared memory as :func:`.scope_kernels.prepare_joints`, and looks which links are loaded."""
 
 GATHER = """
     // this lane's column of a link's matrix: two runs of three numbers

@@ -3,11 +3,12 @@
 # mypy: ignore-errors
 """Articulated-body algorithm on a GPU: what :mod:`.aba_kernels` does, by a warp a world.
 
-The lanes prepare the links side by side, 32 at a time from the tip, and leave them in shared memory. Inwards, each of
-six lanes holds a column of the articulated body's 6x6 matrix, which is symmetric, and all of them its bias force. A
-joint takes one exchange of the column that it meets with, and one fused product in all lanes at once. Outwards, all
-lanes find the accelerations together; the joints are then moved side by side, and poses, spins and velocities of the
-links are sums along the chain, which a warp forms in a few exchanges. What is read more than once is in shared memory.
+The lanes prepare joints and links side by side, the links 32 at a time from the tip, and leave them in shared memory.
+Inwards, each of six lanes holds a column of the articulated body's 6x6 matrix, which is symmetric, and all of them its
+bias force. A joint takes one exchange of the column that it meets with, and one fused product in all lanes at once.
+Outwards, all lanes find the accelerations together; the joints are then moved side by side, and poses, spins and
+velocities of the links are sums along the chain, which a warp forms in a few exchanges. What is read more than once is
+in shared memory.
 """
 
 import functools
@@ -48,6 +49,8 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
         body_q: wp.array[wp.transform],
         body_qd: wp.array[wp.spatial_vector],
         body_f: wp.array[wp.spatial_vector],
+        target: wp.array[float],
+        joint_f: wp.array[float],
         resistance: wp.array2d[wp.spatial_vector],
         loads: LoadRows,
         dt: float,
@@ -70,6 +73,8 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
         body_q: wp.array[wp.transform],
         body_qd: wp.array[wp.spatial_vector],
         body_f: wp.array[wp.spatial_vector],
+        target: wp.array[float],
+        joint_f: wp.array[float],
         resistance: wp.array2d[wp.spatial_vector],
         loads: LoadRows,
         dt: float,
@@ -81,11 +86,11 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
         body_qd_out: wp.array[wp.spatial_vector],
         mean_load: wp.array[wp.vec3],
     ):
-        """Prepare links, solve and record. Launch (W, ``THREADS``) in blocks of ``THREADS``.
+        """Prepare, solve and record. Launch (W, ``THREADS``) in blocks of ``THREADS``.
 
-        Does as :func:`~.scope_kernels.prepare_links`, :func:`~.aba_kernels.solve_chain` and
-        :func:`~.scope_kernels.record_loads` do one after the other, whose arguments these are; just ``loads``
-        are rows here, and a ``mean_load`` of None is not recorded. Of ``work`` the rows of the joints are read; limited
+        Does as :func:`~.scope_kernels.prepare_joints`, :func:`~.scope_kernels.prepare_links`,
+        :func:`~.aba_kernels.solve_chain` and :func:`~.scope_kernels.record_loads` do one after the other, whose
+        arguments these are; just ``loads`` are rows here, and a ``mean_load`` of None is not recorded. Of ``work``
         drives, ``drive_force``, ``lever`` and the accelerations are written, the rest is left alone.
         """
         world, lane = wp.tid()
@@ -94,6 +99,8 @@ def warp_kernel(links: int, dofs: int) -> wp.Kernel:
             body_q,
             body_qd,
             body_f,
+            target,
+            joint_f,
             resistance,
             loads,
             dt,

@@ -144,10 +144,15 @@ class SolverArticulatedChain(SolverBase):
             wp.copy(state_out.joint_q, state_in.joint_q)
             wp.copy(state_out.joint_qd, state_in.joint_qd)
         self.prepare(state_in, control, dt)
-        self.move(state_in, state_out, dt)
+        self.move(state_in, state_out, control, dt)
 
     def prepare(self, state: newton.State, control: newton.Control, dt: float) -> None:
-        """Begin a step of ``dt`` [s] with the joints, for which :attr:`loads` need not be known."""
+        """Begin a step of ``dt`` [s] with the joints, for which :attr:`loads` need not be known.
+
+        Where :attr:`by_warp`, :meth:`move` does that, too.
+        """
+        if self.by_warp:
+            return
         chain = self.chain
         wp.launch(
             kernels.prepare_joints,
@@ -161,6 +166,7 @@ class SolverArticulatedChain(SolverBase):
         self,
         state_in: newton.State,
         state_out: newton.State,
+        control: newton.Control,
         dt: float,
         mean_load: wp.array | None = None,
         weight: float = 0.0,
@@ -170,6 +176,7 @@ class SolverArticulatedChain(SolverBase):
         Args:
             state_in: State at the start of the step.
             state_out: State at its end; its joints begin where those of ``state_in`` do.
+            control: Targets and forces of the joints, as in :meth:`prepare`.
             dt: Step [s].
             mean_load: Force of :attr:`loads` on each link [N], shape (W*L,); that at the end of the step is added.
             weight: Share of the step in ``mean_load``.
@@ -179,7 +186,8 @@ class SolverArticulatedChain(SolverBase):
         outputs = [work, state_out.joint_q, state_out.joint_qd, state_out.body_q, state_out.body_qd]
         shape, worlds = (chain.links, self.num_envs), self.num_envs
         if self._by_warp is not None:
-            inputs = [chain, *poses, state_in.body_f, self.resistance, loads, dt, weight]
+            inputs = [chain, *poses, state_in.body_f, control.joint_target_q, control.joint_f]
+            inputs += [self.resistance, loads, dt, weight]
             outputs += [mean_load]
             shape = (worlds, THREADS)
             wp.launch(self._by_warp, shape, inputs=inputs, outputs=outputs, device=device, block_dim=THREADS)
