@@ -26,6 +26,9 @@ GPU_BLOCK = 128
 """Threads of a block of the kernels of wall and contact on a GPU. They need so many registers that fewer threads of
 larger blocks fit a multiprocessor."""
 
+WORLD_BLOCK = 32
+"""Threads of a block of which each deals with a world: so few that the worlds are spread over many multiprocessors."""
+
 FAST = {"fast_math": True}
 """Module options of kernels whose reciprocals, roots and logarithms on a GPU may be those of the hardware. A CPU
 ignores them."""

@@ -26,6 +26,10 @@ class ActuatorBase:
     Its own ``set_command`` writes into ``commands``; action terms call it.
     """
 
+    loads_links = True
+    """Whether :meth:`apply` reads or writes ``state.body_f`` or ``resistance``, which hold the links' weight by then.
+    If not, it may run while that is written."""
+
     def __init__(self, cfg: ActuatorBaseCfg, endoscope: Endoscope):
         """Keep configuration and scope; nothing is on the device yet.
 

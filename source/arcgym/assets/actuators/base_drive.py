@@ -14,6 +14,7 @@ import warp as wp
 from arcgym.assets.actuators import base_drive_kernels as kernels
 from arcgym.assets.actuators.actuator_base import ActuatorBase
 from arcgym.assets.actuators.base_drive_cfg import BaseDriveCfg
+from arcgym.utils.warp_setup import WORLD_BLOCK
 
 if TYPE_CHECKING:
     from arcgym.assets.endoscope import Endoscope
@@ -23,6 +24,7 @@ class BaseDrive(ActuatorBase):
     """Moves the targets of slide and roll at the commanded speeds, no further ahead than the force limits reach."""
 
     cfg: BaseDriveCfg
+    loads_links = False
 
     def __init__(self, cfg: BaseDriveCfg, endoscope: Endoscope):
         """Check that the stage has a driven slide.
@@ -86,15 +88,18 @@ class BaseDrive(ActuatorBase):
         """Move the targets of slide and roll on."""
         inputs = [state.joint_q, self._coords, self._springs, self.velocity, self.roll_rate, dt]
         outputs = [control.joint_target_q]
-        wp.launch(kernels.drive_base, self._num_envs, inputs=inputs, outputs=outputs, device=self._device)
+        self._launch(kernels.drive_base, inputs, outputs)
 
     def record(self, drive_force: wp.array, acceleration: wp.array, weight: float) -> None:
         """Add the force of the slide's drive."""
-        inputs = [drive_force, weight]
-        wp.launch(kernels.record_push, self._num_envs, inputs=inputs, outputs=[self.force], device=self._device)
+        self._launch(kernels.record_push, [drive_force, weight], [self.force])
 
     def record_explicit(self, state: newton.State, control: newton.Control, weight: float) -> None:
         """Add the force by the slide's spring law."""
         inputs = [state.joint_q, state.joint_qd, control.joint_target_q, self._coords, self._springs]
-        wp.launch(kernels.slide_force, self._num_envs, inputs=inputs, outputs=[self._explicit], device=self._device)
+        self._launch(kernels.slide_force, inputs, [self._explicit])
         self.record(self._explicit, None, weight)
+
+    def _launch(self, kernel: wp.Kernel, inputs: list, outputs: list) -> None:
+        count, device = self._num_envs, self._device
+        wp.launch(kernel, count, inputs=inputs, outputs=outputs, device=device, block_dim=WORLD_BLOCK)

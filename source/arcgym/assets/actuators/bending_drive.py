@@ -16,6 +16,7 @@ import warp as wp
 from arcgym.assets.actuators import bending_drive_kernels as kernels
 from arcgym.assets.actuators.actuator_base import ActuatorBase
 from arcgym.assets.actuators.bending_drive_cfg import BendingDriveCfg
+from arcgym.utils.warp_setup import WORLD_BLOCK
 
 if TYPE_CHECKING:
     from arcgym.assets.endoscope import Endoscope
@@ -25,6 +26,7 @@ class BendingDrive(ActuatorBase):
     """Turns two control wheels, pitch and yaw, and spreads their angles over the hinges of the bending section."""
 
     cfg: BendingDriveCfg
+    loads_links = False
 
     def __init__(self, cfg: BendingDriveCfg, endoscope: Endoscope):
         """Check that the stage has a bending section.
@@ -78,7 +80,8 @@ class BendingDrive(ActuatorBase):
             kernel = kernels.drive_bending_by_cables
             inputs += [self.cfg.play, 1.0 if self.cfg.lag == 0.0 else 1.0 - math.exp(-dt / self.cfg.lag)]
             outputs = [self.angle, self._slack, self._behind, control.joint_target_q]
-        wp.launch(kernel, self._num_envs, inputs=inputs, outputs=outputs, device=self._device)
+        count, device = self._num_envs, self._device
+        wp.launch(kernel, count, inputs=inputs, outputs=outputs, device=device, block_dim=WORLD_BLOCK)
 
     def turn_tip(self, angle: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | slice) -> None:
         """Turn the wheels by the first two angles [rad], at once, and the section with them."""

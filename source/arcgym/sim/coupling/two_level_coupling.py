@@ -61,7 +61,7 @@ class TwoLevelCoupling:
         self._motions = wp.zeros(rows, dtype=kernels.LinkMotion, device=sim.device)
         self._on_gpu = wp.get_device(sim.device).is_cuda
         self._scope_stream = wp.Stream(sim.device, priority=-1) if self._on_gpu else None
-        self._beside, self._drives = Beside(sim.device), Beside(sim.device)
+        self._beside, self._drives = Beside(sim.device), Beside(sim.device, priority=-1)
 
     def step(self) -> None:
         """Advance by one physics step, in place."""

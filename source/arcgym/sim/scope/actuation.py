@@ -14,6 +14,7 @@ import warp as wp
 from arcgym.assets.endoscope import Endoscope
 from arcgym.sim.scope import actuation_kernels as kernels
 from arcgym.sim.simulation_cfg import SimulationCfg
+from arcgym.utils.beside import Beside
 
 
 class Actuation:
@@ -43,6 +44,7 @@ class Actuation:
         self.gravity = wp.full(num_envs, wp.vec3(*gravity), dtype=wp.vec3, device=device)
         """Acceleration of free fall in each world [m/s^2], shape (W,), vec3."""
         self._mass_scaling = cfg.mass_scaling
+        self._weights = Beside(device, priority=-1)
 
     def _introducer(self, endoscope: Endoscope) -> kernels.Introducer:
         guide, cfg = kernels.Introducer(), endoscope.cfg.introducer
@@ -79,9 +81,13 @@ class Actuation:
         inputs += [state.joint_q, self.coords, link_ring, dt]
         outputs = [state.body_f, self.resistance]
         shape = (self.num_envs, self.link_count)
-        wp.launch(kernels.load_links, shape, inputs=inputs, outputs=outputs, device=self.device)
+        with self._weights.work():
+            wp.launch(kernels.load_links, shape, inputs=inputs, outputs=outputs, device=self.device)
         for actuator in self.actuators.values():
+            if actuator.loads_links:
+                self._weights.join()
             actuator.apply(state, control, self.resistance, dt)
+        self._weights.join()
 
     def record(self, drive_force: wp.array, acceleration: wp.array, weight: float) -> None:
         """Add the substep's forces of the drives to their averages.
