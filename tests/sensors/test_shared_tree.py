@@ -5,40 +5,13 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from tube_scene import tube_visual, tube_wall
 
 from arcgym.sensors.shared_tree import TreeShape, halving_order, sorted_faces
 
 
-def morton_codes(points: np.ndarray) -> np.ndarray:
-    """Codes of points as Warp's builder has them: ten bits a side of the box around all, x the lowest."""
-    extent = np.maximum(points.max(axis=0) - points.min(axis=0), 1.0e-9)
-    cell = np.clip(((points - points.min(axis=0)) / extent * 1024).astype(np.int64), 0, 1023)
-    code = np.zeros(len(points), np.int64)
-    for bit in range(10):
-        for axis in range(3):
-            code |= ((cell[:, axis] >> bit) & 1) << (3 * bit + axis)
-    return code
-
-
-@pytest.mark.parametrize("vertices", [300, 1000, 13395, 19852])
-def test_morton_codes_rise_with_the_numbers_and_split_where_the_pieces_do(vertices: int) -> None:
-    shape = TreeShape(2 * vertices - 50, vertices, on_cpu=False)
-    codes = morton_codes(shape.points)
-    assert (np.diff(codes) >= 0).all()
-    of_faces = codes[shape.faces[:, 0]]
-    assert (np.ptp(shape.points[shape.faces], axis=1) == 0.0).all()
-    for start in shape.pieces[1:]:
-        # A piece begins where a higher bit changes than inside of any piece of its level.
-        changes = np.flatnonzero(np.diff(of_faces)) + 1
-        highest = np.log2((of_faces[changes] ^ of_faces[changes - 1]).astype(float)).astype(int)
-        inside = ~np.isin(changes, start)
-        assert not inside.any() or highest[~inside].min() > highest[inside].max()
-
-
 def test_on_a_line_every_triangle_has_a_place_of_its_own() -> None:
-    shape = TreeShape(1950, 1000, on_cpu=True)
+    shape = TreeShape(1950, 1000)
     box = shape.points[shape.faces]
     assert (np.diff(0.5 * (box.min(axis=1) + box.max(axis=1))[:, 0]) > 0.0).all()
     assert np.diff(np.append(shape.pieces[-1], 1950)).max() == 2
@@ -54,11 +27,10 @@ def test_pieces_are_cut_across_their_longer_side() -> None:
             assert sorted(np.ptp(piece, axis=0) + 1) in ([height, width], [width, height])
 
 
-@pytest.mark.parametrize("on_cpu", [False, True])
-def test_surfaces_of_any_size_lie_alike_in_the_tree(on_cpu: bool) -> None:
+def test_surfaces_of_any_size_lie_alike_in_the_tree() -> None:
     walls = [tube_wall(), tube_wall(radius=0.03)]
     visuals = [tube_visual(walls[0]), tube_visual(walls[1], fine=2, radius=0.03)]
-    shape = TreeShape(max(len(one.faces) for one in visuals), max(len(one.points) for one in visuals), on_cpu)
+    shape = TreeShape(max(len(one.faces) for one in visuals), max(len(one.points) for one in visuals))
     faces = sorted_faces(visuals, walls[0], shape)
     start = next(level for level in shape.pieces if len(level) >= 16)
     middles = []

@@ -50,7 +50,7 @@ class EndoscopeCamera(SensorBase):
     """Batched ray-cast camera inside the deforming colon.
 
     One update skins the visual surface to the wall, refits its ray tree and draws every world: launches only, no
-    transfer to the host, so that on CUDA it can be captured in a graph (see :class:`SkinnedSurface` for the CPU).
+    transfer to the host, so that it can be captured in a graph.
     """
 
     cfg: EndoscopeCameraCfg

@@ -28,37 +28,24 @@ SMALLEST = 2
 class TreeShape:
     """Points and triangles of which a tree builder makes a tree that halves the triangles' numbers again and again."""
 
-    def __init__(self, faces: int, vertices: int, on_cpu: bool):
-        """Place the triangles.
+    def __init__(self, faces: int, vertices: int):
+        """Place the triangles on a line, which a builder halves between triangles.
 
         Args:
             faces: Number of triangles F of a world.
             vertices: Number of vertices M of a world, at least half of F.
-            on_cpu: Whether the tree is built on a CPU, which halves the longest side of a box between triangles, or by
-                Morton codes, which have ten bits for each axis.
         """
-        self.constructor = "median" if on_cpu else "lbvh"
-        """Builder that makes this tree of these points."""
         index = np.arange(faces)
         vertex = index * vertices // faces
         again = np.diff(vertex, prepend=-1) == 0
         self.faces = np.repeat(vertex, 3).reshape(-1, 3).astype(np.int32)
         """Corners, shape (F, 3), int32."""
+        self.faces[again, 2] = np.minimum(self.faces[again, 2] + 1, vertices - 1)  # half a step further on
         self.points = np.zeros((vertices, 3), np.float32)
         """Points [m], shape (M, 3)."""
-        self.pieces: list[np.ndarray] = []
+        self.points[:, 0] = np.arange(vertices)
+        self.pieces = _halves(faces)
         """First triangle of each piece that a node of the tree holds, level by level."""
-        if on_cpu:
-            self.points[:, 0] = np.arange(vertices)
-            self.faces[again, 2] = np.minimum(self.faces[again, 2] + 1, vertices - 1)  # half a step further on
-            self.pieces = _halves(faces)
-            return
-        bits = -(-max(vertices - 1, 1).bit_length() // 3) * 3  # as many for each axis
-        code = np.arange(vertices) * (1 << bits) // vertices  # fills the cube, whose sides are halved
-        for bit in range(bits):
-            self.points[:, bit % 3] += ((code >> bit) & 1) << (bit // 3)
-        starts = [np.searchsorted(code[vertex], np.arange(1 << level) << (bits - level)) for level in range(bits)]
-        self.pieces = [np.unique(start[start < faces]) for start in starts]
 
 
 def _halves(count: int) -> list[np.ndarray]:

@@ -10,25 +10,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 import warp as wp
 
+from arcgym.sensors.ray_tree import LEAF_ON_CPU, LEAF_ON_GPU, RayTree, TreeLayout
 from arcgym.sensors.shared_tree import TreeShape, sorted_faces
-from arcgym.sensors.skinning_kernels import group_roots, skin_vertices, wall_frames, write_faces
+from arcgym.sensors.skinning_kernels import skin_vertices, wall_frames
 from arcgym.utils import warp_setup  # noqa: F401
 
 if TYPE_CHECKING:
     from arcgym.anatomy.shell import ShellMesh
     from arcgym.anatomy.stage import VisualMesh, WallMesh
 
-LANES = 256
-"""Threads that write the triangles of a world."""
-
 
 class SkinnedSurface:
     """A visual mesh that follows the wall by linear blend skinning with one frame per wall vertex.
 
     Every frame is built from the vertex's neighbours along and around the colon, so folds turn with the wall instead
-    of being sheared. All worlds share one mesh whose triangles are grouped by world: a ray that starts at a world's
-    root meets no other world. :meth:`update` only launches kernels and can be captured in a CUDA graph; CPU graphs of
-    Warp 1.19 do not record the refit of a mesh, so there it has to run beside the graph.
+    of being sheared. :meth:`update` only launches kernels, so that it can be captured in a graph.
 
     Every world has one of P patients; surfaces of fewer vertices or triangles than the largest are filled up. One
     patient's tree is that of its rest shape; several patients share one, see :mod:`arcgym.sensors.shared_tree`.
@@ -38,8 +34,8 @@ class SkinnedSurface:
     """Deformed vertices of all worlds [m], shape (num_envs * M,), vec3."""
     normals: wp.array
     """Unit normals towards the lumen, shape (num_envs * M,), vec3."""
-    mesh: wp.Mesh
-    """Triangles of all worlds, grouped by world."""
+    mesh: RayTree
+    """Triangles of all worlds, in boxes for ray queries."""
     roots: wp.array
     """Where ray queries of a world start, shape (num_envs,), int32."""
 
@@ -80,15 +76,10 @@ class SkinnedSurface:
         count = num_envs * self.num_vertices
         self.points = wp.zeros(count, dtype=wp.vec3, device=device)
         self.normals = wp.zeros(count, dtype=wp.vec3, device=device)
+        self.mesh = RayTree(*self._tree(visuals, walls[0]), self.points, self.patient)
+        self.roots = self.mesh.roots
         rest = np.stack([of.points for of in walls], axis=1)[:, self.patient.numpy()]
-        if len(visuals) == 1:
-            self._skin(wp.array(rest, dtype=wp.vec3, device=device), self._everywhere)
-            self.mesh = self._build_mesh(visuals[0].faces)
-        else:
-            self.mesh = self._build_shared(visuals, walls[0])
-            self.update(wp.array(rest, dtype=wp.vec3, device=device))
-        self.roots = wp.zeros(num_envs, dtype=int, device=device)
-        wp.launch(group_roots, num_envs, inputs=[self.mesh.id], outputs=[self.roots], device=device)
+        self.update(wp.array(rest, dtype=wp.vec3, device=device))
 
     def update(self, nodal_pos: wp.array, drawn: wp.array | None = None) -> None:
         """Move the surface to the wall's present shape.
@@ -96,18 +87,10 @@ class SkinnedSurface:
         Args:
             nodal_pos: Wall vertices of all worlds [m], shape (V, num_envs), vec3.
             drawn: Worlds to move, shape (num_envs,), bool; the others keep their vertices bit for bit. None: all.
-
-        Raises:
-            RuntimeError: While a CPU graph is being captured, which would silently leave out the refit.
         """
-        if self._device.is_cpu and self._device.is_capturing:
-            raise RuntimeError(
-                "SkinnedSurface.update() inside a CPU graph capture: Warp does not record wp.Mesh.refit() there, and a"
-                " replay would trace rays through a stale tree. Update the camera outside the capture, or use CUDA."
-            )
-        self._skin(nodal_pos, self._everywhere if drawn is None else drawn)
-        self._exchange_faces()
-        self.mesh.refit()
+        drawn = self._everywhere if drawn is None else drawn
+        self._skin(nodal_pos, drawn)
+        self.mesh.fit(drawn)
 
     def _skin(self, nodal_pos: wp.array, drawn: wp.array) -> None:
         """Launch the two skinning kernels."""
@@ -125,19 +108,6 @@ class SkinnedSurface:
             outputs=[self.points, self.normals],
             device=self.device,
         )
-
-    def _exchange_faces(self) -> None:
-        """Give worlds that have another patient than before that patient's triangles."""
-        if self._faces is None:
-            return
-        wp.launch(
-            write_faces,
-            (self.num_envs, LANES),
-            inputs=[self._faces, self.patient, self._written, self.num_vertices, LANES],
-            outputs=[self.mesh.indices],
-            device=self.device,
-        )
-        wp.copy(self._written, self.patient)
 
     def _bind(self, visuals: list[VisualMesh], walls: list[WallMesh | ShellMesh]) -> None:
         """Store offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
@@ -168,37 +138,14 @@ class SkinnedSurface:
             wp.array(normals, dtype=wp.vec3, device=self.device),
         )
 
-    def _build_mesh(self, faces: np.ndarray) -> wp.Mesh:
-        """Build the grouped mesh; its tree is made once and only refitted after.
-
-        A CPU builds by the surface-area heuristic. That takes 12 ms a world, on the CPU for a GPU as well; a GPU builds
-        by Morton codes at once (lbvh). With two faces a leaf it then draws as fast, and refits 1.7 ms slower at 1024
-        worlds (``arcgym bench camera`` on an H100).
-        """
-        self._faces = None
-        return self._grouped_mesh(self.points, faces, "sah" if self._device.is_cpu else "lbvh")
-
-    def _build_shared(self, visuals: list[VisualMesh], wall: WallMesh | ShellMesh) -> wp.Mesh:
-        """Build the grouped mesh of several patients; it gets the vertices and triangles of the worlds later."""
-        shape = TreeShape(max(len(one.faces) for one in visuals), self.num_vertices, self._device.is_cpu)
-        self.points.assign(np.tile(shape.points, (self.num_envs, 1)))
-        mesh = self._grouped_mesh(self.points, shape.faces, shape.constructor)
-        faces = sorted_faces(visuals, wall, shape)
-        self._faces = wp.array(faces.swapaxes(0, 1).copy(), dtype=wp.vec3i, device=self.device)
-        self._written = wp.full(self.num_envs, -1, dtype=int, device=self.device)
-        return mesh
-
-    def _grouped_mesh(self, points: wp.array, faces: np.ndarray, constructor: str) -> wp.Mesh:
-        first = np.arange(self.num_envs, dtype=np.int32) * self.num_vertices
-        indices = (faces.reshape(1, -1).astype(np.int32) + first[:, None]).ravel()
-        groups = np.repeat(np.arange(self.num_envs, dtype=np.int32), len(faces))
-        return wp.Mesh(
-            points,
-            wp.array(indices, dtype=int, device=self.device),
-            groups=wp.array(groups, dtype=int, device=self.device),
-            bvh_constructor=constructor,
-            bvh_leaf_size=4 if self._device.is_cpu else 2,
-        )
+    def _tree(self, visuals: list[VisualMesh], wall: WallMesh | ShellMesh) -> tuple[TreeLayout, np.ndarray]:
+        """Return the shape of the ray tree of all patients, and the triangles of each in its order, shape (P, F, 3)."""
+        leaf = LEAF_ON_CPU if self._device.is_cpu else LEAF_ON_GPU
+        if len(visuals) == 1:
+            faces = visuals[0].faces.astype(np.int32)
+            return TreeLayout.of(visuals[0].points, faces, "sah", leaf), faces[None]
+        shape = TreeShape(max(len(one.faces) for one in visuals), self.num_vertices)
+        return TreeLayout.of(shape.points, shape.faces, "median", leaf), sorted_faces(visuals, wall, shape)
 
 
 def _check_binding(visual: VisualMesh, wall: WallMesh | ShellMesh) -> None:

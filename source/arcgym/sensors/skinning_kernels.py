@@ -80,39 +80,3 @@ def skin_vertices(
         normal += weight[k] * (frame * rest_normals[vertex, k, p])
     points[world * skin_indices.shape[0] + vertex] = point
     normals[world * skin_indices.shape[0] + vertex] = wp.normalize(normal)
-
-
-@wp.kernel
-def write_faces(
-    faces: wp.array2d[wp.vec3i],
-    patient: wp.array[int],
-    written: wp.array[int],
-    vertices: int,
-    lanes: int,
-    indices: wp.array[int],
-):
-    """Give worlds whose patient is another one than before that patient's triangles. Launch (W, lanes).
-
-    Args:
-        faces: Triangles of each patient, shape (F, P).
-        patient: Patient of each world, shape (W,).
-        written: Patient whose triangles each world has, shape (W,).
-        vertices: Vertices of a world, M.
-        lanes: Threads a world.
-        indices: Corners of the triangles of all worlds, shape (3*W*F,); written.
-    """
-    world, lane = wp.tid()
-    p = patient[world]
-    if written[world] == p:
-        return
-    for face in range(lane, faces.shape[0], lanes):
-        corner = 3 * (world * faces.shape[0] + face)
-        for k in range(3):
-            indices[corner + k] = world * vertices + faces[face, p][k]
-
-
-@wp.kernel
-def group_roots(mesh: wp.uint64, roots: wp.array[int]):
-    """Write the root of each world's subtree, shape (W,); constant while the mesh is only refitted. Launch (W,)."""
-    world = wp.tid()
-    roots[world] = wp.mesh_get_group_root(mesh, world)
