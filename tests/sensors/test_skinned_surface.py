@@ -12,6 +12,7 @@ import warp as wp
 from tube_scene import MIDDLE, tube_visual, tube_wall
 
 from arcgym.sensors import SkinnedSurface
+from arcgym.sensors.skinning_cuda_kernels import VERTICES, skin_parts, wall_frame_numbers
 
 
 def make(num_envs: int = 1) -> tuple[SkinnedSurface, np.ndarray, np.ndarray]:
@@ -47,6 +48,27 @@ def test_masked_world_keeps_its_vertices():
     first, second = surface.points.numpy().reshape(2, -1, 3)
     assert np.array_equal(first, surface.points.numpy()[: len(visual)]) and np.allclose(first, visual, atol=1.0e-6)
     assert np.allclose(second, visual + (0.0, 0.01, 0.0), atol=1.0e-6)
+
+
+@pytest.mark.parametrize("left_out", [0, 1])
+def test_kernels_for_a_gpu_do_what_those_for_a_cpu_do(left_out: int):
+    surface, wall, visual = make(num_envs=3)
+    bent = wall + 0.01 * np.sin(40.0 * wall[:, 2:]) * np.array([1.0, 0.5, 0.0])
+    nodes = wall_array(wall, bent, bent + 0.1)
+    surface.update(nodes)
+    count = len(visual) - left_out
+    drawn = wp.array([True, False, True], dtype=wp.bool, device="cpu")
+    frames = wp.zeros((len(wall), 9, 3), dtype=float, device="cpu")
+    inputs = [nodes, surface._neighbors, drawn]
+    wp.launch(wall_frame_numbers, (len(wall), 3), inputs=inputs, outputs=[frames], device="cpu")
+    binding = [array[:count].contiguous() for array in surface._binding]
+    found = [wp.zeros(3 * count, dtype=wp.vec3, device="cpu") for _ in range(2)]
+    inputs = [nodes, frames, surface.patient, *binding, drawn]
+    wp.launch(skin_parts, (-(-count // VERTICES), 3), inputs=inputs, outputs=found, device="cpu")
+    for own, expected, tolerance in zip(found, (surface.points, surface.normals), (1.0e-7, 1.0e-6), strict=True):
+        values, wanted = own.numpy().reshape(3, count, 3), expected.numpy().reshape(3, -1, 3)[:, :count]
+        np.testing.assert_allclose(values[[0, 2]], wanted[[0, 2]], atol=tolerance)
+        assert not values[1].any()
 
 
 def test_foreign_wall_is_refused():

@@ -73,7 +73,7 @@ class TreeLayout:
 
 
 def _numbered(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Number the nodes of a tree by their places in memory.
+    """Give the nodes of a tree numbers by their places in memory.
 
     Args:
         nodes: Two children and 0, or two triangles and 1, of each node, shape (n, 3); the root comes first.

@@ -12,6 +12,7 @@ import warp as wp
 
 from arcgym.sensors.ray_tree import LEAF_ON_CPU, LEAF_ON_GPU, RayTree, TreeLayout
 from arcgym.sensors.shared_tree import TreeShape, sorted_faces
+from arcgym.sensors.skinning_cuda_kernels import VERTICES, skin_parts, wall_frame_numbers
 from arcgym.sensors.skinning_kernels import skin_vertices, wall_frames
 from arcgym.utils import warp_setup  # noqa: F401
 
@@ -71,7 +72,10 @@ class SkinnedSurface:
         self._device = wp.get_device(device)
         self._everywhere = wp.full(num_envs, True, dtype=wp.bool, device=device)
         self._neighbors = wp.array(walls[0].frame_neighbors, dtype=wp.vec4i, device=device)
-        self._frames = wp.zeros((self.num_nodes, num_envs), dtype=wp.mat33, device=device)
+        if self._device.is_cuda:
+            self._frames = wp.zeros((self.num_nodes, 9, num_envs), dtype=float, device=device)
+        else:
+            self._frames = wp.zeros((self.num_nodes, num_envs), dtype=wp.mat33, device=device)
         self._bind(visuals, walls)
         count = num_envs * self.num_vertices
         self.points = wp.zeros(count, dtype=wp.vec3, device=device)
@@ -94,16 +98,18 @@ class SkinnedSurface:
 
     def _skin(self, nodal_pos: wp.array, drawn: wp.array) -> None:
         """Launch the two skinning kernels."""
+        on_gpu = self._device.is_cuda
         wp.launch(
-            wall_frames,
+            wall_frame_numbers if on_gpu else wall_frames,
             (self.num_nodes, self.num_envs),
             inputs=[nodal_pos, self._neighbors, drawn],
             outputs=[self._frames],
             device=self.device,
         )
+        parts = -(-self.num_vertices // VERTICES)
         wp.launch(
-            skin_vertices,
-            (self.num_vertices, self.num_envs),
+            skin_parts if on_gpu else skin_vertices,
+            (parts if on_gpu else self.num_vertices, self.num_envs),
             inputs=[nodal_pos, self._frames, self.patient, *self._binding, drawn],
             outputs=[self.points, self.normals],
             device=self.device,

@@ -11,6 +11,18 @@ import warp as wp
 from arcgym.utils import warp_setup  # noqa: F401
 
 
+@wp.func
+def wall_frame(nodes: wp.array2d[wp.vec3], near: wp.vec4i, world: int) -> wp.mat33:
+    """Return the orthonormal frame of a wall vertex from the vertices ahead, behind, and on either side of it."""
+    along = wp.normalize(nodes[near[0], world] - nodes[near[1], world])
+    around = nodes[near[2], world] - nodes[near[3], world]
+    across = wp.normalize(wp.cross(along, around))
+    frame = wp.identity(n=3, dtype=float)
+    if wp.length_sq(across) > 0.5:
+        frame = wp.matrix_from_cols(along, wp.cross(across, along), across)
+    return frame
+
+
 @wp.kernel
 def wall_frames(
     nodes: wp.array2d[wp.vec3],
@@ -29,14 +41,7 @@ def wall_frames(
     node, world = wp.tid()
     if not drawn[world]:
         return
-    near = neighbors[node]
-    along = wp.normalize(nodes[near[0], world] - nodes[near[1], world])
-    around = nodes[near[2], world] - nodes[near[3], world]
-    across = wp.normalize(wp.cross(along, around))
-    frame = wp.identity(n=3, dtype=float)
-    if wp.length_sq(across) > 0.5:
-        frame = wp.matrix_from_cols(along, wp.cross(across, along), across)
-    frames[node, world] = frame
+    frames[node, world] = wall_frame(nodes, neighbors[node], world)
 
 
 @wp.kernel
