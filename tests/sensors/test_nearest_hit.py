@@ -20,12 +20,16 @@ def shoot(surface: SurfaceView, directions: wp.array[wp.vec3], asked: bool, side
     """Write the X of the corner beside the edge of the triangle that each ray counts for; 0 where it meets none."""
     ray = wp.tid()
     direction = directions[ray]
-    query = wp.mesh_query_ray(surface.mesh, wp.vec3(0.0), direction, 10.0, surface.roots[0])
+    face = wp.int32(-1)
     if asked:
-        query = nearest_hit(surface, 0, wp.vec3(0.0), direction, 10.0)
+        face = nearest_hit(surface, 0, wp.vec3(0.0), direction, 10.0).face
+    else:
+        query = wp.mesh_query_ray(surface.mesh, wp.vec3(0.0), direction, 10.0, surface.roots[0])
+        if query.result:
+            face = query.face
     side[ray] = 0.0
-    if query.result:
-        side[ray] = wp.mesh_get_point(surface.mesh, query.face * 3)[0]
+    if face >= 0:
+        side[ray] = wp.mesh_get_point(surface.mesh, face * 3)[0]
 
 
 def sides(order: list[int], xs: list[float], asked: bool = True) -> list[float]:

@@ -19,6 +19,8 @@ from arcgym.sensors.shading_kernels import (
 )
 from arcgym.utils import warp_setup  # noqa: F401
 
+TILE = wp.constant(4)
+"""Width and height of the squares of pixels that are drawn together [px]."""
 PROBES = wp.constant(14)
 """Directions in which a lens looks for the side of the wall that it is on."""
 
@@ -38,43 +40,95 @@ def probe_direction(probe: int) -> wp.vec3:
 
 
 @wp.kernel
-def find_covered(
+def look_around(
     surface: SurfaceView,
     drawn: wp.array[wp.bool],
     poses: wp.array[wp.transform],
     far: float,
-    covered: wp.array[wp.bool],
+    sides: wp.array2d[int],
 ):
-    """Mark the worlds whose lens has sunk into the wall: most probes meet the wall's back. Launch (N,).
+    """Find the side of the wall that each probe meets. Launch (N, PROBES).
 
     Args:
         surface: Surface of all worlds.
         drawn: Worlds to look at, shape (N,).
         poses: Camera poses, shape (N,).
         far: Farthest distance seen [m].
+        sides: 1 where a probe meets the wall's front, -1 for its back, 0 for nothing, shape (N, PROBES); written.
+    """
+    world, probe = wp.tid()
+    if not drawn[world]:
+        return
+    origin = wp.transform_get_translation(poses[world])
+    direction = wp.transform_vector(poses[world], probe_direction(probe))
+    query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
+    side = wp.int32(0)
+    if query.result:
+        side = wp.where(query.sign > 0.0, 1, -1)
+    sides[world, probe] = side
+
+
+@wp.kernel
+def find_covered(sides: wp.array2d[int], drawn: wp.array[wp.bool], covered: wp.array[wp.bool]):
+    """Mark the worlds whose lens has sunk into the wall: most probes meet the wall's back. Launch (N,).
+
+    Args:
+        sides: Side of the wall that each probe meets, shape (N, PROBES).
+        drawn: Worlds to look at, shape (N,).
         covered: Whether the lens is covered, shape (N,); written.
     """
     world = wp.tid()
     if not drawn[world]:
         return
-    origin = wp.transform_get_translation(poses[world])
     balance = wp.int32(0)
-    for probe in range(PROBES):
-        direction = wp.transform_vector(poses[world], probe_direction(probe))
-        query = wp.mesh_query_ray(surface.mesh, origin, direction, far, surface.roots[world])
-        if query.result:
-            if query.sign > 0.0:
-                balance += 1
-            else:
-                balance -= 1
+    for probe in range(sides.shape[1]):
+        balance += sides[world, probe]
     covered[world] = balance < 0
 
 
-def make_cast_rays(shade: wp.Function) -> wp.Kernel:
-    """Return the kernel that traces the rays, for a function of the radiance from a hit."""
+@wp.kernel(launch_bounds=(256, 4))
+def cast_rays(
+    surface: SurfaceView,
+    drawn: wp.array[wp.bool],
+    poses: wp.array[wp.transform],
+    rays: wp.array3d[wp.vec3],
+    covered: wp.array[wp.bool],
+    far: float,
+    faces: wp.array4d[int],
+    places: wp.array4d[wp.vec3],
+):
+    """Find the triangle that every ray meets. Launch (N, ceil(H / TILE), ceil(W / TILE), TILE * TILE).
 
-    @wp.kernel
-    def cast_rays(
+    The threads of a GPU's warp have rays beside and below each other, which go through much the same boxes.
+
+    Args:
+        surface: Surface of all worlds.
+        drawn: Worlds to draw, shape (N,).
+        poses: Camera poses, shape (N,).
+        rays: Directions in the camera's frame, shape (H, W, S).
+        covered: Worlds whose lens is covered, which have no rays, shape (N,).
+        far: Farthest distance seen [m].
+        faces: Triangle, -1 for none, shape (N, H, W, S); written.
+        places: Distance along the ray [m] and shares of the first two corners, shape (N, H, W, S); written.
+    """
+    world, tile_row, tile_column, number = wp.tid()
+    row = tile_row * TILE + number // TILE
+    column = tile_column * TILE + number % TILE
+    if row >= rays.shape[0] or column >= rays.shape[1] or not drawn[world] or covered[world]:
+        return
+    origin = wp.transform_get_translation(poses[world])
+    for sample in range(rays.shape[2]):
+        direction = wp.transform_vector(poses[world], rays[row, column, sample])
+        hit = nearest_hit(surface, world, origin, direction, far)
+        faces[world, row, column, sample] = hit.face
+        places[world, row, column, sample] = wp.vec3(hit.t, hit.u, hit.v)
+
+
+def make_light(shade: wp.Function) -> wp.Kernel:
+    """Return the kernel that lights what the rays met, for a function of the radiance from a hit."""
+
+    @wp.kernel(launch_bounds=(256, 3))
+    def light(
         surface: SurfaceView,
         lighting: Lighting,
         drawn: wp.array[wp.bool],
@@ -84,10 +138,12 @@ def make_cast_rays(shade: wp.Function) -> wp.Kernel:
         covered: wp.array[wp.bool],
         near: float,
         far: float,
+        faces: wp.array4d[int],
+        places: wp.array4d[wp.vec3],
         radiance: wp.array3d[wp.vec3],
         depth: wp.array3d[float],
     ):
-        """Trace radiance (mean of the samples) and distance (nearest of the samples) of every pixel. Launch (N, H, W).
+        """Find radiance (mean of the samples) and distance (nearest of the samples) of every pixel. Launch (N, H, W).
 
         Args:
             surface: Surface of all worlds.
@@ -99,6 +155,8 @@ def make_cast_rays(shade: wp.Function) -> wp.Kernel:
             covered: Worlds whose lens is covered, shape (N,).
             near: Distance given where the lens is covered [m].
             far: Farthest distance seen [m].
+            faces: Triangle that each ray meets, -1 for none, shape (N, H, W, S).
+            places: Distance along the ray [m] and shares of the first two corners, shape (N, H, W, S).
             radiance: Linear radiance, shape (N, H, W); written.
             depth: Distance along the ray [m], shape (N, H, W); written.
         """
@@ -115,19 +173,20 @@ def make_cast_rays(shade: wp.Function) -> wp.Kernel:
         nearest = far
         for sample in range(rays.shape[2]):
             direction = wp.transform_vector(camera, rays[row, column, sample])
-            query = nearest_hit(surface, world, origin, direction, far)
-            if query.result:
-                hit = surface_hit(surface, query, world, origin, direction, lighting.pixel_angle)
-                total += shade(surface, lighting, world, hit, camera, direction, query.t, texture_offset[world])
-                nearest = wp.min(nearest, query.t)
+            face = faces[world, row, column, sample]
+            if face >= 0:
+                place = places[world, row, column, sample]
+                hit = surface_hit(surface, face, place, world, origin, direction, lighting.pixel_angle)
+                total += shade(surface, lighting, world, hit, camera, direction, place[0], texture_offset[world])
+                nearest = wp.min(nearest, place[0])
         radiance[world, row, column] = total / float(rays.shape[2])
         depth[world, row, column] = nearest
 
-    return cast_rays
+    return light
 
 
-cast_rays = make_cast_rays(shade)
-cast_rays_measured = make_cast_rays(shade_measured)
+light = make_light(shade)
+light_measured = make_light(shade_measured)
 
 
 @wp.kernel

@@ -78,19 +78,19 @@ def soil(
     camera = poses[world]
     direction = wp.transform_vector(camera, rays[row, column, 0])
     origin = wp.transform_get_translation(camera)
-    query = nearest_hit(surface, world, origin, direction, far)
-    if not query.result:
+    hit = nearest_hit(surface, world, origin, direction, far)
+    if hit.face < 0:
         return
-    i0 = wp.mesh_get_index(surface.mesh, query.face * 3)
-    i1 = wp.mesh_get_index(surface.mesh, query.face * 3 + 1)
-    i2 = wp.mesh_get_index(surface.mesh, query.face * 3 + 2)
-    w2 = 1.0 - query.u - query.v
+    i0 = wp.mesh_get_index(surface.mesh, hit.face * 3)
+    i1 = wp.mesh_get_index(surface.mesh, hit.face * 3 + 1)
+    i2 = wp.mesh_get_index(surface.mesh, hit.face * 3 + 2)
+    w2 = 1.0 - hit.u - hit.v
     first = world * residue.rest.shape[0]
     p = surface.patient[world]
     at = (
-        residue.rest[i0 - first, p] * query.u + residue.rest[i1 - first, p] * query.v + residue.rest[i2 - first, p] * w2
+        residue.rest[i0 - first, p] * hit.u + residue.rest[i1 - first, p] * hit.v + residue.rest[i2 - first, p] * w2
     )
-    normal = wp.normalize(surface.normals[i0] * query.u + surface.normals[i1] * query.v + surface.normals[i2] * w2)
+    normal = wp.normalize(surface.normals[i0] * hit.u + surface.normals[i1] * hit.v + surface.normals[i2] * w2)
     grade = residue.grades[residue.scores[world, wp.clamp(int(at[3] + 0.5), 0, 2)]]
     color = radiance[world, row, column]
     light = wp.dot(color, wp.vec3(0.2126, 0.7152, 0.0722)) / MUCOSA

@@ -44,15 +44,15 @@ def mark_seen(
     camera = poses[world]
     direction = wp.transform_vector(camera, rays[row, column, 0])
     origin = wp.transform_get_translation(camera)
-    query = nearest_hit(surface, world, origin, direction, reach)
-    if not query.result:
+    hit = nearest_hit(surface, world, origin, direction, reach)
+    if hit.face < 0:
         return
-    weight = wp.vec3(query.u, query.v, 1.0 - query.u - query.v)
+    weight = wp.vec3(hit.u, hit.v, 1.0 - hit.u - hit.v)
     nearest = wp.int32(0)
     for k in range(3):
         if weight[k] > weight[nearest]:
             nearest = k
-    vertex = wp.mesh_get_index(surface.mesh, query.face * 3 + nearest) - world * area.shape[0]
+    vertex = wp.mesh_get_index(surface.mesh, hit.face * 3 + nearest) - world * area.shape[0]
     patient = surface.patient[world]
     if wp.atomic_max(seen, world, vertex, 1) == 0:
         wp.atomic_add(seen_area, world, area[vertex, patient])

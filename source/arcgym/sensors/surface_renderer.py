@@ -13,12 +13,16 @@ import warp as wp
 
 from arcgym.anatomy.stage.types import TEXTURE_LENGTH
 from arcgym.sensors.camera_kernels import (
+    PROBES,
+    TILE,
     cast_rays,
-    cast_rays_measured,
     develop,
     develop_gamma,
     expose,
     find_covered,
+    light,
+    light_measured,
+    look_around,
     row_brightness,
 )
 from arcgym.sensors.camera_rays import fisheye_rays, pixel_angle
@@ -108,6 +112,9 @@ class SurfaceRenderer:
         self.rgb = wp.zeros((*self.shape, 3), dtype=wp.uint8, device=device)
         self.depth = wp.full(self.shape, optics.far, dtype=float, device=device)
         self.radiance = wp.zeros(self.shape, dtype=wp.vec3, device=device)
+        self._faces = wp.zeros((*self.shape, samples), dtype=int, device=device)
+        self._places = wp.zeros((*self.shape, samples), dtype=wp.vec3, device=device)
+        self._sides = wp.zeros((surface.num_envs, int(PROBES)), dtype=int, device=device)
         self.covered = wp.zeros(surface.num_envs, dtype=wp.bool, device=device)
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
@@ -129,13 +136,7 @@ class SurfaceRenderer:
         `motion` (num_envs,), spatial_vector, is the velocity [m/s] and spin [rad/s] of the camera in its own frame, by
         which a picture with a shutter is blurred; None draws it sharp.
         """
-        wp.launch(
-            find_covered,
-            self.shape[0],
-            inputs=[self.view, drawn, poses, self.optics.far],
-            outputs=[self.covered],
-            device=self.device,
-        )
+        self._find_covered(poses, drawn)
         self._in_parts(self._casting, lambda rows: self._cast(poses, looks, drawn, rows))
         if self.soil is not None:
             self.soil(poses, drawn)
@@ -163,22 +164,33 @@ class SurfaceRenderer:
 
         pace.run(draw)
 
-    def _cast(self, poses: wp.array, looks: WorldLooks, drawn: wp.array, rows: slice) -> None:
-        num_envs, _, width = self.shape
+    def _find_covered(self, poses: wp.array, drawn: wp.array) -> None:
+        """Find the worlds whose lens is covered."""
         wp.launch(
-            cast_rays if self.optics.lighting.concentration is None else cast_rays_measured,
-            (num_envs, rows.stop - rows.start, width),
-            inputs=[
-                self.view,
-                self.lighting,
-                drawn,
-                poses,
-                self.rays[rows],
-                looks.texture_offset,
-                self.covered,
-                self.optics.near,
-                self.optics.far,
-            ],
+            look_around,
+            self._sides.shape,
+            inputs=[self.view, drawn, poses, self.optics.far],
+            outputs=[self._sides],
+            device=self.device,
+        )
+        wp.launch(find_covered, self.shape[0], inputs=[self._sides, drawn], outputs=[self.covered], device=self.device)
+
+    def _cast(self, poses: wp.array, looks: WorldLooks, drawn: wp.array, rows: slice) -> None:
+        """Find what the rays meet, then light it: two kernels, as a GPU has room for more threads that only trace."""
+        (num_envs, _, width), height, far = self.shape, rows.stop - rows.start, self.optics.far
+        rays, hits = self.rays[rows], [self._faces[:, rows], self._places[:, rows]]
+        wp.launch(
+            cast_rays,
+            (num_envs, -(-height // TILE), -(-width // TILE), TILE * TILE),
+            inputs=[self.view, drawn, poses, rays, self.covered, far],
+            outputs=hits,
+            device=self.device,
+        )
+        lit_by = [drawn, poses, rays, looks.texture_offset, self.covered, self.optics.near, far]
+        wp.launch(
+            light if self.optics.lighting.concentration is None else light_measured,
+            (num_envs, height, width),
+            inputs=[self.view, self.lighting, *lit_by, *hits],
             outputs=[self.radiance[:, rows], self.depth[:, rows]],
             device=self.device,
         )

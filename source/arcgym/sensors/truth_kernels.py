@@ -46,11 +46,11 @@ def look_closer(
     camera = poses[world]
     direction = wp.transform_vector(camera, rays[row, column, 0])
     origin = wp.transform_get_translation(camera)
-    query = nearest_hit(surface, world, origin, direction, far)
-    if not query.result:
+    hit = nearest_hit(surface, world, origin, direction, far)
+    if hit.face < 0:
         return
-    corner = query.face * 3
-    weight = wp.vec3(query.u, query.v, 1.0 - query.u - query.v)
+    corner = hit.face * 3
+    weight = wp.vec3(hit.u, hit.v, 1.0 - hit.u - hit.v)
     first = world * labels.shape[0]
     total = wp.vec3(0.0)
     nearest = int(0)
@@ -61,7 +61,7 @@ def look_closer(
             nearest = k
     if wp.dot(total, direction) > 0.0:
         total = -total
-    depth[world, row, column] = query.t
+    depth[world, row, column] = hit.t
     normal[world, row, column] = wp.transform_vector(wp.transform_inverse(camera), wp.normalize(total))
     kind = wp.mesh_get_index(surface.mesh, corner + nearest) - first
     label[world, row, column] = labels[kind, surface.patient[world]]
