@@ -10,8 +10,11 @@ from types import SimpleNamespace
 
 import pytest
 import torch
+import warp as wp
 
 from arcgym.envs.mdp.lumen import METRIC, PAPER, LumenCfg, lumen_scores, resolve_lumen, score_depth
+from arcgym.envs.mdp.lumen_cuda_kernels import score_images_together
+from arcgym.envs.mdp.lumen_kernels import LumenConstants
 
 
 class FakeEnv:
@@ -92,6 +95,20 @@ def test_image_with_a_nan_has_no_score() -> None:
 def test_large_and_double_images_are_scored() -> None:
     scores = score_depth(torch.full((1, 2000, 2000), 0.03, dtype=torch.float64), PAPER)
     assert scores.center.tolist() == [pytest.approx([999.5, 999.5])] and scores.s_c.item() == pytest.approx(1.0)
+
+
+def test_the_kernel_for_a_gpu_scores_as_the_one_for_a_cpu_does() -> None:
+    depth = 0.15 * torch.rand(6, 30, 40, generator=torch.Generator().manual_seed(0))
+    depth[1, 2, 3], depth[2], depth[3] = math.nan, 0.6, 0.0
+    constants = LumenConstants()
+    for name, value in vars(METRIC).items():
+        setattr(constants, name, value)
+    scores = torch.empty(10, 6)
+    inputs = [wp.from_torch(depth.flatten(1)), 40, 1, constants, wp.from_torch(scores)]
+    wp.launch(score_images_together, (6, 1), inputs=inputs, device="cpu")
+    known = score_depth(depth, METRIC)
+    expected = [known.s_c, known.s_1, known.s_2, known.s_3, known.s_o, known.reward, *known.center.T]
+    torch.testing.assert_close(scores, torch.stack([*expected, known.depth_min, known.depth_max]), equal_nan=True)
 
 
 def test_worlds_are_scored_independently() -> None:

@@ -87,9 +87,7 @@ def soil(
     w2 = 1.0 - hit.u - hit.v
     first = world * residue.rest.shape[0]
     p = surface.patient[world]
-    at = (
-        residue.rest[i0 - first, p] * hit.u + residue.rest[i1 - first, p] * hit.v + residue.rest[i2 - first, p] * w2
-    )
+    at = residue.rest[i0 - first, p] * hit.u + residue.rest[i1 - first, p] * hit.v + residue.rest[i2 - first, p] * w2
     normal = wp.normalize(surface.normals[i0] * hit.u + surface.normals[i1] * hit.v + surface.normals[i2] * w2)
     grade = residue.grades[residue.scores[world, wp.clamp(int(at[3] + 0.5), 0, 2)]]
     color = radiance[world, row, column]

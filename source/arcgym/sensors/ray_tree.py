@@ -11,13 +11,12 @@ import warp as wp
 
 from arcgym.sensors.ray_tree_kernels import MESH_BYTES, describe_mesh, fit_boxes, read_tree, write_faces
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.warp_block_kernels import LANES, lanes
 
 LEAF_ON_CPU = 4
 """Triangles in a leaf at most."""
 LEAF_ON_GPU = 2
 """The same on a GPU."""
-LANES = 256
-"""Threads of a GPU that work on a world."""
 LOW = 4
 """Height up to which nodes are fitted piece by piece, so that a GPU still has the children in its cache."""
 PIECE = 4096
@@ -161,10 +160,10 @@ class RayTree:
         """Fit the boxes of the worlds marked in `drawn`, shape (num_envs,), bool, to their vertices."""
         if self._several:
             self._write_faces()
-        lanes = LANES if self._device.is_cuda else 1
+        together = lanes(self._device)
         wp.launch(
             fit_boxes,
-            (self.num_envs, lanes),
+            (self.num_envs, together),
             inputs=[
                 self._points,
                 self._faces,
@@ -173,7 +172,7 @@ class RayTree:
                 self._starts,
                 self._vertices,
                 self._size,
-                lanes,
+                together,
                 drawn,
             ],
             outputs=[self._lowers, self._uppers],

@@ -13,19 +13,10 @@ W worlds, P patients, F triangles and N nodes of a world, E nodes of it in use.
 import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
+from arcgym.utils.warp_block_kernels import wait_for_block
 
 MESH_BYTES = 1024
 """Room for Warp's description of a mesh."""
-
-
-@wp.func_native("""
-#if defined(__CUDA_ARCH__)
-    __syncthreads();
-#endif
-""")
-def wait_for_block():
-    """Wait until all threads of a GPU's block are here, and see what they wrote."""
-    ...
 
 
 @wp.func_native("""

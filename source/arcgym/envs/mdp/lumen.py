@@ -43,7 +43,8 @@ from weakref import WeakKeyDictionary
 import torch
 import warp as wp
 
-from arcgym.envs.mdp import lumen_kernels
+from arcgym.envs.mdp.lumen_cuda_kernels import score_images_together
+from arcgym.envs.mdp.lumen_kernels import LumenConstants, score_images
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.utils.configclass import configclass, copy
 from arcgym.utils.string import did_you_mean
@@ -55,6 +56,7 @@ from arcgym.utils.validation import (
     require_order,
     require_positive,
 )
+from arcgym.utils.warp_block_kernels import LANES
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -206,16 +208,20 @@ def score_depth(depth: torch.Tensor, cfg: LumenCfg) -> LumenScores:
     """
     wp.init()  # for images without a simulation
     scores = torch.empty(10, len(depth), dtype=torch.float32, device=depth.device)
-    images = wp.from_torch(depth.float().contiguous())
-    args = [images, _constants(cfg.key()), wp.from_torch(scores)]
-    wp.launch(lumen_kernels.score_images, len(depth), args, device=images.device, block_dim=32)
+    images, constants = wp.from_torch(depth.float().contiguous()), _constants(cfg.key())
+    outputs, device = [wp.from_torch(scores)], images.device
+    if device.is_cuda:
+        shape, inputs = (len(depth), LANES), [images.reshape((len(depth), -1)), depth.shape[2], LANES, constants]
+        wp.launch(score_images_together, shape, inputs=inputs, outputs=outputs, device=device, block_dim=LANES)
+    else:
+        wp.launch(score_images, len(depth), inputs=[images, constants], outputs=outputs, device=device)
     s_c, s_1, s_2, s_3, s_o, reward, row, column, smallest, largest = scores
     return LumenScores(s_c, s_1, s_2, s_3, s_o, reward, torch.stack((row, column), dim=1), smallest, largest)
 
 
 @cache
-def _constants(values: tuple[float, ...]) -> lumen_kernels.LumenConstants:
-    constants = lumen_kernels.LumenConstants()
+def _constants(values: tuple[float, ...]) -> LumenConstants:
+    constants = LumenConstants()
     for field, value in zip(dataclasses.fields(LumenCfg), values, strict=True):
         setattr(constants, field.name, value)
     return constants

@@ -79,24 +79,25 @@ def deep_region(depth: wp.array3d(dtype=float), world: int, threshold: float, fa
     return region
 
 
-@wp.kernel
-def score_images(depth: wp.array3d(dtype=float), constants: LumenConstants, scores: wp.array2d(dtype=float)):
-    """Write ``s_c, s_1, s_2, s_3, s_o``, the reward, row and column of the deep region, smallest and largest depth.
-
-    All are NaN for an image with a NaN. ``depth`` (N, H, W) [m], ``scores`` (10, N). Launch (N,).
-    """
-    w = wp.tid()
-    k = constants
-    span = depth_range(depth, w, k.far)
+@wp.func
+def write_scores(
+    k: LumenConstants,
+    span: wp.vec2,
+    region: DeepRegion,
+    height: int,
+    width: int,
+    w: int,
+    scores: wp.array2d(dtype=float),
+):
+    """Write the scores of an image from its smallest and largest depth [m] and its deep region."""
     if wp.isnan(span[0]):
         for i in range(scores.shape[0]):
             scores[i, w] = wp.nan
         return
-    region = deep_region(depth, w, k.depth_threshold * span[1], k.far)
-    middle = 0.5 * wp.vec2(float(depth.shape[1] - 1), float(depth.shape[2] - 1))
+    middle = 0.5 * wp.vec2(float(height - 1), float(width - 1))
     s_c = 1.0 - wp.length(wp.vec2(region.row, region.column) - middle) / wp.length(middle)
     s_1 = ramp(span[1], k.tau_wall, k.tau_lumen)
-    s_2 = ramp(region.pixels / float(depth.shape[1] * depth.shape[2]), k.rho_min, 1.0)
+    s_2 = ramp(region.pixels / float(height * width), k.rho_min, 1.0)
     s_3 = ramp(span[1] - span[0], k.delta_min, k.delta_good)
     s_o = 2.0 * (k.mix * s_1 + (1.0 - k.mix) * s_2) * s_3 - 1.0
     scores[0, w] = s_c
@@ -109,3 +110,15 @@ def score_images(depth: wp.array3d(dtype=float), constants: LumenConstants, scor
     scores[7, w] = region.column
     scores[8, w] = span[0]
     scores[9, w] = span[1]
+
+
+@wp.kernel
+def score_images(depth: wp.array3d(dtype=float), constants: LumenConstants, scores: wp.array2d(dtype=float)):
+    """Write ``s_c, s_1, s_2, s_3, s_o``, the reward, row and column of the deep region, smallest and largest depth.
+
+    All are NaN for an image with a NaN. ``depth`` (N, H, W) [m], ``scores`` (10, N). Launch (N,).
+    """
+    w = wp.tid()
+    span = depth_range(depth, w, constants.far)
+    region = deep_region(depth, w, constants.depth_threshold * span[1], constants.far)
+    write_scores(constants, span, region, depth.shape[1], depth.shape[2], w, scores)
