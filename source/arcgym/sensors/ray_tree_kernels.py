@@ -13,7 +13,7 @@ W worlds, P patients, F triangles and N nodes of a world, E nodes of it in use.
 import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.warp_block_kernels import wait_for_block
+from arcgym.utils.warp_block_kernels import LANES, wait_for_block
 
 MESH_BYTES = 1024
 """Room for Warp's description of a mesh."""
@@ -163,7 +163,7 @@ def write_faces(
             indices[corner + k] = world * vertices + faces[face, p][k]
 
 
-@wp.kernel
+@wp.kernel(launch_bounds=(LANES, 8))
 def fit_boxes(
     points: wp.array[wp.vec3],
     faces: wp.array2d[wp.vec3i],
