@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 import torch
 
-from arcgym.envs import ManagerBasedEnv, ManagerBasedEnvCfg, ManagerBasedRLEnv
-from arcgym.managers import CostTermCfg, MetricsTermCfg
+from arcgym.envs import ManagerBasedEnv, ManagerBasedEnvCfg, ManagerBasedRLEnv, mdp
+from arcgym.managers import CostTermCfg, MetricsTermCfg, reads_no_sensor
 from arcgym.utils import MISSING, registry
 
 
@@ -50,6 +50,25 @@ def test_only_worlds_that_are_reset_are_drawn_again(env) -> None:
     env.scene.drawn.clear()
     env.step(actions(1.0, 4.0))
     assert env.scene.drawn == [[0, 1], [1]]
+
+
+@pytest.mark.parametrize("looks", [True, False])
+def test_terminations_that_look_at_no_sensor_are_found_before_the_picture_is_drawn(cfg, looks) -> None:
+    pictures_so_far = []
+
+    def too_far(env, limit: float) -> torch.Tensor:
+        pictures_so_far.append(len(env.scene.drawn))
+        return position(env) > limit
+
+    cfg.terminations["above"].func = too_far if looks else reads_no_sensor(too_far)
+    cfg.terminations["time_out"].func = reads_no_sensor(mdp.time_out)
+    env = ManagerBasedRLEnv(cfg)
+    env.reset()
+    before = len(env.scene.drawn)
+    obs, reward, terminated, _, _ = env.step(actions(1.0, 4.0))
+    assert pictures_so_far[-1] - before == (1 if looks else 0)
+    assert terminated.tolist() == [False, True] and env.scene.drawn[before:] == [[0, 1], [1]]
+    assert obs["policy"][:, -1, 0, 0].tolist() == [2, 0] and reward.tolist() == pytest.approx([0.4, 1.6])
 
 
 def test_time_out_truncates(env) -> None:

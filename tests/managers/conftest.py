@@ -37,4 +37,5 @@ def env() -> Any:
         max_episode_length_s=2.0,
         value=torch.tensor([1.0, 3.0]),
         random=WorldRandom(2, "cpu", seed=0),
+        host_ids=lambda env_ids: env_ids,
     )

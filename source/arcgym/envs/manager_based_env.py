@@ -84,6 +84,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.common_step_counter = 0
         self.extras: dict[str, Any] = {"log": {}}
         self._view: Any = None
+        self._known_ids: tuple[torch.Tensor, torch.Tensor] | None = None
         if cfg.seed is None:
             logger.warning("No seed is set: runs will differ. Set env.seed for runs that can be repeated.")
         else:
@@ -233,6 +234,16 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.extras
 
+    def host_ids(self, env_ids: torch.Tensor) -> torch.Tensor:
+        """Return world indices on the CPU; those of the worlds that a step resets are there already.
+
+        Args:
+            env_ids: World indices, int64, shape (n,), as a reset hands them on.
+        """
+        if self._known_ids is not None and env_ids is self._known_ids[0]:
+            return self._known_ids[1]
+        return env_ids.cpu()
+
     def provenance(self, world: int = 0) -> tuple[dict[str, Any], dict[str, Any]]:
         """Return what a recording of a world says about this; see :func:`arcgym.envs.provenance.provenance`."""
         return provenance(self, world)
@@ -274,7 +285,12 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         return [self.event_manager, self.action_manager, self.observation_manager, self.recorder_manager]
 
     def _advance(self, action: torch.Tensor | np.ndarray) -> None:
-        """Apply an action for a control step of physics and update the sensors.
+        """Apply an action for a control step of physics and update the sensors."""
+        self._move(action)
+        self.scene.update(self.step_dt)
+
+    def _move(self, action: torch.Tensor | np.ndarray) -> None:
+        """Apply an action for a control step of physics.
 
         One call makes all physics steps: the simulation replays captured graphs and averages the forces over them.
         """
@@ -285,7 +301,6 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         self.action_manager.apply_action()
         self.recorder_manager.record_pre_step()
         self.sim.step(self.cfg.decimation)
-        self.scene.update(self.step_dt)
         self.common_step_counter += 1
 
     def _reset_idx(self, env_ids: torch.Tensor) -> None:
@@ -295,7 +310,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
             env_ids: World indices, int64, shape (n,).
         """
         self.recorder_manager.record_pre_reset(env_ids)
-        self.random.begin(env_ids)
+        self.random.begin(self.host_ids(env_ids))
         self.scene.reset(env_ids)
         self.event_manager.apply("reset", env_ids, global_env_step_count=self.common_step_counter)
         for manager in self._managers():

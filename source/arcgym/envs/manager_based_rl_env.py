@@ -16,6 +16,7 @@ from arcgym.envs.manager_based_rl_env_cfg import ManagerBasedRLEnvCfg
 from arcgym.managers import CostManager, CurriculumManager, MetricsManager, RewardManager, TerminationManager
 from arcgym.managers.observation_manager import Observation
 from arcgym.utils.threads import one_thread
+from arcgym.utils.transfer import HostCopy, send
 from arcgym.utils.worlds import fill_worlds, finite
 
 StepReturn = tuple[dict[str, Observation], torch.Tensor, torch.Tensor, torch.Tensor, dict[str, Any]]
@@ -28,7 +29,8 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
     A world whose state is not finite is terminated, reset and counted in :attr:`world_failures`; its reward is finite,
     and the other worlds go on.
 
-    A step waits for the device once: for the indices of the worlds to reset.
+    A step waits for the device once: for the indices of the worlds to reset. Where no termination looks at a sensor it
+    does not wait for the pictures, which are drawn while the host prepares the resets.
     """
 
     cfg: ManagerBasedRLEnvCfg
@@ -93,8 +95,9 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
             :meth:`_final`), valid in the worlds that ``_final_obs`` and ``_final_info`` mark, bool, shape (N,).
         """
         self.extras = {"log": {}}
-        self._advance(action)
+        self._move(action)
         self.episode_length_buf += 1
+        self._look_and_find_done()
         self._judge()
         self.recorder_manager.record_post_step()
         self.event_manager.apply("interval", dt=self.step_dt)
@@ -110,6 +113,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.reset_terminated = torch.zeros(num_envs, dtype=torch.bool, device=device)
         self.reset_time_outs = torch.zeros_like(self.reset_terminated)
         self.reset_buf = torch.zeros_like(self.reset_terminated)
+        self._done_on_host = HostCopy(self.reset_buf)
         self._failed = torch.zeros_like(self.reset_terminated)
         self._world_failures = torch.zeros((), dtype=torch.long, device=device)
 
@@ -123,14 +127,28 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
             self.curriculum_manager,
         ]
 
-    def _judge(self) -> None:
-        """Compute terminations, reward, costs and metrics of the step."""
+    def _look_and_find_done(self) -> None:
+        """Read the sensors, and find the worlds that are done: first if no termination looks at a sensor."""
+        if self.termination_manager.reads_sensors:
+            self.scene.update(self.step_dt)
+            self._find_done()
+        else:
+            self._find_done()
+            self.scene.update(self.step_dt)
+
+    def _find_done(self) -> None:
+        """Compute the terminations, and ask for the worlds to reset."""
         self.termination_manager.compute()
         self._failed = self.sim.non_finite.clone()
         self._world_failures += self._failed.sum()
         self.reset_terminated = self.termination_manager.terminated | self._failed
         self.reset_time_outs = self.termination_manager.time_outs & ~self._failed
         self.reset_buf = self.reset_terminated | self.reset_time_outs
+        if self.cfg.autoreset:
+            self._done_on_host.ask(self.reset_buf)
+
+    def _judge(self) -> None:
+        """Compute reward, costs and metrics of the step."""
         dt = self.step_dt if self.cfg.scale_rewards_by_dt else 1.0
         self.reward_buf = self.reward_manager.compute(dt)
         self.extras["cost"] = self.cost_manager.compute(dt)
@@ -140,10 +158,12 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
 
     def _restart_done(self) -> None:
         """Start a new episode in every world that is done, after a last look at the old one where it is asked for."""
-        env_ids = self.reset_buf.nonzero().flatten()
-        if len(env_ids) > 0:
+        host_ids = self._done_on_host.wait().nonzero().flatten()
+        if len(host_ids) > 0:
             if self.cfg.compute_final_obs:
                 self.extras |= self._final()
+            env_ids = send(host_ids, self.device)
+            self._known_ids = (env_ids, host_ids)
             self._start(env_ids, self.reset_buf)
 
     def _final(self) -> dict[str, Any]:

@@ -21,6 +21,7 @@ from arcgym.managers.recorder_term import RecorderTerm
 from arcgym.managers.recorder_writer import save_episode
 from arcgym.managers.reward_manager import RewardManager
 from arcgym.managers.scene_entity_cfg import SceneEntityCfg
+from arcgym.managers.sensor_use import reads_no_sensor
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import (
     ActionTermCfg,
@@ -73,5 +74,6 @@ __all__ = [
     "episode_paths",
     "export_hdf5",
     "load_episodes",
+    "reads_no_sensor",
     "save_episode",
 ]

@@ -11,6 +11,7 @@ import torch
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.term_cfg import EventTermCfg
 from arcgym.utils.string import did_you_mean
+from arcgym.utils.transfer import send
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -20,7 +21,7 @@ class EventManager(ManagerBase):
     """Applies its terms by mode.
 
     Timers and step counts live on the CPU: which worlds are due is known without waiting for the device.
-    Only a reset, whose world indices the environment has just waited for, copies them to the CPU.
+    Only a reset needs its world indices on the CPU, where the environment has just waited for them.
     """
 
     term_cfg_type = EventTermCfg
@@ -66,13 +67,13 @@ class EventManager(ManagerBase):
         """
         if (mode == "interval" and dt is None) or (mode == "reset" and global_env_step_count is None):
             raise ValueError(f"EventManager mode '{mode}' needs {'dt' if dt is None else 'global_env_step_count'}.")
-        env_ids = torch.arange(self.num_envs, device=self.device) if env_ids is None else env_ids
         for name in self.mode_terms(mode):
-            selected = env_ids
             if name in self._time_left:
                 selected = self._due(name, dt or 0.0)
-            elif name in self._last_step:
-                selected = self._rested(name, env_ids, global_env_step_count or 0)
+            else:
+                selected = torch.arange(self.num_envs, device=self.device) if env_ids is None else env_ids
+            if name in self._last_step:
+                selected = self._rested(name, selected, global_env_step_count or 0)
             if len(selected) > 0:
                 term = self._terms[name]
                 term.func(self._env, selected, **term.params)
@@ -82,7 +83,7 @@ class EventManager(ManagerBase):
         super().reset(env_ids)
         for name, time_left in self._time_left.items():
             if not self._terms[name].is_global_time:
-                selected = torch.arange(self.num_envs) if env_ids is None else env_ids.cpu()
+                selected = torch.arange(self.num_envs) if env_ids is None else self._env.host_ids(env_ids)
                 time_left[selected] = self._draw(name, selected)
         return {}
 
@@ -95,14 +96,14 @@ class EventManager(ManagerBase):
         time_left[due] = self._draw(name, due)
         if self._terms[name].is_global_time and len(due) > 0:
             due = torch.arange(self.num_envs)
-        return due.to(self.device)
+        return send(due, self.device)
 
     def _rested(self, name: str, env_ids: torch.Tensor, step: int) -> torch.Tensor:
         """Return those of some worlds whose last event is long enough ago, and note the step for them."""
-        last, ids = self._last_step[name], env_ids.cpu()
+        last, ids = self._last_step[name], self._env.host_ids(env_ids)
         ids = ids[step - last[ids] >= self._terms[name].min_step_count_between_reset]
         last[ids] = step
-        return ids.to(self.device)
+        return send(ids, self.device)
 
     def _draw(self, name: str, worlds: torch.Tensor) -> torch.Tensor:
         """Return the times until the next events of some worlds [s], on the CPU as the indices; (n,)."""

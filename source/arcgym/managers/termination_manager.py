@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import torch
 
 from arcgym.managers.manager_base import ManagerBase
+from arcgym.managers.sensor_use import may_read_sensors
 from arcgym.managers.term_cfg import TerminationTermCfg
 
 if TYPE_CHECKING:
@@ -30,6 +31,11 @@ class TerminationManager(ManagerBase):
         self._time_outs = self._none()
 
     @property
+    def reads_sensors(self) -> bool:
+        """Whether some term may look at a sensor; see :func:`arcgym.managers.reads_no_sensor`."""
+        return any(may_read_sensors(term.func) for term in self._terms.values())
+
+    @property
     def dones(self) -> torch.Tensor:
         """Worlds whose episode ends, bool, shape (N,)."""
         return self._terminated | self._time_outs
@@ -47,8 +53,8 @@ class TerminationManager(ManagerBase):
     @property
     def success(self) -> torch.Tensor:
         """Worlds that a term with ``success=True`` ended in the last step, bool, shape (N,); none without one."""
-        rows = [row for row, name in enumerate(self._order) if self._terms[name].success]
-        return self._dones[rows].any(dim=0)
+        rows = [self._dones[row] for row, name in enumerate(self._order) if self._terms[name].success]
+        return torch.stack(rows).any(dim=0) if rows else self._none()
 
     def compute(self) -> torch.Tensor:
         """Evaluate all terms and return :attr:`dones`."""

@@ -13,6 +13,8 @@ import torch
 import warp as wp
 
 from arcgym.utils import random_kernels
+from arcgym.utils.transfer import send
+from arcgym.utils.worlds import fill_worlds
 
 SeedSource = Callable[[torch.Tensor], torch.Tensor]
 """Gives the seeds of episodes: from world indices on the CPU, int64, shape (n,), to seeds below 2^31, shape (n,)."""
@@ -64,7 +66,7 @@ class WorldRandom:
         """Begin an episode in some worlds, with its seed and at step zero.
 
         Args:
-            env_ids: World indices, int64, shape (n,).
+            env_ids: World indices, int64, shape (n,); those on the CPU are not waited for.
         """
         ids = env_ids.cpu()
         self._episodes[ids.numpy()] += 1
@@ -114,9 +116,9 @@ class WorldRandom:
         """Write the seeds of episodes that begin; indices on the CPU."""
         self._seed[ids] = seeds.to(torch.int32)
         self._step[ids] = 0
-        where = ids.to(self.device)
-        self._device_seed[where] = self._seed[ids].to(self.device)
-        self._device_step[where] = 0
+        where, sent = send(torch.stack([ids, self._seed[ids].long()]), self.device)
+        self._device_seed[where] = sent.int()
+        fill_worlds(self._device_step, where, 0)
 
     def _following(self, ids: torch.Tensor) -> torch.Tensor:
         """Return seeds made of the environment's seed, the worlds' indices and their numbers of episodes."""

@@ -11,6 +11,7 @@ import torch
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.envs.mdp.settings import task_setting
+from arcgym.managers import reads_no_sensor
 from arcgym.utils.validation import expects
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ def segment_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.
     return (env.scene["endoscope"].data.tip_arc_length - start) / (end - start)
 
 
+@reads_no_sensor
 @expects(segment=SEGMENTS)
 def success(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tensor:
     """Whether the tip has reached the end of the segment, by arc length along the lumen, bool, shape (N,).

@@ -15,7 +15,7 @@ import torch
 
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.envs.mdp.observations import tip_lumen_direction
-from arcgym.managers import ManagerTermBase, TerminationTermCfg
+from arcgym.managers import ManagerTermBase, TerminationTermCfg, reads_no_sensor
 from arcgym.utils.validation import FINITE, POSITIVE, Range, expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["episode_cost_above", "facing", "lumen_not_visible", "scope_out", "stuck", "time_out", "wall_penetrated"]
 
 
+@reads_no_sensor
 def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
     """Whether the episode has lasted ``env.max_episode_length`` steps, bool, shape (N,).
 
@@ -33,6 +34,7 @@ def time_out(env: ManagerBasedRLEnv) -> torch.Tensor:
     return env.episode_length_buf >= env.max_episode_length
 
 
+@reads_no_sensor
 @expects(arc_length=FINITE)
 def scope_out(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
     """Whether the tip has come back to the anal verge: the scope is out, bool, shape (N,).
@@ -43,6 +45,7 @@ def scope_out(env: ManagerBasedRLEnv, arc_length: float = 0.0) -> torch.Tensor:
     return env.scene["endoscope"].data.tip_arc_length < arc_length
 
 
+@reads_no_sensor
 @expects(towards=("anus", "cecum"), angle=Range(0.0, math.pi), after_s=Range(0.0))
 def facing(env: ManagerBasedRLEnv, towards: str = "cecum", angle: float = 1.05, after_s: float = 10.0) -> torch.Tensor:
     """Whether the tip looks along the lumen towards one of its ends, bool, shape (N,).
@@ -60,6 +63,7 @@ def facing(env: ManagerBasedRLEnv, towards: str = "cecum", angle: float = 1.05, 
     return looks & (env.episode_length_buf * env.step_dt > after_s)
 
 
+@reads_no_sensor
 @expects(limit=FINITE)
 def episode_cost_above(env: ManagerBasedRLEnv, limit: float, cost: str | None = None) -> torch.Tensor:
     """Whether an episode's cost has exceeded its limit up to the last step, bool, shape (N,).
@@ -83,6 +87,7 @@ def episode_cost_above(env: ManagerBasedRLEnv, limit: float, cost: str | None = 
     return (sum(sums.values(), torch.zeros(env.num_envs, device=env.device)) if cost is None else sums[cost]) > limit
 
 
+@reads_no_sensor
 def wall_penetrated(env: ManagerBasedRLEnv) -> torch.Tensor:
     """Whether a link is going through the wall, bool, shape (N,).
 
@@ -123,6 +128,7 @@ class lumen_not_visible(ManagerTermBase):
         return self._count >= steps
 
 
+@reads_no_sensor
 @expects(window_s=POSITIVE, min_progress=FINITE)
 class stuck(ManagerTermBase):
     """Whether the tip has hardly advanced over the last seconds, bool, shape (N,).
