@@ -97,7 +97,7 @@ class Simulation:
         colon.bind(self)
         endoscope.bind(self)
         self.forward()
-        self._library = SnapshotLibrary(self._rests(), self.device)
+        self._library = SnapshotLibrary(self._rests(), self.world_arrays(), colon.data.patient)
 
     def _build_wall(self) -> None:
         """Wall positions and velocities, contact search, wall solver and its readout."""
@@ -366,7 +366,7 @@ class Simulation:
             IndexError: If there is no such state; indices on a GPU are not checked, for that would wait for it.
         """
         ids = self._worlds(env_ids)
-        self._library.write(self.world_arrays(), snapshot_index, ids, self.colon.data.patient)
+        self._library.write(snapshot_index, ids)
         self._after_write(ids)
 
     def _worlds(self, env_ids: Sequence[int] | torch.Tensor | None) -> torch.Tensor:

@@ -10,22 +10,25 @@ import numpy as np
 import torch
 
 from arcgym.sim.snapshot import Snapshot, SnapshotSet
+from arcgym.utils.world_rows import WorldRows, packed
 
 
 class SnapshotLibrary:
-    """Holds the rest pose and the loaded snapshots of every patient as one tensor for each array of the state."""
+    """Holds the rest pose and the loaded snapshots of every patient in one table, a row for each."""
 
-    def __init__(self, rests: Sequence[Snapshot], device: str):
+    def __init__(self, rests: Sequence[Snapshot], arrays: dict[str, torch.Tensor], patient: torch.Tensor):
         """Start with the rest poses alone.
 
         Args:
             rests: State of index -1 of each of P patients.
-            device: Device of the tensors.
+            arrays: State of all worlds by name, each of shape (N, ...), to write to.
+            patient: Patient of all worlds, shape (N,), read at every write.
         """
-        self._rests, self._device = rests, device
+        self._rests, self._patient, self._device = rests, patient, patient.device
+        self._state = WorldRows([arrays[name] for name in rests[0].arrays])
         self.snapshots: SnapshotSet | None = None
         """The loaded snapshots of the first patient; the others have the same names."""
-        self._arrays = self._stack([[rest] for rest in rests])
+        self._stack([[rest] for rest in rests])
 
     def load(self, sets: Sequence[SnapshotSet]) -> None:
         """Replace the loaded snapshots by those of each patient; names that some patient lacks are left out.
@@ -41,32 +44,27 @@ class SnapshotLibrary:
             )
         kept = [one.only(names) for one in sets]
         self.snapshots = kept[0]
-        self._arrays = self._stack(
+        self._stack(
             [
                 [rest, *(with_room(state, rest) for state in one.snapshots)]
                 for rest, one in zip(self._rests, kept, strict=True)
             ]
         )
 
-    def write(
-        self, arrays: dict[str, torch.Tensor], index: torch.Tensor | int, env_ids: torch.Tensor, patient: torch.Tensor
-    ) -> None:
+    def write(self, index: torch.Tensor | int, env_ids: torch.Tensor) -> None:
         """Copy stored states into some worlds.
 
         Args:
-            arrays: State of all worlds by name, each of shape (N, ...); changed in place.
             index: Which state each world takes, shape (n,), or one for all; -1 is the rest pose.
             env_ids: World indices, int64, shape (n,).
-            patient: Patient of all worlds, shape (N,).
 
         Raises:
             IndexError: If there is no such state; indices on a GPU are not checked, for that would wait for it.
         """
         self._check(torch.as_tensor(index))
-        row = torch.as_tensor(index, device=self._device, dtype=torch.long).expand(len(env_ids)) + 1
-        owner = patient[env_ids].long()
-        for name, array in arrays.items():
-            array[env_ids] = self._arrays[name][owner, row].view(len(env_ids), *array.shape[1:])
+        state = torch.as_tensor(index, device=self._device, dtype=torch.long) + 1
+        row = torch.add(state, self._patient[env_ids], alpha=self._states_each).int()
+        self._state.copy(self._table, row, env_ids)
 
     def _check(self, index: torch.Tensor) -> None:
         stored = 0 if self.snapshots is None else len(self.snapshots.snapshots)
@@ -75,15 +73,16 @@ class SnapshotLibrary:
                 f"Snapshot index {index.tolist()}: {stored} snapshots are loaded, from 0; -1 is the rest pose."
             )
 
-    def _stack(self, snapshots: Sequence[Sequence[Snapshot]]) -> dict[str, torch.Tensor]:
-        """Arrays of the states of each patient, shape (P, S, ...)."""
-        return {name: self._stacked(name, snapshots) for name in self._rests[0].arrays}
+    def _stack(self, snapshots: Sequence[Sequence[Snapshot]]) -> None:
+        """Put the states of each patient into the table, S rows for each of the P patients."""
+        self._states_each = len(snapshots[0])
+        self._table = packed([self._stacked(name, snapshots) for name in self._rests[0].arrays])
 
     def _stacked(self, name: str, snapshots: Sequence[Sequence[Snapshot]]) -> torch.Tensor:
-        """One array of all states."""
+        """One array of all states, shape (P * S, ...)."""
         empty = np.zeros_like(self._rests[0].arrays[name])
         values = [[snapshot.arrays.get(name, empty) for snapshot in own] for own in snapshots]
-        return torch.tensor(np.stack([np.stack(own) for own in values]), device=self._device)
+        return torch.tensor(np.concatenate([np.stack(own) for own in values]), device=self._device)
 
 
 def with_room(snapshot: Snapshot, rest: Snapshot) -> Snapshot:

@@ -15,7 +15,7 @@ from arcgym.assets.endoscope import Endoscope
 from arcgym.sim.contact.contact_search import ContactSearch
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.scope import readout_kernels as kernels
-from arcgym.utils.worlds import fill_worlds
+from arcgym.utils.world_rows import WorldRows
 
 TIP_SPAN = 3
 """Rings on either side of the last link's own among which the tip is located."""
@@ -67,6 +67,10 @@ class ScopeReadout:
         self.tip_arc, self.tip_distance = (wp.zeros(num_envs, dtype=float, device=device) for _ in range(2))
         self.tip_direction = wp.zeros(num_envs, dtype=wp.vec3, device=device)
         self.broken, self.penetrated = (wp.zeros(num_envs, dtype=int, device=device) for _ in range(2))
+        links = (self.step_force, self.link_force, self.link_force_norm, self.link_force_peak)
+        windows = (self.window_force, self.window_force_norm, self.window_force_peak)
+        of_step = (self.penetrated, *links, *windows)
+        self._of_step = WorldRows([wp.to_torch(array).view(num_envs, -1) for array in of_step])
         self._patient, self._ring_arc = patient, patient_array(ring_arcs, float, device)
         self._tip_offset = wp.vec3(0.0, 0.0, endoscope.tip_offset)
         camera = endoscope.stage.camera
@@ -148,10 +152,7 @@ class ScopeReadout:
 
     def reset(self, ids: torch.Tensor) -> None:
         """Forget the control step of the worlds ``ids``, shape (n,), int64."""
-        links = (self.step_force, self.link_force, self.link_force_norm, self.link_force_peak)
-        windows = (self.window_force, self.window_force_norm, self.window_force_peak)
-        for array in (self.penetrated, *links, *windows):
-            fill_worlds(wp.to_torch(array).view(self.num_envs, -1), ids, 0.0)
+        self._of_step.clear(ids)
 
 
 def window_shares(share: np.ndarray, device: str) -> kernels.WindowShares:

@@ -16,7 +16,7 @@ from arcgym.sim.wall.strain_kernels import RestRings, measure_rings
 from arcgym.sim.wall.wall_parameters import wall_anchors
 from arcgym.sim.wall.wall_topology import LumenTopology
 from arcgym.utils.stages import launch_rows
-from arcgym.utils.worlds import fill_worlds
+from arcgym.utils.world_rows import WorldRows
 
 
 class WallReadout:
@@ -59,6 +59,8 @@ class WallReadout:
         self.strain, self.strain_peak, self.tension, self.tension_peak = (
             wp.zeros(self._shape, dtype=float, device=device) for _ in range(4)
         )
+        of_step = (self.strain, self.strain_peak, self.tension, self.tension_peak)
+        self._of_step = WorldRows([wp.to_torch(array).T for array in of_step])
 
     def clear(self) -> None:
         """Start a control step."""
@@ -77,8 +79,7 @@ class WallReadout:
 
     def reset(self, ids: torch.Tensor) -> None:
         """Forget the control step of the worlds ``ids``, shape (n,), int64."""
-        for array in (self.strain, self.strain_peak, self.tension, self.tension_peak):
-            fill_worlds(wp.to_torch(array), ids, 0.0, dim=1)
+        self._of_step.clear(ids)
 
 
 def _rest_rings(
