@@ -119,8 +119,9 @@ def shell_moduli(youngs_modulus: Value, poissons_ratio: Value, thickness: float)
     mu t = E t / (2 (1 + nu)), lambda t = E t nu / (1 - nu^2), D = E t^3 / (12 (1 - nu^2)) (Timoshenko and
     Woinowsky-Krieger, Theory of Plates and Shells).
     """
-    plane = youngs_modulus * thickness / (1.0 - poissons_ratio * poissons_ratio)
-    shear = youngs_modulus * thickness / (2.0 * (1.0 + poissons_ratio))
+    stiffness = youngs_modulus * thickness
+    plane = stiffness / (1.0 - poissons_ratio * poissons_ratio)
+    shear = stiffness / (2.0 * (1.0 + poissons_ratio))
     return shear, poissons_ratio * plane, plane * (thickness * thickness / 12.0)
 
 

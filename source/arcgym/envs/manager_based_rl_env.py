@@ -184,7 +184,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.curriculum_manager.compute(env_ids)
         super()._reset_idx(env_ids)
         fill_worlds(self.episode_length_buf, env_ids, 0)
-        self.extras["log"]["Episode_Termination/non_finite"] = self._failed[env_ids].sum().float()
+        self.extras["log"]["Episode_Termination/non_finite"] = self._failed[env_ids].sum(dtype=torch.float32)
 
 
 def _finite(obs: dict[str, Any]) -> dict[str, Any]:

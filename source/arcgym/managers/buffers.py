@@ -54,7 +54,7 @@ class FrameBuffer:
 
     def reset(self, env_ids: torch.Tensor | slice) -> None:
         """Empty the buffers of some worlds."""
-        self._empty.append(self._worlds[env_ids])
+        self._empty.append(env_ids if isinstance(env_ids, torch.Tensor) else self._worlds[env_ids])
 
     def _keep(self, frames: torch.Tensor, store: Store) -> None:
         """Take the frames of all worlds or of some as the new past."""

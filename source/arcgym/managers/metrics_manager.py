@@ -48,7 +48,7 @@ class MetricsManager(ManagerBase):
     @property
     def finished(self) -> dict[str, torch.Tensor]:
         """Each term over the last episode that a world finished, shape (N,); zero before the first one."""
-        return {name: self._finished[index] for index, name in enumerate(self._terms)}
+        return {name: self._finished[self._order.index(name)] for name in self._terms}
 
     def compute(self) -> None:
         """Take the values of this control step in; one that is not finite counts as zero."""
@@ -78,13 +78,12 @@ class MetricsManager(ManagerBase):
         super().reset(env_ids)
         self._sort_rows()
         selected = slice(None) if env_ids is None else env_ids
-        steps, values = self._num_steps[selected], self._values[:, selected]
-        has_run = (steps > 0).float()
-        mean = self._rows_of("mean")
-        reduced = torch.cat((values[: mean.start], values[mean] / steps.clamp(min=1)))
-        means = (reduced * has_run).sum(dim=1) / has_run.sum().clamp(min=1)
-        rows = [self._order.index(name) for name in self._terms]
-        self._finished[:, selected] = torch.where(steps > 0, reduced[rows], self._finished[:, selected])
+        steps = self._num_steps[selected]
+        values = self._values.clone() if env_ids is None else self._values[:, env_ids]
+        values[self._rows_of("mean")] /= steps.clamp(min=1)
+        has_run = steps > 0
+        means = (values * has_run).sum(dim=1) / has_run.sum().clamp(min=1)
+        self._finished[:, selected] = torch.where(has_run, values, self._finished[:, selected])
         fill_worlds(self._values, env_ids, 0.0, dim=1)
         fill_worlds(self._num_steps, env_ids, 0.0)
         by_name = dict(zip(self._order, means, strict=True))
@@ -94,7 +93,8 @@ class MetricsManager(ManagerBase):
         """Sort the rows by reduction again if one was changed."""
         order = sorted(self._terms, key=self._place)
         if order != self._order:
-            self._values = self._values[[self._order.index(name) for name in order]]
+            rows = [self._order.index(name) for name in order]
+            self._values, self._finished = self._values[rows], self._finished[rows]
             self._order = order
 
     def _place(self, name: str) -> int:

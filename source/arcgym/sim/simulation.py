@@ -35,6 +35,7 @@ from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.sim.wall.wall_topology import LumenTopology
 from arcgym.sim.wall_effects import wall_effects
 from arcgym.utils.configclass import validate
+from arcgym.utils.worlds import fill_worlds
 
 logger = logging.getLogger(__name__)
 
@@ -379,7 +380,7 @@ class Simulation:
         """Let worlds whose state was written forget commands, averages and what the solvers remember."""
         self._clear_step(ids)
         mask = torch.zeros(self.num_envs + 1, dtype=torch.bool, device=self.device)
-        mask[ids] = True
+        fill_worlds(mask, ids, True)
         self.coupling.reset(wp.from_torch(mask))
 
     def _clear_step(self, ids: torch.Tensor) -> None:

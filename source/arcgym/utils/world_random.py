@@ -49,6 +49,10 @@ class WorldRandom:
         self._step = torch.zeros(num_envs, dtype=torch.int32)
         self._device_seed = self._seed.to(device, copy=True)
         self._device_step = self._step.to(device, copy=True)
+        self._places = {
+            "cpu": [wp.from_torch(self._seed), wp.from_torch(self._step)],
+            device: [wp.from_torch(self._device_seed), wp.from_torch(self._device_step)],
+        }
         self.reseed(seed)
 
     @property
@@ -100,15 +104,14 @@ class WorldRandom:
     def _draw(
         self, kernel: wp.Kernel, tag: str, shape: tuple[int, ...], env_ids: torch.Tensor | None, on_cpu: bool
     ) -> torch.Tensor:
-        device, seed, step = self.device, self._device_seed, self._device_step
+        device = "cpu" if on_cpu else self.device
         worlds = self._worlds if env_ids is None else env_ids
         if on_cpu:
-            device, seed, step = "cpu", self._seed, self._step
             worlds = self._cpu_worlds if env_ids is None else env_ids.cpu()
         columns = math.prod(shape)
         out = torch.empty((len(worlds), columns), device=device)
         if out.numel():
-            inputs = [wp.from_torch(worlds), wp.from_torch(seed), wp.from_torch(step), _number_of(tag)]
+            inputs = [wp.from_torch(worlds), *self._places[device], _number_of(tag)]
             wp.launch(kernel, out.shape, inputs=inputs, outputs=[wp.from_torch(out)], device=device)
         return out.view(len(worlds), *shape)
 

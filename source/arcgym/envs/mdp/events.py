@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import torch
@@ -171,7 +172,7 @@ def randomize_light(
         gain: Smallest and largest factor.
         factor: Factor on what is drawn.
     """
-    env.scene["camera"].write_light_gain(factor * _log_uniform(env, "light", env_ids, gain), env_ids)
+    env.scene["camera"].write_light_gain(_log_uniform(env, "light", env_ids, gain, factor=factor), env_ids)
 
 
 @expects(gain=POSITIVE)
@@ -227,7 +228,8 @@ def randomize_tissue_stiffness(
         scale: Smallest and largest factor.
         factor: Factor on what is drawn.
     """
-    env.scene["colon"].write_stiffness_scale_to_sim(factor * _log_uniform(env, "stiffness", env_ids, scale), env_ids)
+    drawn = _log_uniform(env, "stiffness", env_ids, scale, factor=factor)
+    env.scene["colon"].write_stiffness_scale_to_sim(drawn, env_ids)
 
 
 @expects(presets=TISSUE_PRESETS)
@@ -282,7 +284,8 @@ def randomize_friction(
         friction: Smallest and largest coefficient.
         factor: Factor on what is drawn.
     """
-    env.scene["endoscope"].write_friction_to_sim(factor * _log_uniform(env, "friction", env_ids, friction), env_ids)
+    drawn = _log_uniform(env, "friction", env_ids, friction, factor=factor)
+    env.scene["endoscope"].write_friction_to_sim(drawn, env_ids)
 
 
 @expects(postures=POSTURES)
@@ -302,13 +305,25 @@ def change_posture(
 
 def _choice(env: ManagerBasedEnv, tag: str, env_ids: torch.Tensor, values: Sequence[object]) -> torch.Tensor:
     """Return one of ``values`` for each of some worlds, shape (n, ...)."""
-    pool = torch.tensor(values, dtype=torch.float32, device=env.device)
+    pool = _pool(tuple(values), env.device)
     return pool[env.random.integers(tag, 0, len(pool), env_ids=env_ids)]
 
 
+@cache
+def _pool(values: tuple[object, ...], device: str) -> torch.Tensor:
+    """Return values on the device, sent once: sending them makes the host wait for the device."""
+    return torch.tensor(values, dtype=torch.float32, device=device)
+
+
 def _log_uniform(
-    env: ManagerBasedEnv, tag: str, env_ids: torch.Tensor, bounds: tuple[float, float], *shape: int
+    env: ManagerBasedEnv,
+    tag: str,
+    env_ids: torch.Tensor,
+    bounds: tuple[float, float],
+    *shape: int,
+    factor: float = 1.0,
 ) -> torch.Tensor:
-    """Return numbers whose logarithm is uniform between the logarithms of ``bounds`` (positive), shape (n, ...)."""
+    """Return numbers whose logarithm is uniform between those of ``bounds`` (positive), times a factor, (n, ...)."""
     low, high = (math.log(bound) for bound in bounds)
-    return torch.exp(low + (high - low) * env.random.uniform(tag, *shape, env_ids=env_ids))
+    drawn = torch.exp(low + (high - low) * env.random.uniform(tag, *shape, env_ids=env_ids))
+    return drawn if factor == 1.0 else factor * drawn

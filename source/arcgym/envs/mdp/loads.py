@@ -92,11 +92,14 @@ def load_parts(env: ManagerBasedEnv, kind: str, reduce: str = "mean") -> torch.T
 def load(env: ManagerBasedEnv, kind: str, reduce: str = "mean") -> torch.Tensor:
     """Largest load on a part, a window of the scope or a ring of the wall [N, or strain], shape (N,).
 
+    It may be memory that the next step overwrites.
+
     Args:
         kind: One of :data:`LOADS`.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
     """
-    return load_parts(env, kind, reduce).amax(dim=1)
+    parts = load_parts(env, kind, reduce)
+    return parts.squeeze(1) if parts.shape[1] == 1 else parts.amax(dim=1)
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS, limit=TIERS)
