@@ -14,7 +14,7 @@ from arcgym.utils import world_rows_kernels as kernels
 
 
 class WorldRows:
-    """Sets some worlds' entries of several tensors at once. N worlds, with C numbers of four bytes each in all tensors.
+    """Sets some worlds' entries of several tensors at once. N worlds, with K numbers of four bytes each in all tensors.
 
     Numbers are moved bit by bit, whatever their type.
     """
@@ -23,7 +23,7 @@ class WorldRows:
         """Note where the tensors are: they must stay there.
 
         Args:
-            tensors: Shape (N, ...) each, of a type of four bytes.
+            tensors: Shape (N, ...) each, of four dimensions at most and a type of four bytes.
 
         Raises:
             ValueError: If numbers have another size.
@@ -45,7 +45,7 @@ class WorldRows:
         """Copy rows of a table into some worlds.
 
         Args:
-            table: As of :func:`packed`, shape (M, C), int32.
+            table: As of :func:`packed`, shape (M, K), int32.
             row: Row that each world takes, shape (n,), int32.
             env_ids: World indices, shape (n,), int64.
         """
@@ -57,16 +57,16 @@ class WorldRows:
 
 
 def packed(tensors: Sequence[torch.Tensor]) -> torch.Tensor:
-    """Return tensors of shape (M, ...) side by side, as words of four bytes, shape (M, C), int32."""
+    """Return tensors of shape (M, ...) side by side, as words of four bytes, shape (M, K), int32."""
     return torch.cat([_words(tensor).flatten(1) for tensor in tensors], dim=1)
 
 
 def _words(tensor: torch.Tensor) -> torch.Tensor:
-    """Return a view as words of four bytes, shape (N, A, B), int32."""
+    """Return a view as words of four bytes, shape (N, A, B, C), int32."""
     if tensor.element_size() != 4:
         raise ValueError(f"Rows of worlds hold numbers of four bytes, but a tensor is of type {tensor.dtype}.")
     words = tensor.view(torch.int32)
-    return words.view(len(words), *((1,) * (3 - words.dim())), *words.shape[1:])
+    return words.view(len(words), *((1,) * (4 - words.dim())), *words.shape[1:])
 
 
 def _rows(words: wp.array, first: int) -> kernels.Rows:
