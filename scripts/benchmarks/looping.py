@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Push a colonoscope through a mobile sigmoid colon, turn the shaft into an alpha loop, and straighten it.
 
-python scripts/benchmarks/looping.py --out logs/looping --json_out docs/data/looping.json
+python scripts/benchmarks/looping.py --out logs/looping --json_out looping.json
 
 First a scripted expert pushes the tip past the sigmoid colon. It pushes on from there, once as before and once while
 the shaft is rolled anticlockwise: the tip falls behind, and the loop crosses itself as seen from the front. Then the

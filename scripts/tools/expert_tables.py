@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make tables, and a file such as ``docs/data/experts_validation_v4.csv``, from folders of ``arcgym bench experts``.
+"""Make tables, and a file of all rows, from folders of ``arcgym bench experts``.
 
 Rows of a patient, robot and tissue count once, that of the last folder; drives that computing time ended count with how
 far they came.
