@@ -5,7 +5,7 @@
 
 Several files become several curves. Needs matplotlib (``pip install arcgym[dev]``). Run for example::
 
-    python scripts/benchmarks/plot_throughput.py docs/data/throughput_h100.json docs/data/throughput_cpu.json \\
+    python scripts/benchmarks/plot_throughput.py docs/data/throughput_h100.json throughput_cpu.json \\
         --out docs/images/throughput.png
 """
 
