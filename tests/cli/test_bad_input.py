@@ -55,6 +55,10 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*TRAIN, "env.sim.dt=-0.01"], "env.sim.dt is -0.01 s, expected a number above 0"),
         ([*TRAIN, "env.sim.dt=fast"], "'env.sim.dt' expects float, got str 'fast'"),
         ([*TRAIN, "env.simm.dt=0.01"], "'env' has no field 'simm'. Did you mean 'sim'?"),
+        (
+            ["train", "--task", "ARC-Splenic-Capsule", "env.actions.capsule.back_off_velocity=0.045"],
+            "env.actions.capsule.back_off_velocity is 0.045 m/s, but capsule.usda has no tether",
+        ),
         ([*TRAIN, "env.lumen=metrik"], "'metrik'"),
         ([*TRAIN, "env.segment=cecu"], "env.segment is 'cecu'. Did you mean 'cecum'"),
         ([*TRAIN, "env.scene.colon.material=in_sit"], "'in_sit'"),

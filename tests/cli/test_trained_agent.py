@@ -55,11 +55,12 @@ def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -
     assert other.observations.policy.rgb.history_length == 5
 
 
-def test_a_roll_to_and_fro_goes_with_its_policy(tmp_path: Path) -> None:
+def test_a_roll_to_and_fro_and_going_back_go_with_their_policy(tmp_path: Path) -> None:
     """In evaluation and play, in its own task and in another one; a robot without such an action is left alone."""
     trained = "ARC-Rectum-Magnetic"
     env_cfg = load_cfg_from_registry(trained, "env_cfg_entry_point")
     env_cfg.actions.tip.roll_amplitude, env_cfg.actions.tip.roll_period = 9.0, 3.0
+    env_cfg.actions.tip.back_off_velocity, env_cfg.actions.tip.back_off_time = 0.03, 2.0
     env_cfg.actions.tip.linear_scale = 0.02
     agent_cfg = load_cfg_from_registry(trained, "rsl_rl_cfg_entry_point")
     write_params(tmp_path, run={"task": trained, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
@@ -70,6 +71,7 @@ def test_a_roll_to_and_fro_goes_with_its_policy(tmp_path: Path) -> None:
         judged, _ = _load(task, checkpoint, ())
         for tip in (played.actions.tip, judged.actions.tip):
             assert (tip.roll_amplitude, tip.roll_period) == (9.0, 3.0)
+            assert (tip.back_off_velocity, tip.back_off_after, tip.back_off_time) == (0.03, 4.0, 2.0)
             assert tip.linear_scale == (0.02 if trained in task else 0.045)
         still, _ = _load(task, checkpoint, ("env.actions.tip.roll_amplitude=0",))
         assert still.actions.tip.roll_amplitude == 0.0

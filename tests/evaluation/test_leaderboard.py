@@ -105,11 +105,12 @@ def test_an_entry_of_another_physics_step_is_marked_and_stands_last(tmp_path: Pa
     assert "| 1/240 s | self-reported |" in lines[0] and "| 1/480 s‡ | self-reported |" in lines[1]
 
 
-def test_an_entry_that_rolls_says_so_in_the_tasks_where_it_does(tmp_path: Path) -> None:
-    run = changed(TASKS[0], **{"actions.tip.roll_amplitude": [0.0, 9.0]})
+def test_an_entry_that_rolls_or_goes_back_says_so_in_the_tasks_where_it_does(tmp_path: Path) -> None:
+    run = changed(TASKS[0], **{"actions.tip.roll_amplitude": [0.0, 9.0], "actions.tip.back_off_velocity": [0.0, 0.03]})
     (result(tmp_path / "a", run=run) / "entry.yaml").write_text(ENTRY)
     text = entries_table(submissions(tmp_path)[0])
-    assert f"| `{TASKS[0]}` | Mine, with a roll to and fro of 9 rad/s | A. Author |" in text
+    added = "with a roll to and fro of 9 rad/s, going back at 30 mm/s where its tether no longer comes on"
+    assert f"| `{TASKS[0]}` | Mine, {added} | A. Author |" in text
     assert f"| `{TASKS[1]}` | Mine | A. Author |" in text
 
 

@@ -211,6 +211,11 @@ def test_what_is_the_agents_own_is_no_reason_to_refuse(tmp_path: Path) -> None:
         ("actions.tip.roll_period", 3.0, True),
         ("actions.base.roll_amplitude", 9.0, True),
         ("actions.base.roll_amplitude", 9.5, False),
+        ("actions.tip.back_off_velocity", 0.045, True),
+        ("actions.tip.back_off_velocity", 0.05, False),
+        ("actions.tip.back_off_after", 8.0, True),
+        ("actions.tip.back_off_time", 3.0, True),
+        ("actions.capsule.back_off_velocity", 0.01, False),
         ("actions.tip.forward_velocity", 0.04, True),
         ("actions.tip.forward_velocity", 0.05, False),
         ("actions.capsule.forward_velocity", 0.05, True),
@@ -268,6 +273,7 @@ def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
     fields = to_plain(load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point"))
     assert {name.partition(".")[0] for name in AGENTS_OWN} - {"actions"} <= set(fields)
     assert fields["actions"]["tip"]["linear_scale"] == OWN_UP_TO["actions.tip.forward_velocity"]
+    assert fields["actions"]["tip"]["linear_scale"] == OWN_UP_TO["actions.tip.back_off_velocity"]
     most = PullExpert.VARIED["roll"][1], PushExpert.VARIED["twist"][1]
     assert most == (OWN_UP_TO["actions.tip.roll_amplitude"], OWN_UP_TO["actions.base.roll_amplitude"])
     for robot, action in (

@@ -73,6 +73,24 @@ def test_a_roll_to_and_fro_is_named_and_takes_no_other_row(tmp_path: Path) -> No
     assert [one.agent for one in floors_of(find_results(folders)[0])] == []
 
 
+def test_going_back_is_named_and_is_no_constant_velocity(tmp_path: Path) -> None:
+    """45 mm/s; times are named where they are not the task's."""
+    task = "ARC-LeftColon-Magnetic"
+    back = {"actions.tip.back_off_velocity": [0.0, 0.045]}
+    times = {"actions.tip.back_off_after": [4.0, 6.0], "actions.tip.back_off_time": [1.5, 3.0]}
+    roll = {"actions.tip.roll_amplitude": [0.0, 9.0]}
+    changes = {"": {}, "_back45": back, "_back45_3s_after6s": back | times, "_roll9_back45": back | roll}
+    changes |= {"_off": times}  # times of nothing are no name
+    folders = [
+        write_result_folder(tmp_path / f"run{name}", count, task, "population", changes={task: fields})
+        for count, (name, fields) in zip((10, 20, 30, 40, 50), changes.items(), strict=True)
+    ]
+    text = page(folders, tmp_path)
+    for name, share in (("", 5), ("_back45", 10), ("_back45_3s_after6s", 15), ("_roll9_back45", 20), ("", 25)):
+        assert f"| `{task}` | ppo{name} `abcdef01` | 200 | {share} (" in text
+    assert "`_back45` goes back at 45 mm/s" in text and "velocity" not in text.partition("ppo_back45")[2][:200]
+
+
 def test_slower_commands_than_the_tasks_are_named(tmp_path: Path) -> None:
     task = "ARC-Withdrawal-Capsule"
     slow = {"changes": {task: {"actions.capsule.linear_scale": [0.05, 0.0065]}}}

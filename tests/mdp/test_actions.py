@@ -50,6 +50,32 @@ def test_roll_to_and_fro_is_added_to_the_commanded_roll(env, term_class, cfg, ax
     assert abs(float(term.processed_actions[1, axis]) - (1.0 + 8.0 * math.cos(2.0 * math.pi / 40.0))) < 1e-5
 
 
+def test_a_tip_whose_tether_stands_still_goes_back_for_a_while(env) -> None:
+    """Two steps of 0.1 s at the policy's 0.02 m/s, then one at -0.04 m/s; the second world comes on by 6 mm a step."""
+    cfg = mdp.TipVelocityActionCfg(linear_scale=0.04, back_off_velocity=0.04, back_off_after=0.2, back_off_time=0.1)
+    term = mdp.TipVelocityAction(cfg, env)
+    raw = torch.full((2, 6), 0.5)
+    forward = []
+    for step in range(6):
+        env.scope.inserted_length[:] = torch.tensor([0.3, 0.3 + 0.006 * step])
+        term.process_actions(raw)
+        forward.append(term.processed_actions[:, 2].tolist())
+        assert (term.processed_actions[:, :2] == 0.02).all() and (term.raw_actions == raw).all()
+    there, back = pytest.approx([0.02, 0.02]), pytest.approx([-0.04, 0.02])
+    assert forward == [there, there, back, there, there, back]
+    for forget in term.reset, lambda ids: term.resume(7, ids):
+        forget(torch.tensor([0]))
+        term.process_actions(raw)
+        assert term.processed_actions[0, 2] == 0.02
+
+
+def test_no_tip_goes_back_by_default(env) -> None:
+    term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(), env)
+    for _ in range(60):  # 6 s, longer than the wait of 4 s
+        term.process_actions(torch.ones(2, 6))
+        assert (term.processed_actions[:, 2] == 0.045).all()
+
+
 def test_constant_forward_velocity_drops_the_forward_action(env) -> None:
     term = mdp.TipVelocityAction(mdp.TipVelocityActionCfg(linear_scale=0.05, forward_velocity=0.02), env)
     assert term.action_dim == 5

@@ -40,6 +40,23 @@ def test_plain_newton_needs_three_terms_switched_off() -> None:
     validate(cfg)
 
 
+def test_going_back_needs_a_tether_that_is_to_come_on() -> None:
+    tethered = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+    tethered.actions.tip.back_off_velocity = 0.045
+    validate(tethered, "env")
+    tethered.actions = {"tip": tethered.actions.tip, "gas": None}  # as a task of one's own may have them
+    validate(tethered, "env")
+    for task, term, reason in (
+        ("ARC-LeftColon-Capsule", "capsule", "capsule.usda has no tether whose length it could read"),
+        ("ARC-Withdrawal-Magnetic", "tip", "on its way out no scope comes on"),
+    ):
+        cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
+        getattr(cfg.actions, term).back_off_velocity = 0.03
+        name = f"env.actions.{term}.back_off_velocity is 0.03 m/s, but {reason}"
+        with pytest.raises(ValueError, match=f"^{name}: set it to 0, or take a task such as ARC-LeftColon-Magnetic.$"):
+            validate(cfg, "env")
+
+
 def test_all_tasks_are_registered() -> None:
     assert set(TASKS) <= set(list_tasks())
 

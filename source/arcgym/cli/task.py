@@ -29,7 +29,7 @@ AGENT_FIELDS = (
 )
 """Arguments that are fields of the agent's configuration."""
 
-ROLL = ("roll_amplitude", "roll_period")
+OWN = ("roll_amplitude", "roll_period", "back_off_velocity", "back_off_after", "back_off_time")
 """Fields of an action term that are a policy's own in every task."""
 
 
@@ -100,7 +100,7 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
             restore(env_cfg, saved.env, "env", keep=kept)
             print(f"params: {saved.folder}")
         else:
-            restore(env_cfg, _further_terms(saved.env, agent_cfg) | _own_roll(saved.env, env_cfg), "env")
+            restore(env_cfg, _further_terms(saved.env, agent_cfg) | _own_fields(saved.env, env_cfg), "env")
             own = "as registered, but for what is the policy's own"
             print(f"params: agent of {saved.folder}; it was trained in {trained}, and {task} is {own}")
     before = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
@@ -141,13 +141,13 @@ def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:
     return {"observations": {group: {"terms": added} for group, added in terms.items() if added}}
 
 
-def _own_roll(env: dict[str, Any], env_cfg: Any) -> dict[str, Any]:
-    """Return the roll to and fro that a policy adds to its actions, which it brings to other tasks of its robot."""
+def _own_fields(env: dict[str, Any], env_cfg: Any) -> dict[str, Any]:
+    """Return what a policy has beside its actions, a roll or going back, and brings to other tasks of its robot."""
     found: dict[str, Any] = {}
     for name, saved in (env.get("actions") or {}).items():
         term = getattr(getattr(env_cfg, "actions", None), name, None)
-        roll = {field: saved[field] for field in ROLL if saved and field in saved and hasattr(term, field)}
-        found |= {name: roll} if roll else {}
+        own = {field: saved[field] for field in OWN if saved and field in saved and hasattr(term, field)}
+        found |= {name: own} if own else {}
     return {"actions": found} if found else {}
 
 

@@ -30,6 +30,7 @@ AGENTS_OWN = (
     *("observations", "extra_observations", "reward", "rewards", "costs", "curriculum", "viewer"),
     *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs"),
     *("actions.tip.roll_period", "actions.base.roll_period"),
+    *("actions.tip.back_off_after", "actions.tip.back_off_time"),
 )
 """Fields of the environment, with all below them, that are the agent's: all others make a task what it is."""
 
@@ -42,6 +43,7 @@ OWN_UP_TO = {
     "actions.base.insertion_velocity": 0.05,
     "actions.tip.roll_amplitude": 18.0,
     "actions.base.roll_amplitude": 9.0,
+    "actions.tip.back_off_velocity": 0.045,
     "actions.tip.linear_scale": 0.045,
     "actions.capsule.linear_scale": 0.05,
     "actions.base.insertion_scale": 0.05,
@@ -49,10 +51,14 @@ OWN_UP_TO = {
 """Fields that are the agent's up to a value. A constant velocity: the largest that actions command [m/s]. A smaller
 scale of velocities than the task's: a policy that is slow might have been so by smaller actions [m/s]. A roll to and
 fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
-:class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]."""
+:class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]. Going
+back where a tether no longer comes on: the largest velocity that actions command [m/s]."""
 
-VELOCITIES = tuple(path for path in OWN_UP_TO if path.endswith("_velocity"))
+VELOCITIES = tuple(path for path in OWN_UP_TO if path.endswith((".forward_velocity", ".insertion_velocity")))
 """Those of a constant velocity, which tables name."""
+
+BACK_OFFS = tuple(path for path in OWN_UP_TO if path.endswith(".back_off_velocity"))
+"""Those of going back where a tether no longer comes on, which tables name."""
 
 ROLLS = tuple(path for path in OWN_UP_TO if path.endswith(".roll_amplitude"))
 """Those of a roll to and fro, which tables name."""

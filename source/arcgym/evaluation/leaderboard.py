@@ -14,7 +14,7 @@ import yaml
 
 from arcgym.evaluation.check import problems
 from arcgym.evaluation.result_folder import COMMIT, read_run, read_trial_rows, result_folders
-from arcgym.evaluation.results import roll_of
+from arcgym.evaluation.results import back_off_of, roll_of
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
@@ -179,11 +179,17 @@ def _lines(folder: Path) -> list[tuple[str, bool, float, str]]:
     for task, of in summarize(read_trial_rows(folder)).items():
         figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
         earlier = marks(run, task)
-        rolls = f", with a roll to and fro of {amplitude:g} rad/s" if (amplitude := roll_of(run, task)) else ""
-        cells = [f"`{task}`", name + rolls, entry.by, _text(of["success"], 0, 100.0), *figures, *about]
+        cells = [f"`{task}`", name + _added(run, task), entry.by, _text(of["success"], 0, 100.0), *figures, *about]
         cells += [PHYSICS_STEP.as_text(PHYSICS_STEP.in_run(run, task)) + earlier, marked]
         lines.append((task, bool(earlier), -of["success"].value, f"| {' | '.join(cells)} |"))
     return lines
+
+
+def _added(run: dict[str, Any], task: str) -> str:
+    """Return in words what is added to an entry's commands in a task, and nothing where nothing is."""
+    amplitude, speed = roll_of(run, task), 1000.0 * back_off_of(run, task)
+    rolls = f", with a roll to and fro of {amplitude:g} rad/s" if amplitude else ""
+    return rolls + (f", going back at {speed:g} mm/s where its tether no longer comes on" if speed else "")
 
 
 def _version(run: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.check import ROLLS, SCALES, VELOCITIES, other_length, problems
+from arcgym.evaluation.check import BACK_OFFS, ROLLS, SCALES, VELOCITIES, other_length, problems
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP, marks
@@ -114,18 +114,19 @@ def method_of(run: dict[str, Any], task: str) -> str:
 
     ``_paper_free`` is the paper's reward alone, ``_velocity`` a constant velocity alone, ``_slow6.5`` commands of up to
     6.5 mm/s where the task's go farther, and ``_roll9`` a roll to and fro of 9 rad/s that is added to what it commands,
-    ``_roll8_2s`` one in another period than the task's. Agents without training have their own name.
+    ``_roll8_2s`` one in another period than the task's; ``_back45`` goes back at 45 mm/s where a tether no longer comes
+    on. Agents without training have their own name.
     """
     changes = run.get("changes", {}).get(task, {})
     constant = any(changes.get(path, [None, None])[1] is not None for path in VELOCITIES)
     if run["agent"] != "checkpoint":
-        return str(run["agent"]) + "_velocity" * constant + roll_mark(run, task)
+        return str(run["agent"]) + "_velocity" * constant + added_mark(run, task)
     training = (run.get("training") or [{}])[0]
     key = str(training.get("agent") or "unknown")
     name = key.removesuffix("cfg_entry_point").removeprefix("rsl_rl").strip("_") or "ppo"
     reward = changes.get("reward", [None, None])[1]
     suffix = f"_{reward}" + ("" if constant else "_free") if reward else "_velocity" * constant
-    return name + suffix + _slow_mark(changes) + roll_mark(run, task)
+    return name + suffix + _slow_mark(changes) + added_mark(run, task)
 
 
 def _slow_mark(changes: dict[str, Any]) -> str:
@@ -136,18 +137,36 @@ def _slow_mark(changes: dict[str, Any]) -> str:
 
 def roll_of(run: dict[str, Any], task: str) -> float:
     """Return the amplitude of the roll to and fro that is added to an agent's commands [rad/s]; 0 without one."""
+    return _largest(ROLLS, run, task)
+
+
+def back_off_of(run: dict[str, Any], task: str) -> float:
+    """Return the speed at which a tip goes back whose tether no longer comes on [m/s]; 0 where it does not."""
+    return _largest(BACK_OFFS, run, task)
+
+
+def _largest(paths: Sequence[str], run: dict[str, Any], task: str) -> float:
+    """Return the largest value that a run gave some fields of the task; 0 where it gave none."""
     changes = run.get("changes", {}).get(task, {})
-    return max((float(changes[path][1] or 0.0) for path in ROLLS if path in changes), default=0.0)
+    return max((float(changes[path][1] or 0.0) for path in paths if path in changes), default=0.0)
 
 
-def roll_mark(run: dict[str, Any], task: str) -> str:
-    """Return the end of an agent's name in tables: ``_roll9`` for a roll of 9 rad/s, and nothing without one.
+def added_mark(run: dict[str, Any], task: str) -> str:
+    """Return the end of an agent's name in tables: what is added to its commands, and nothing where nothing is.
 
-    ``_roll9_2s`` is one of 2 s, where the task's period is another.
+    ``_roll9`` is a roll of 9 rad/s, ``_roll9_2s`` one of 2 s, where the task's period is another. ``_back45`` goes back
+    at 45 mm/s, ``_back45_3s`` for 3 s and ``_back45_after6s`` after 6 s, where the task's times are others.
     """
-    amplitude, changes = roll_of(run, task), run.get("changes", {}).get(task, {})
-    periods = [f"_{used:g}s" for path, (_, used) in changes.items() if path.endswith(".roll_period")]
-    return f"_roll{amplitude:g}{''.join(periods)}" if amplitude else ""
+    amplitude, speed = roll_of(run, task), 1000.0 * back_off_of(run, task)
+    roll = f"_roll{amplitude:g}" + _time_marks(run, task, roll_period="") if amplitude else ""
+    times = _time_marks(run, task, back_off_time="", back_off_after="after")
+    return roll + (f"_back{speed:g}{times}" if speed else "")
+
+
+def _time_marks(run: dict[str, Any], task: str, **words: str) -> str:
+    """Return ``_2s`` for each of some times of an action that is 2 s in place of the task's, behind its word."""
+    used = {path.rpartition(".")[2]: value for path, (_, value) in run.get("changes", {}).get(task, {}).items()}
+    return "".join(f"_{word}{used[field]:g}s" for field, word in words.items() if field in used)
 
 
 def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list[str]]]:

@@ -16,7 +16,7 @@ import yaml
 
 from arcgym.evaluation.paper_tables import TABLES_FILE, paper_table
 from arcgym.evaluation.result_folder import Row
-from arcgym.evaluation.results import Result, best, roll_mark
+from arcgym.evaluation.results import Result, added_mark, best
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.strengths import strengths_tables
 from arcgym.evaluation.suites import FOLDER, read_suites
@@ -78,8 +78,9 @@ suite's; other figures are interquartile means with bootstrap intervals. `–` w
 is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
 this policy and not of the method. † marks rules on actions that read the simulator's depth, which the policy does not
 see. ‡ marks trials of an earlier physics step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what
-an agent commands, `_roll8_2s` one of 8 rad/s in 2 s where others take 4; `_slow6.5` commands at most 6.5 mm/s. What was
-run where is in the [last table](#what-was-run).
+an agent commands, `_roll8_2s` one of 8 rad/s in 2 s where others take 4; `_back45` goes back at 45 mm/s for a while
+where a tether no longer comes on; `_slow6.5` commands at most 6.5 mm/s. What was run where is in the
+[last table](#what-was-run).
 """
 
 
@@ -197,8 +198,8 @@ def _agents(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Re
 
 
 def _is_asked(result: Result, section: dict[str, Any]) -> bool:
-    """Return whether a section has a result's robot and its method, with a roll or without."""
-    method = result.method.removesuffix(roll_mark(result.run, result.task))
+    """Return whether a section has a result's robot and its method, whatever is added to its commands."""
+    method = result.method.removesuffix(added_mark(result.run, result.task))
     return result.robot in section["robots"] and method in section["methods"]
 
 
@@ -234,7 +235,7 @@ def _mean(rows: Sequence[Row], name: str) -> str:
 def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of the robustness variants, a table an agent, and the command where there is none."""
     own = _newest(results)
-    rows = [{**row, "agent": f"{row['agent']}{roll_mark(one.run, one.task)}"} for one in own for row in one.rows]
+    rows = [{**row, "agent": f"{row['agent']}{added_mark(one.run, one.task)}"} for one in own for row in one.rows]
     text = "\n".join(table.to_markdown() for table in strengths_tables(rows))
     return own, text, [] if any(one.is_current for one in own) else [section["command"]]
 

@@ -24,6 +24,7 @@ from arcgym.sensors import EndoscopeCameraCfg
 from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import FieldError, require
 from arcgym_tasks.navigation import clinical
+from arcgym_tasks.navigation.back_off import check_back_off
 from arcgym_tasks.navigation.gas import add_gas, check_gas
 from arcgym_tasks.navigation.hand import add_hand, check_hand
 from arcgym_tasks.navigation.observations import EXTRA_OBSERVATIONS, ObservationsCfg, add_observations
@@ -284,8 +285,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         """Check numbers and names.
 
         Raises:
-            ValueError: If a number is out of range, the segment or the lumen preset is unknown, or the solver cannot do
-                what a term needs.
+            ValueError: If a number is out of range, the segment or the lumen preset is unknown, or solver or robot
+                cannot do what a term needs.
         """
         require(self, "segment", SEGMENTS)
         require(self, "start", get_args(Start))
@@ -301,6 +302,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
             raise FieldError(
                 self, "start", "is 'rest', at the anus: a withdrawal starts at a segment, env.start=segment."
             )
+        check_back_off(self)
         super().validate_config()
         mdp.resolve_lumen(self.lumen)
         if self.sim.solver == "newton":

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import torch
 import warp as wp
 
+from arcgym.envs.mdp.back_off import BackOff
 from arcgym.envs.mdp.roll_oscillation import RollOscillation
 from arcgym.managers import ActionTerm, ActionTermCfg
 from arcgym.utils.configclass import configclass
@@ -115,7 +116,10 @@ class VelocityAction(ActionTerm):
 
 
 class TipVelocityAction(VelocityAction):
-    """Velocity of the tip in its own frame: X, Y, forward, then rotation about X, Y and the axis; D = 6."""
+    """Velocity of the tip in its own frame: X, Y, forward, then rotation about X, Y and the axis; D = 6.
+
+    With ``back_off_velocity`` a tip whose tether no longer comes on goes back for a while, whatever is commanded.
+    """
 
     cfg: TipVelocityActionCfg
     axes = ("right", "up", "forward", "pitch", "yaw", "roll")
@@ -128,6 +132,29 @@ class TipVelocityAction(VelocityAction):
         super().__init__(cfg, env, scale, {} if cfg.forward_velocity is None else {2: cfg.forward_velocity})
         self._pull = self._asset.actuator(cfg.actuator_name)
         self._roll_to_and_fro(cfg.roll_amplitude, cfg.roll_period)
+        self._back_off: BackOff | None = None
+        if cfg.back_off_velocity > 0.0:
+            self._back_off = BackOff(cfg.back_off_after, cfg.back_off_time, env.step_dt, self.num_envs, self.device)
+
+    def process_actions(self, actions: torch.Tensor) -> None:
+        """Clip and scale ``actions``, shape (N, A), and go back where the scope no longer comes on."""
+        super().process_actions(actions)
+        if self._back_off is not None:
+            self._back_off.advance(self._asset.data.inserted_length)
+            forward = self._processed[:, self.axes.index("forward")]
+            forward.copy_(torch.where(self._back_off.active, -self.cfg.back_off_velocity, forward))
+
+    def resume(self, step: int, env_ids: torch.Tensor | None = None) -> None:
+        """Roll as after so many control steps; the wait until a tip goes back, which they do not tell, begins anew."""
+        super().resume(step, env_ids)
+        if self._back_off is not None:
+            self._back_off.reset(env_ids)
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Set the actions of the given worlds to zero, with nothing waited."""
+        super().reset(env_ids)
+        if self._back_off is not None:
+            self._back_off.reset(env_ids)
 
     def apply_actions(self) -> None:
         """Command the actuator."""
@@ -207,6 +234,18 @@ class TipVelocityActionCfg(ActionTermCfg):
     roll_period: float = 4.0
     """Time of one such roll to and fro [s]. A slower one goes farther along the scope."""
 
+    back_off_velocity: float = 0.0
+    """Speed at which a tip goes back along its axis whose tether no longer comes on [m/s], in place of the commanded
+    forward velocity; its other axes stay the policy's. 0 leaves all to the policy. Try 0.045 where tips are stuck that
+    have lost sight of the lumen. It takes no images: it reads the length of tether inside at the anus, which a capsule
+    does not have."""
+
+    back_off_after: float = 4.0
+    """Time without 5 mm more tether inside after which the tip goes back [s]; it counts anew when it has gone back."""
+
+    back_off_time: float = 1.5
+    """Time for which it goes back [s]."""
+
     forward_velocity: float | None = None
     """Constant forward velocity [m/s], as in the paper; the forward action is then dropped (A = 5). None leaves it to
     the policy (A = 6)."""
@@ -220,7 +259,8 @@ class TipVelocityActionCfg(ActionTermCfg):
         require_positive(self, "linear_scale", unit="m/s")
         require_positive(self, "angular_scale", "roll_scale", unit="rad/s")
         require_non_negative(self, "roll_amplitude", unit="rad/s")
-        require_positive(self, "roll_period", unit="s")
+        require_non_negative(self, "back_off_velocity", unit="m/s")
+        require_positive(self, "roll_period", "back_off_after", "back_off_time", unit="s")
         require(self, "forward_velocity", Range(-1.0, 1.0), unit="m/s")
 
 
