@@ -20,6 +20,7 @@ from typing import Any
 
 import gymnasium
 
+from arcgym.utils.garbage import importing
 from arcgym.utils.string import did_you_mean, nearest, resolve_callable
 
 ENTRY_POINT_GROUP = "arcgym.tasks"
@@ -135,8 +136,9 @@ def cfg_keys(task: str) -> list[str]:
     return sorted(key for key in spec.kwargs if key.endswith(CFG_SUFFIX)) if spec else []
 
 
+@importing()
 def load_cfg(entry_point: Any) -> Any:
-    """Return a fresh configuration.
+    """Return a fresh configuration; the first of a task imports torch and Newton for the terms that it names.
 
     Args:
         entry_point: Text ``"module:Class"``, a class, or an instance to copy.
