@@ -16,13 +16,15 @@ ROOT = Path(__file__).resolve().parents[2]
 BEGIN, END = "<!-- cards -->", "<!-- end of cards -->"
 SCANNED = ("ct_1", "ct_2")
 """Colons that were imported from CT."""
+PICTURED = ("colon_1", "colon_2", *SCANNED)
+"""Colons with a picture in the repository; the others would be alike, and there is no room for them."""
 
 
 def main() -> None:
     """Parse the command line and writes the cards."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--no-pictures", action="store_true", help="write the tables only")
-    parser.add_argument("--pictures", nargs="+", metavar="NAME", help="patients to draw (default: all)")
+    parser.add_argument("--pictures", nargs="+", metavar="NAME", help="patients to draw (default: those on the page)")
     args = parser.parse_args()
     from arcgym.anatomy import read_colon
     from arcgym.anatomy.generator.patients import PATIENTS
@@ -32,7 +34,7 @@ def main() -> None:
     for name in (*PATIENTS, *SCANNED):
         stage = read_colon(ROOT / "assets" / "usd" / name / "colon.usda")
         cards.append(card(name, stage))
-        if not args.no_pictures and name in (args.pictures or (name,)):
+        if not args.no_pictures and name in (args.pictures or PICTURED):
             draw_page(stage).save(
                 ROOT / "docs" / "images" / "patients" / f"{name}.jpg", quality=66, optimize=True, progressive=True
             )
@@ -51,10 +53,9 @@ def card(name: str, stage: ColonStage) -> str:
     for segment, (start, end) in stage.segment_bounds().items():
         rows.append(f"| {segment} | {100 * (end - start):.1f} | {diameters(stage, start, end)} |")
     rows.append(f"| whole | {100 * stage.length:.0f} | {diameters(stage, 0.0, stage.length)} |")
-    title, picture = (
-        f"## {'CT' if kind == 'ct' else 'Colon'} {number}\n\n{patient[0].upper() + patient[1:]}.",
-        f"![{name}](images/patients/{name}.jpg)",
-    )
+    title = f"## {'CT' if kind == 'ct' else 'Colon'} {number}\n\n{patient[0].upper() + patient[1:]}."
+    made = f"Its picture: `arcgym preview {name} {name}.jpg`."
+    picture = f"![{name}](images/patients/{name}.jpg)" if name in PICTURED else made
     last = scanned_features(stage) if name in SCANNED else features(name, stage)
     return f"{title}\n\n{picture}\n\n" + "\n".join(rows) + f"\n\n{last}\n"
 
