@@ -89,6 +89,11 @@ class TerminationsCfg:
     perforation: DoneTerm | None = None
     """Off, as in the paper. Ends the episode at a tip force that may perforate, 14.1 N by default:
     ``DoneTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "perforation"})``."""
+    facing: DoneTerm | None = None
+    """Off. Ends episodes in which the tip looks the wrong way along the lumen, for the training of a capsule, which may
+    turn round and come out at the anus. On a way to the cecum:
+    ``"env.terminations.facing={func: 'arcgym.envs.mdp:facing', params: {towards: anus, after_s: 1.0}}"``, on the way
+    back, nose first, ``{towards: cecum}``. Evaluations have the task's own terminations, and so not this one."""
     cost_limit: DoneTerm | None = None
     """Off. Ends the episode when its cost passes a limit, with which constrained algorithms are compared:
     ``DoneTerm(func=mdp.episode_cost_above, params={"limit": 0.5, "cost": "tip_force"})``."""

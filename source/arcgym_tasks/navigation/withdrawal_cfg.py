@@ -8,7 +8,6 @@ from __future__ import annotations
 from arcgym.envs import mdp
 from arcgym.managers import MetricsTermCfg as MetricsTerm
 from arcgym.managers import RewardTermCfg as RewTerm
-from arcgym.managers import TerminationTermCfg as DoneTerm
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.navigation_env_cfg import MetricsCfg, RewardsCfg, TerminationsCfg
 
@@ -30,11 +29,6 @@ class WithdrawalTerminationsCfg(TerminationsCfg):
     """Standing still to look is no failure."""
 
     stuck = None  # type: ignore[assignment]
-    facing: DoneTerm | None = None
-    """Off. Ends episodes in which the tip looks the wrong way, for the training of a capsule, which may turn round. For
-    one that goes back nose first:
-    ``"env.terminations.facing={func: 'arcgym.envs.mdp:facing', params: {towards: cecum}}"``.
-    """
 
 
 @configclass
