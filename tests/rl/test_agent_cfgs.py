@@ -22,6 +22,7 @@ KEYS = (
     "ppo_masked",
     "ppo_lagrangian",
     "ppo_predicting",
+    "ppo_bounded",
     "a2c",
     "sac",
     "sac_squint",

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Relatives of the navigation tasks' PPO: small, with memory, with rules on actions, with limits on costs, and A2C."""
+"""Relatives of the navigation tasks' PPO: small, with memory, rules on actions, limits on costs or bounded means; A2C."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from arcgym.rl import (
 )
 from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
 from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
+from arcgym.rl.agent_cfgs.ppo_bounded import RslRlPpoBoundedAlgorithmCfg
 from arcgym.rl.agent_cfgs.ppo_lagrangian import RslRlPpoLagrangianAlgorithmCfg, RslRlPpoLagrangianRunnerCfg
 from arcgym.rl.agent_cfgs.ppo_masked import RslRlConstrainedRunnerCfg
 from arcgym.rl.agent_cfgs.ppo_predicting import RslRlPpoPredictingAlgorithmCfg
@@ -95,6 +96,23 @@ class NavigationPredictingPPORunnerCfg(NavigationPPORunnerCfg):
     """PPO whose features also learn to predict what its critic sees: lumen, centerline ahead, forces."""
 
     algorithm: RslRlPpoAlgorithmCfg = RslRlPpoPredictingAlgorithmCfg(
+        num_learning_epochs=3,
+        num_mini_batches=6,
+        learning_rate=3.0e-4,
+        schedule="fixed",
+        gamma=0.97,
+        lam=0.95,
+        clip_param=0.2,
+        entropy_coef=0.003,
+        max_grad_norm=0.5,
+    )
+
+
+@configclass
+class NavigationBoundedPPORunnerCfg(NavigationPPORunnerCfg):
+    """PPO whose mean actions stay within [-1, 1]: for long trainings, and to go on from a policy that has left them."""
+
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoBoundedAlgorithmCfg(
         num_learning_epochs=3,
         num_mini_batches=6,
         learning_rate=3.0e-4,
