@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Relatives of the navigation tasks' PPO: small, with memory, rules on actions, limits on costs or bounded means; A2C."""
+"""Relatives of PPO: small, with memory, with rules on actions, limits on costs or bounded means, and A2C."""
 
 from __future__ import annotations
 
