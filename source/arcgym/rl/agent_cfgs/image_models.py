@@ -59,6 +59,11 @@ class RecurrentCnnModelCfg(AugmentedCnnModelCfg):
     rnn_num_layers: int = 1
     """Recurrent layers."""
 
+    skip_connection: bool = False
+    """Whether the MLP reads the features of the CNN too, and behind them the recurrent layer's output. Switch it on to
+    start from a policy without memory (``agent.init_policy``), with that one's ``hidden_dims`` and ``cnn_cfg``: it acts
+    as that one does until it has learnt what to remember."""
+
     def validate_config(self) -> None:
         """Check names and bounds.
 

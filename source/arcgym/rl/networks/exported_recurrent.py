@@ -21,9 +21,14 @@ class _RecurrentPolicy(nn.Module):
         self.cnns = nn.ModuleList([copy.deepcopy(model.cnns[group]) for group in model.obs_groups_2d])
         self.rnn = copy.deepcopy(model.rnn.rnn)
         self.mlp = copy.deepcopy(model.mlp)
+        self.skip_connection = bool(model.skip_connection)
         has_distribution = model.distribution is not None
         self.output = model.distribution.as_deterministic_output_module() if has_distribution else nn.Identity()
         self.state_shape = (2 if isinstance(self.rnn, nn.LSTM) else 1, self.rnn.num_layers, self.rnn.hidden_size)
+
+    def latent(self, features: torch.Tensor, remembered: torch.Tensor) -> torch.Tensor:
+        """Return what the MLP reads, shape (N, D): the recurrent layer's output, or features and it."""
+        return torch.cat([features, remembered], dim=-1) if self.skip_connection else remembered
 
 
 class _LstmStep(nn.Module):
@@ -79,8 +84,8 @@ class JitRecurrentPolicy(_RecurrentPolicy):
         if self.state.shape[0] != x.shape[0]:
             shape = [x.shape[0], self.state.shape[1], self.state.shape[2], self.state.shape[3]]
             self.state = torch.zeros(shape, dtype=x.dtype, device=x.device)
-        x, self.state = self.step(x, self.state)
-        return self.output(self.mlp(x))
+        remembered, self.state = self.step(x, self.state)
+        return self.output(self.mlp(self.latent(x, remembered)))
 
     @torch.jit.export
     def reset(self) -> None:
@@ -106,8 +111,9 @@ class OnnxRecurrentPolicy(_RecurrentPolicy):
         latents = [cnn(image) for cnn, image in zip(self.cnns, inputs, strict=False)]
         if self.vector_size:
             latents.insert(0, self.obs_normalizer(inputs[-2]))
-        x, state = self.step(torch.cat(latents, dim=-1), inputs[-1])
-        return self.output(self.mlp(x)), state
+        x = torch.cat(latents, dim=-1)
+        remembered, state = self.step(x, inputs[-1])
+        return self.output(self.mlp(self.latent(x, remembered))), state
 
     def get_dummy_inputs(self) -> tuple[torch.Tensor, ...]:
         """Return inputs of the right shapes for tracing, batch of two."""

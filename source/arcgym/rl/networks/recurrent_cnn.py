@@ -9,6 +9,7 @@ from typing import Any
 
 import torch
 from rsl_rl.modules import RNN, HiddenState
+from rsl_rl.utils import unpad_trajectories
 from tensordict import TensorDict
 from torch import nn
 
@@ -21,6 +22,9 @@ class RecurrentCnnModel(AugmentedCnnModel):
 
     rsl_rl keeps the hidden state of each world while acting, clears it where an episode ends, and learns on the pieces
     of episodes that a rollout holds, each from the hidden state it began with.
+
+    With ``skip_connection`` the MLP reads the features themselves and, behind them, the recurrent layer's output. A
+    policy without memory can then be its start, see :func:`arcgym.rl.widened.with_memory`.
     """
 
     is_recurrent: bool = True
@@ -34,6 +38,7 @@ class RecurrentCnnModel(AugmentedCnnModel):
         rnn_type: str = "lstm",
         rnn_hidden_dim: int = 256,
         rnn_num_layers: int = 1,
+        skip_connection: bool = False,
         **kwargs: Any,
     ):
         """Build the model; other arguments as in :class:`AugmentedCnnModel`.
@@ -46,6 +51,7 @@ class RecurrentCnnModel(AugmentedCnnModel):
             rnn_type: ``lstm`` or ``gru``.
             rnn_hidden_dim: Width of the hidden state.
             rnn_num_layers: Recurrent layers.
+            skip_connection: Whether the MLP reads the features too, in front of the recurrent layer's output.
             kwargs: Further arguments of the CNN model.
 
         Raises:
@@ -53,14 +59,14 @@ class RecurrentCnnModel(AugmentedCnnModel):
         """
         if rnn_type not in ("lstm", "gru"):
             raise ValueError(f"rnn_type is '{rnn_type}', expected one of: lstm, gru.")
-        self.rnn_hidden_dim = rnn_hidden_dim
+        self.rnn_hidden_dim, self.skip_connection = rnn_hidden_dim, skip_connection
         super().__init__(obs, obs_groups, obs_set, *args, **kwargs)
         self.rnn = RNN(self.obs_dim + self.cnn_latent_dim, rnn_hidden_dim, rnn_num_layers, rnn_type)
 
     def get_latent(
         self, obs: TensorDict, masks: torch.Tensor | None = None, hidden_state: HiddenState = None
     ) -> torch.Tensor:
-        """Return the recurrent layer's output.
+        """Return what the MLP reads: the recurrent layer's output, with ``skip_connection`` behind the features.
 
         Args:
             obs: Observations of N worlds, or pieces of episodes padded to T steps, batch (T, B).
@@ -71,11 +77,16 @@ class RecurrentCnnModel(AugmentedCnnModel):
             Shape (N, D) while acting, else (T, N, D) with the pieces put together again.
         """
         if masks is None:
-            return self.rnn(super().get_latent(obs)).squeeze(0)
+            features = super().get_latent(obs)
+            remembered = self.rnn(features).squeeze(0)
+            return torch.cat([features, remembered], dim=-1) if self.skip_connection else remembered
         features = super().get_latent(obs[masks])
         padded = features.new_zeros(*masks.shape, features.shape[-1])
         padded[masks] = features
-        return self.rnn(padded, masks, hidden_state)
+        remembered = self.rnn(padded, masks, hidden_state)
+        if not self.skip_connection:
+            return remembered
+        return torch.cat([unpad_trajectories(padded, masks), remembered], dim=-1)  # type: ignore[list-item]
 
     def reset(self, dones: torch.Tensor | None = None, hidden_state: HiddenState = None) -> None:
         """Clear the hidden state of the worlds that are done, or set all of it."""
@@ -98,4 +109,4 @@ class RecurrentCnnModel(AugmentedCnnModel):
         return OnnxRecurrentPolicy(self)
 
     def _get_latent_dim(self) -> int:
-        return self.rnn_hidden_dim
+        return self.rnn_hidden_dim + (super()._get_latent_dim() if self.skip_connection else 0)
