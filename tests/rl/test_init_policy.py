@@ -7,9 +7,11 @@ from __future__ import annotations
 import pytest
 import torch
 from pixel_tasks import SteerToDot
-from small_agents import runner_cfg
+from small_agents import ENCODER, runner_cfg
 
 from arcgym.rl import GaussianDistributionCfg, OnPolicyRunner, RslRlMlpModelCfg
+from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
+from arcgym.rl.pretrained import write_small
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
@@ -17,6 +19,13 @@ from arcgym.utils.threads import one_thread
 def make_runner(seed: int, **changes) -> OnPolicyRunner:
     torch.manual_seed(seed)
     return OnPolicyRunner(SteerToDot(4), runner_cfg(**changes).to_dict(), device="cpu")
+
+
+def with_memory(**changes) -> RecurrentCnnModelCfg:
+    """The actor of :func:`small_agents.actor_cfg` with a GRU of four numbers beside its features."""
+    settings = {"skip_connection": True, "rnn_type": "gru", "rnn_hidden_dim": 4, "hidden_dims": [32]}
+    deviation = GaussianDistributionCfg(init_std=0.6)
+    return RecurrentCnnModelCfg(cnn_cfg=ENCODER, distribution_cfg=deviation, **(settings | changes))
 
 
 def same(first: dict[str, torch.Tensor], second: torch.nn.Module) -> bool:
@@ -78,4 +87,74 @@ def test_a_checkpoint_of_another_policy_is_named(tmp_path):
     ).save(str(tmp_path / "other.pt"))
     runner = make_runner(seed=1, init_policy=str(tmp_path / "other.pt"))
     with pytest.raises(UsageError, match="init_policy=.*other.pt does not fit the policy"):
+        runner.learn(0)
+
+
+@one_thread()
+@pytest.mark.parametrize("rnn_type", ["lstm", "gru"])
+def test_a_policy_without_memory_is_the_start_of_one_with_it(tmp_path, rnn_type):
+    """Columns of zeros read the memory: whatever it holds after a step, nothing is added to the actions."""
+    first = make_runner(seed=0)
+    first.save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(seed=1, actor=with_memory(rnn_type=rnn_type), init_policy=str(tmp_path / "model_0.pt"))
+    recurrent = copied(runner.alg.actor.rnn)
+    runner.learn(0)
+    actor, env = runner.alg.actor, SteerToDot(4)
+    assert same(recurrent, actor.rnn)
+    assert not actor.mlp[0].weight[:, -4:].any()
+    actor.reset()
+    with torch.no_grad():
+        for _ in range(5):
+            obs = env.get_observations()
+            actions = actor(obs)
+            assert torch.equal(actions, first.alg.actor(obs))
+            assert actor.get_latent(obs)[:, -4:].any()
+            env.step(actions)
+
+
+@one_thread()
+def test_a_policy_with_a_memory_learns_on_with_it_and_starts_others(tmp_path):
+    make_runner(seed=0).save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(seed=1, actor=with_memory(), init_policy=str(tmp_path / "model_0.pt"), critic_first=1)
+    runner.learn(2)
+    runner.save(str(tmp_path / "model_1.pt"))
+    assert runner.alg.actor.mlp[0].weight[:, -4:].any()
+    further = make_runner(seed=2, actor=with_memory(), init_policy=str(tmp_path / "model_1.pt"))
+    further.learn(0)
+    assert same(copied(runner.alg.actor), further.alg.actor)
+
+
+def test_small_weights_hold_a_memory(tmp_path):
+    """A GRU of 64 numbers has 64 x 3 x 64 weights that are worth it: whole numbers, off by 1/254 of a row's largest."""
+    cfg = with_memory(rnn_hidden_dim=64)
+    first, other = make_runner(seed=0, actor=cfg), make_runner(seed=1, actor=cfg)
+    first.save(str(tmp_path / "model_0.pt"))
+    write_small(tmp_path / "model_0.pt", tmp_path / "small.pt")
+    other.load(str(tmp_path / "small.pt"), load_cfg={"actor": True})
+    wanted, got = first.alg.actor.rnn.rnn.weight_hh_l0, other.alg.actor.rnn.rnn.weight_hh_l0
+    assert bool(((got - wanted).abs() <= wanted.abs().amax(1, keepdim=True) / 253).all())
+
+
+@pytest.mark.parametrize(
+    "changes", [{"skip_connection": False}, {"hidden_dims": [16]}, {"shrink": 2}], ids=["no skip", "width", "images"]
+)
+def test_a_memory_does_not_make_another_policy_fit(tmp_path, changes):
+    make_runner(seed=0).save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(seed=1, actor=with_memory(**changes), init_policy=str(tmp_path / "model_0.pt"))
+    with pytest.raises(UsageError, match="init_policy=.*model_0.pt does not fit the policy") as refused:
+        runner.learn(0)
+    assert "size mismatch for mlp.0.weight" in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_a_memory_of_another_width_is_refused(tmp_path):
+    make_runner(seed=0, actor=with_memory(rnn_hidden_dim=3)).save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(seed=1, actor=with_memory(), init_policy=str(tmp_path / "model_0.pt"))
+    with pytest.raises(UsageError, match="does not fit the policy"):
+        runner.learn(0)
+
+
+def test_a_policy_with_memory_is_no_start_of_one_without(tmp_path):
+    make_runner(seed=0, actor=with_memory()).save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(seed=1, init_policy=str(tmp_path / "model_0.pt"))
+    with pytest.raises(UsageError, match="does not fit the policy"):
         runner.learn(0)

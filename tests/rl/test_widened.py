@@ -8,7 +8,7 @@ from __future__ import annotations
 import torch
 from torch import nn
 
-from arcgym.rl.widened import widened
+from arcgym.rl.widened import widened, with_memory
 
 
 def test_further_channels_change_nothing_at_first():
@@ -29,3 +29,19 @@ def test_what_does_not_fit_is_left_as_it_is():
     }
     wanted = {"fewer": torch.rand(4, 3, 2, 2), "outputs": torch.rand(4, 5, 2, 2), "matrix": torch.rand(4, 5)}
     assert all(value is weights[name] for name, value in widened(weights, wanted).items())
+
+
+def test_a_memory_gets_columns_of_zeros_behind_those_of_the_features():
+    weights = {"mlp.0.weight": torch.tensor([[1.0, 2.0], [3.0, 4.0]]), "mlp.0.bias": torch.ones(2)}
+    wanted = {"mlp.0.weight": torch.rand(2, 3), "mlp.0.bias": torch.zeros(2), "rnn.rnn.bias_hh_l0": torch.rand(3)}
+    got = with_memory(weights, wanted, width=1)
+    assert got["mlp.0.weight"].tolist() == [[1.0, 2.0, 0.0], [3.0, 4.0, 0.0]]
+    assert got["mlp.0.bias"] is weights["mlp.0.bias"] and got["rnn.rnn.bias_hh_l0"] is wanted["rnn.rnn.bias_hh_l0"]
+
+
+def test_a_memory_is_added_where_the_rest_fits_and_none_is_there():
+    wanted = {"mlp.0.weight": torch.rand(2, 3), "rnn.rnn.bias_hh_l0": torch.rand(3)}
+    for weights in ({"mlp.0.weight": torch.rand(2, 1)}, {"mlp.0.weight": torch.rand(1, 2)}, {"b": torch.rand(2)}):
+        assert with_memory(weights, wanted, width=1) is weights
+    remembering = {"mlp.0.weight": torch.rand(2, 2), "rnn.rnn.bias_hh_l0": torch.rand(3)}
+    assert with_memory(remembering, wanted, width=1) is remembering

@@ -26,7 +26,7 @@ from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
 from arcgym.rl.learning_rate import linear_rate, set_learning_rate
 from arcgym.rl.patient_writer import PatientWriter
 from arcgym.rl.run_clock import BudgetSpent, RunClock
-from arcgym.rl.widened import widened
+from arcgym.rl.widened import widened, with_memory
 from arcgym.utils.errors import UsageError
 
 
@@ -148,10 +148,15 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         try:
             contents = read_checkpoint(path, self.device)
             own = "student_state_dict" if "student_state_dict" in contents else "actor_state_dict"
-            actor = widened(contents[own], self.alg.get_policy().state_dict())
+            policy: Any = self.alg.get_policy()
+            wanted = policy.state_dict()
+            actor = widened(contents[own], wanted)
+            if getattr(policy, "skip_connection", False):
+                actor = with_memory(actor, wanted, policy.rnn_hidden_dim)
             self.alg.load({**contents, "actor_state_dict": actor}, {"actor": True}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
-            raise UsageError(f"agent.init_policy={path} does not fit the policy: {error}") from error
+            reason = " ".join(str(error).split())  # torch's has a line for each kind of mismatch
+            raise UsageError(f"agent.init_policy={path} does not fit the policy: {reason}") from error
         print(f"policy: starts from {path}")
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:

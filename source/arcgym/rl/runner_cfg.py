@@ -332,7 +332,8 @@ class RslRlOnPolicyRunnerCfg:
 
     init_policy: str | None = None
     """Checkpoint whose policy a new run starts from, of behaviour cloning, of a distillation (its student),
-    or of another task; None starts from scratch."""
+    or of another task; None starts from scratch. One without memory fits a policy with it whose ``skip_connection`` is
+    on."""
 
     critic_first: int = 0
     """Updates at the start of a run with ``init_policy`` in which the critics alone learn. A good policy gets worse

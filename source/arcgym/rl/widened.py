@@ -1,11 +1,17 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Weights of a policy for one that sees further images."""
+"""Weights of a policy for one that sees further images, or that has a memory beside what it sees."""
 
 from __future__ import annotations
 
 import torch
+
+FIRST_MATRIX = "mlp.0.weight"
+"""Matrix that reads the features, shape (outputs, features)."""
+
+RECURRENT = "rnn."
+"""Beginning of the names of a recurrent layer's weights."""
 
 
 def widened(weights: dict[str, torch.Tensor], wanted: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
@@ -19,6 +25,29 @@ def widened(weights: dict[str, torch.Tensor], wanted: dict[str, torch.Tensor]) -
             channels of their input, or have fewer, are left as they are.
     """
     return {name: _filled(value, wanted[name]) if name in wanted else value for name, value in weights.items()}
+
+
+def with_memory(
+    weights: dict[str, torch.Tensor], wanted: dict[str, torch.Tensor], width: int
+) -> dict[str, torch.Tensor]:
+    """Return weights of a policy without memory for one with it, whose MLP reads the memory behind the features.
+
+    The first matrix gets a column of zeros for each number remembered, so that actions stay the same; the recurrent
+    layer, which the weights lack, stays as it is.
+
+    Args:
+        weights: Weights by name, as a checkpoint has them. Those that hold a recurrent layer, or whose first matrix
+            differs in more than these columns, are left as they are.
+        wanted: Weights of the policy that is to take them over.
+        width: Numbers that the recurrent layer gives to the MLP.
+    """
+    if any(name.startswith(RECURRENT) for name in weights) or FIRST_MATRIX not in weights:
+        return weights
+    matrix = weights[FIRST_MATRIX]
+    if wanted[FIRST_MATRIX].shape != (len(matrix), matrix.shape[-1] + width):
+        return weights
+    recurrent = {name: value for name, value in wanted.items() if name.startswith(RECURRENT)}
+    return {**weights, **recurrent, FIRST_MATRIX: torch.cat([matrix, matrix.new_zeros(len(matrix), width)], dim=1)}
 
 
 def _filled(value: torch.Tensor, wanted: torch.Tensor) -> torch.Tensor:
