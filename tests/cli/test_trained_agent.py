@@ -137,6 +137,21 @@ def test_trials_are_drawn_by_the_task_however_the_training_drew(tmp_path: Path) 
     assert tuple(asked.events.friction.params["friction"]) == (0.2, 0.3)
 
 
+def test_trials_have_the_tissue_of_the_suite_whatever_the_policy_learnt_in(tmp_path: Path) -> None:
+    """A policy that learnt in clinical tissue was judged in it where the suite's trials are of another."""
+    env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
+    env_cfg.clinical, env_cfg.scene.colon.material = ("all",), "in_situ"
+    agent_cfg = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
+    write_params(tmp_path, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    (tmp_path / "model_0.pt").write_bytes(b"")
+    judged, _ = _load(TASK, tmp_path / "model_0.pt", ())
+    assert tuple(judged.clinical) == () and judged.scene.colon.material == "paper"
+    asked, _ = _load(TASK, tmp_path / "model_0.pt", ("env.clinical=[camera]",))
+    assert tuple(asked.clinical) == ("camera",)
+    played, _, _ = load_run_cfgs(RunArguments(task=TASK, checkpoint=str(tmp_path / "model_0.pt")))
+    assert tuple(played.clinical) == ("all",) and played.scene.colon.material == "in_situ"
+
+
 def test_a_run_that_goes_on_from_a_checkpoint_says_which_agent_it_has(tmp_path: Path, monkeypatch) -> None:
     """Or the run that goes on could not be played: its parameters would be read as those of PPO."""
     key = "rsl_rl_sac_cfg_entry_point"

@@ -36,6 +36,9 @@ PREFIX = "ARC-"
 USUAL_SUITE = "paper"
 """Suite where none is named. With a condition file alone the record has its name instead: the trials are no suite's."""
 
+TRIALS_OWN = ("events", "terminations", "clinical", "scene.colon.material")
+"""Parts of an environment that belong to a trial and not to an agent."""
+
 REFERENCE_AGENTS = ("zero", "random", "expert")
 """Agents that need no checkpoint."""
 
@@ -181,8 +184,8 @@ def _check_tasks(tasks: list[str]) -> None:
 def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
     """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top.
 
-    Events and terminations stay the task's: they draw the trials and end them, the same for all agents, however a
-    training drew and ended its own.
+    Events, terminations and tissue stay the task's, or the suite's: they make the trials, the same for all agents,
+    whatever a training had.
     """
     from arcgym.cli.arguments import RunArguments, TaskArguments
     from arcgym.cli.task import load_cfgs, load_run_cfgs
@@ -191,6 +194,6 @@ def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tup
         return load_cfgs(TaskArguments(task=task, overrides=list(overrides)))
     env_cfg, agent_cfg, _ = load_run_cfgs(
         RunArguments(task=task, checkpoint=str(_checkpoint(str(checkpoint)).resolve()), overrides=list(overrides)),
-        as_registered=("events", "terminations"),
+        as_registered=TRIALS_OWN,
     )
     return env_cfg, agent_cfg
