@@ -103,3 +103,10 @@ def test_single_patients_are_named_by_their_seed(folder: Path) -> None:
     assert stage_of(folder, "20007*0.8") == less_gas
     with pytest.raises(ValueError, match="Seed 15000 is in no split.*test 20000 to 20199"):
         find_stages("population:15000")
+
+
+def test_a_worker_whose_parent_is_gone_takes_no_more_patients(monkeypatch) -> None:
+    parents = iter([7, 7, 1])  # as the worker starts, before the first patient, and before the second
+    monkeypatch.setattr(stored_patients.os, "getppid", lambda: next(parents))
+    monkeypatch.setattr(stored_patients.os, "read", lambda file, size: b"20001")
+    assert list(stored_patients._next_of_all()) == ["20001"]

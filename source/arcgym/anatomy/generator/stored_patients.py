@@ -104,8 +104,12 @@ def main(folder: str, *patients: str) -> None:
 
 
 def _next_of_all() -> Iterator[str]:
-    """Yield names from the standard input, each of which one process gets: all read on in the same open file."""
-    while record := os.read(0, _RECORD):
+    """Yield names from the standard input, each of which one process gets: all read on in the same open file.
+
+    They end where the process that asked for them is gone, as one that was killed.
+    """
+    asked_by = os.getppid()
+    while os.getppid() == asked_by and (record := os.read(0, _RECORD)):
         yield record.decode().strip()
 
 
