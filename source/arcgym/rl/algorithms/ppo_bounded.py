@@ -12,12 +12,14 @@ from rsl_rl.algorithms import PPO
 from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 
+from arcgym.rl.algorithms.further_loss import FurtherLoss
+
 BOUND = 1.0
 """Largest raw action that an action term carries out."""
 
 
 class PPOBounded(PPO):
-    """PPO with one more loss, which brings mean actions back into [-1, 1] and changes nothing that is carried out.
+    """PPO with one more loss, which brings mean actions back into [-1, 1] and hardly changes what is carried out.
 
     Action terms cut raw actions at -1 and 1. Beyond a bound all samples are cut to the same action: nothing else is
     tried, no advantage says so, and the mean drifts on. A policy that is stuck then stays so, however long it learns.
@@ -47,16 +49,8 @@ class PPOBounded(PPO):
         return losses
 
 
-class _BoundsLoss:
-    """Further loss of a mini-batch, where rsl_rl's PPO asks its extension for symmetry."""
-
-    use_mirror_loss = True
-
-    def __init__(self, coef: float):
-        self.mirror_loss_coeff = coef
-
-    def augment_batch(self, batch: Any, size: int) -> None:
-        """Leave the mini-batch as it is."""
+class _BoundsLoss(FurtherLoss):
+    """Draws the means of a mini-batch back."""
 
     def compute_loss(self, actor: MLPModel, batch: Any, size: int) -> torch.Tensor:
         """Return the mean loss of the mini-batch that the policy has just seen."""

@@ -14,6 +14,7 @@ from rsl_rl.storage import RolloutStorage
 from rsl_rl.utils import reduce_gradients_in_buckets
 from torch import nn
 
+from arcgym.rl.algorithms.further_loss import FurtherLoss
 from arcgym.rl.networks.feature_reader import FeatureReader
 from arcgym.utils.errors import UsageError
 
@@ -83,16 +84,12 @@ class PPOPredicting(PPO):
         reduce_gradients_in_buckets(self.head.parameters(), self.gpu_world_size, self.grad_reduce_bucket_mb)
 
 
-class _Prediction:
-    """Further loss of a mini-batch, where rsl_rl's PPO asks its extension for symmetry."""
-
-    use_mirror_loss = True
+class _Prediction(FurtherLoss):
+    """Teaches the head, and through it the features."""
 
     def __init__(self, alg: PPOPredicting, coef: float):
-        self.alg, self.mirror_loss_coeff = alg, coef
-
-    def augment_batch(self, batch: Any, size: int) -> None:
-        """Leave the mini-batch as it is."""
+        super().__init__(coef)
+        self.alg = alg
 
     def compute_loss(self, actor: MLPModel, batch: Any, size: int) -> torch.Tensor:
         """Return the mean squared difference; the policy has just seen this mini-batch."""
