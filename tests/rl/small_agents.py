@@ -5,9 +5,12 @@
 
 from __future__ import annotations
 
+import torch
+
 from arcgym.rl import (
     CnnCfg,
     GaussianDistributionCfg,
+    OnPolicyRunner,
     RslRlCnnModelCfg,
     RslRlMlpModelCfg,
     RslRlOnPolicyRunnerCfg,
@@ -30,3 +33,14 @@ def runner_cfg(**changes) -> RslRlOnPolicyRunnerCfg:
         "init_at_random_ep_len": False,
     }
     return RslRlOnPolicyRunnerCfg(**(settings | changes))
+
+
+def roll_and_update(runner: OnPolicyRunner) -> dict[str, float]:
+    """Collect one rollout of eight steps and return the losses of the update."""
+    obs = runner.env.get_observations()
+    with torch.inference_mode():
+        for _ in range(8):
+            obs, rewards, dones, extras = runner.env.step(runner.alg.act(obs))
+            runner.alg.process_env_step(obs, rewards, dones, extras)
+        runner.alg.compute_returns(obs)
+    return runner.alg.update()

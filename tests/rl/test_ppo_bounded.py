@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 import torch
 from pixel_tasks import SteerToDot
-from small_agents import runner_cfg
+from small_agents import roll_and_update, runner_cfg
 
 from arcgym.rl import OnPolicyRunner
 from arcgym.rl.agent_cfgs.ppo_bounded import RslRlPpoBoundedAlgorithmCfg
@@ -30,13 +30,7 @@ def _means_after(coef: float, updates: int = 12) -> torch.Tensor:
     with torch.no_grad():
         runner.alg.actor.mlp[-1].bias.fill_(5.0)
     for _ in range(updates):
-        obs = runner.env.get_observations()
-        with torch.inference_mode():
-            for _ in range(8):
-                obs, rewards, dones, extras = runner.env.step(runner.alg.act(obs))
-                runner.alg.process_env_step(obs, rewards, dones, extras)
-            runner.alg.compute_returns(obs)
-        losses = runner.alg.update()
+        losses = roll_and_update(runner)
     assert losses["bounds"] >= 0.0
     with torch.no_grad():
         return runner.alg.actor(runner.env.get_observations())

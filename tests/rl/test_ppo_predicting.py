@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 import torch
 from pixel_tasks import SteerToDot
-from small_agents import runner_cfg
+from small_agents import roll_and_update, runner_cfg
 
 from arcgym.rl import OnPolicyRunner, RslRlMlpModelCfg, RslRlPpoAlgorithmCfg, export_policy_as_jit
 from arcgym.utils.errors import UsageError
@@ -30,21 +30,11 @@ def _runner(env=None, critic=CRITIC) -> OnPolicyRunner:
     return OnPolicyRunner(env or SteerToDot(16), cfg.to_dict(), device="cpu")
 
 
-def _roll_and_update(runner: OnPolicyRunner) -> dict[str, float]:
-    obs = runner.env.get_observations()
-    with torch.inference_mode():
-        for _ in range(8):
-            obs, rewards, dones, extras = runner.env.step(runner.alg.act(obs))
-            runner.alg.process_env_step(obs, rewards, dones, extras)
-        runner.alg.compute_returns(obs)
-    return runner.alg.update()
-
-
 @one_thread()
 def test_head_learns_where_the_dot_is():
     """Guesses of normalized numbers are off by a variance of about one; the dot can be seen in every image."""
     runner = _runner()
-    losses = [_roll_and_update(runner)["prediction"] for _ in range(30)]
+    losses = [roll_and_update(runner)["prediction"] for _ in range(30)]
     assert max(losses[:4]) > 0.8
     assert sum(losses[-10:]) / 10 < 0.2
 
@@ -67,7 +57,7 @@ def test_loss_by_hand():
 @one_thread()
 def test_checkpoint_keeps_the_head(tmp_path):
     runner = _runner()
-    _roll_and_update(runner)
+    roll_and_update(runner)
     runner.save(str(tmp_path / "model_0.pt"))
     other = _runner()
     assert not torch.equal(other.alg.head.weight, runner.alg.head.weight)
@@ -78,7 +68,7 @@ def test_checkpoint_keeps_the_head(tmp_path):
 @one_thread()
 def test_policy_that_has_learnt_is_exported(tmp_path):
     runner = _runner()
-    _roll_and_update(runner)
+    roll_and_update(runner)
     obs = runner.env.get_observations()
     exported = torch.jit.load(str(export_policy_as_jit(runner.alg.get_policy(), tmp_path)))
     actions = exported(torch.zeros(16, 0), [obs["policy"]])

@@ -19,7 +19,7 @@ from arcgym.rl.agent_cfgs.ppo_lagrangian import RslRlPpoLagrangianAlgorithmCfg, 
 from arcgym.rl.agent_cfgs.ppo_masked import RslRlConstrainedRunnerCfg
 from arcgym.rl.agent_cfgs.ppo_predicting import RslRlPpoPredictingAlgorithmCfg
 from arcgym.utils.configclass import configclass
-from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
+from arcgym_tasks.navigation.agents.rsl_rl_cfg import PPO_SETTINGS, NavigationPPORunnerCfg
 
 
 @configclass
@@ -78,16 +78,7 @@ class NavigationLagrangianPPORunnerCfg(NavigationPPORunnerCfg, RslRlPpoLagrangia
     """PPO under limits on the seconds of an episode in which the tip presses unsafely or sees nothing but wall."""
 
     algorithm: RslRlPpoAlgorithmCfg = RslRlPpoLagrangianAlgorithmCfg(
-        limits={"tip_force": 0.5, "view_blocked": 1.0},
-        num_learning_epochs=3,
-        num_mini_batches=6,
-        learning_rate=3.0e-4,
-        schedule="fixed",
-        gamma=0.97,
-        lam=0.95,
-        clip_param=0.2,
-        entropy_coef=0.003,
-        max_grad_norm=0.5,
+        limits={"tip_force": 0.5, "view_blocked": 1.0}, **PPO_SETTINGS
     )
 
 
@@ -95,34 +86,14 @@ class NavigationLagrangianPPORunnerCfg(NavigationPPORunnerCfg, RslRlPpoLagrangia
 class NavigationPredictingPPORunnerCfg(NavigationPPORunnerCfg):
     """PPO whose features also learn to predict what its critic sees: lumen, centerline ahead, forces."""
 
-    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoPredictingAlgorithmCfg(
-        num_learning_epochs=3,
-        num_mini_batches=6,
-        learning_rate=3.0e-4,
-        schedule="fixed",
-        gamma=0.97,
-        lam=0.95,
-        clip_param=0.2,
-        entropy_coef=0.003,
-        max_grad_norm=0.5,
-    )
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoPredictingAlgorithmCfg(**PPO_SETTINGS)
 
 
 @configclass
 class NavigationBoundedPPORunnerCfg(NavigationPPORunnerCfg):
     """PPO whose mean actions stay within [-1, 1]: for long trainings, and to go on from a policy that has left them."""
 
-    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoBoundedAlgorithmCfg(
-        num_learning_epochs=3,
-        num_mini_batches=6,
-        learning_rate=3.0e-4,
-        schedule="fixed",
-        gamma=0.97,
-        lam=0.95,
-        clip_param=0.2,
-        entropy_coef=0.003,
-        max_grad_norm=0.5,
-    )
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoBoundedAlgorithmCfg(**PPO_SETTINGS)
 
 
 @configclass

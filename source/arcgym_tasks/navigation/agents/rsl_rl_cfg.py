@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from arcgym.rl import (
     GaussianDistributionCfg,
     RslRlCnnModelCfg,
@@ -13,6 +15,19 @@ from arcgym.rl import (
     RslRlPpoAlgorithmCfg,
 )
 from arcgym.utils.configclass import configclass
+
+PPO_SETTINGS: dict[str, Any] = {
+    "num_learning_epochs": 3,
+    "num_mini_batches": 6,
+    "learning_rate": 3.0e-4,
+    "schedule": "fixed",
+    "gamma": 0.97,
+    "lam": 0.95,
+    "clip_param": 0.2,
+    "entropy_coef": 0.003,
+    "max_grad_norm": 0.5,
+}
+"""Settings of PPO and of its relatives that learn from the same rollouts."""
 
 
 @configclass
@@ -32,14 +47,4 @@ class NavigationPPORunnerCfg(RslRlOnPolicyRunnerCfg):
         hidden_dims=[256], distribution_cfg=GaussianDistributionCfg(init_std=0.6)
     )
     critic: RslRlMlpModelCfg = RslRlMlpModelCfg(hidden_dims=[256, 128], obs_normalization=True)
-    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoAlgorithmCfg(
-        num_learning_epochs=3,
-        num_mini_batches=6,
-        learning_rate=3.0e-4,
-        schedule="fixed",
-        gamma=0.97,
-        lam=0.95,
-        clip_param=0.2,
-        entropy_coef=0.003,
-        max_grad_norm=0.5,
-    )
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoAlgorithmCfg(**PPO_SETTINGS)
