@@ -39,6 +39,8 @@ def check_agent(env_cfg: Any, agent_cfg: Any, trains: bool) -> None:
     if trains:
         num_mini_batches = getattr(agent_cfg.algorithm, "num_mini_batches", 1)
         check_batches(env_cfg.scene.num_envs, agent_cfg.num_steps_per_env, num_mini_batches)
+        if hasattr(getattr(agent_cfg, "actor", None), "rnn_type"):
+            check_batches_of_worlds(env_cfg.scene.num_envs, num_mini_batches)
         check_installed(LOGGER_PACKAGES.get(agent_cfg.logger, "tensorboard"), f"agent.logger={agent_cfg.logger}")
 
 
@@ -48,6 +50,15 @@ def check_batches(num_envs: int, num_steps: int, num_mini_batches: int) -> None:
         raise UsageError(
             f"agent.algorithm.num_mini_batches is {num_mini_batches}, but {num_envs} worlds x {num_steps} steps make "
             f"only {num_envs * num_steps} transitions; lower it, or raise --num_envs or agent.num_steps_per_env."
+        )
+
+
+def check_batches_of_worlds(num_envs: int, num_mini_batches: int) -> None:
+    """Raise if a mini-batch of a policy with memory, which is of whole worlds, would be empty."""
+    if num_envs < num_mini_batches:
+        raise UsageError(
+            f"agent.algorithm.num_mini_batches is {num_mini_batches}, but there are {num_envs} worlds, and a policy with "
+            "memory learns on mini-batches of whole worlds; lower it, or raise --num_envs."
         )
 
 
