@@ -57,8 +57,8 @@ def check_batches_of_worlds(num_envs: int, num_mini_batches: int) -> None:
     """Raise if a mini-batch of a policy with memory, which is of whole worlds, would be empty."""
     if num_envs < num_mini_batches:
         raise UsageError(
-            f"agent.algorithm.num_mini_batches is {num_mini_batches}, but there are {num_envs} worlds, and a policy with "
-            "memory learns on mini-batches of whole worlds; lower it, or raise --num_envs."
+            f"agent.algorithm.num_mini_batches is {num_mini_batches}, but there are {num_envs} worlds, and a policy "
+            "with memory learns on mini-batches of whole worlds; lower it, or raise --num_envs."
         )
 
 
