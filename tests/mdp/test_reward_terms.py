@@ -102,6 +102,7 @@ def test_a_corner_is_visible_off_center_and_a_flat_wall_is_centered_and_no_lumen
     assert mdp.centered_rate(env).tolist() == [False, True]
     assert mdp.visible_rate(env).tolist() == [True, False]
     assert mdp.visible_rate(env, threshold=0.3).tolist() == [False, False]
+    torch.testing.assert_close(mdp.lumen_lost(env), torch.tensor([0.0, -1.0]))
 
 
 def test_progress_fraction_is_clamped(env) -> None:

@@ -30,6 +30,7 @@ __all__ = [
     "estimated_lumen_reward",
     "is_terminated",
     "lumen_centering",
+    "lumen_lost",
     "lumen_part",
     "lumen_reward",
     "lumen_visibility",
@@ -69,6 +70,19 @@ def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) ->
         lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
     """
     return lumen_scores(env, lumen).reward
+
+
+@expects(lumen=LUMEN_PRESETS)
+def lumen_lost(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
+    """Visibility ``s_o`` where it is negative, else 0: in [-1, 0], shape (N,).
+
+    In place of ``lumen_reward`` it makes looking at a wall dear without paying for a view, for which policies may wait
+    at a discount near one.
+
+    Args:
+        lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
+    """
+    return lumen_scores(env, lumen).s_o.clamp(max=0.0)
 
 
 @expects(part=PARTS, lumen=LUMEN_PRESETS)
