@@ -61,6 +61,8 @@ class RewardsCfg:
     front of a tight bend, where the near wall counts as lumen; looking round the bend earns 0.02 (colon 1,
     docs/research_log.md). So it pays to go on: with a weight of 100 it paid more to stay and look. The bonus of the
     last step, 50 times 0.1, is more than a policy could collect by waiting before the end at a discount of 0.97.
+    At 0.99 it is not, and policies did wait (docs/research_log.md): :func:`arcgym.envs.mdp.lumen_lost` in place of
+    ``lumen_reward`` pays for no view.
     """
 
     lumen = RewTerm(func=mdp.lumen_reward, weight=1.0)
