@@ -54,6 +54,13 @@ def test_a_robot_without_a_policy_is_told_which_have_one(shipped: Path) -> None:
         pretrained_checkpoint("ARC-Sigmoid-Mine-Play-v1", "sac")
 
 
+def test_a_withdrawal_does_not_get_the_policy_of_the_way_in(shipped: Path) -> None:
+    with pytest.raises(
+        UsageError, match="ARC-Withdrawal-Magnetic, and those of journeys go the other way; .* for: left"
+    ):
+        pretrained_checkpoint("ARC-Withdrawal-Magnetic-Play")
+
+
 def test_it_plays_where_nothing_was_trained_and_where_it_is_asked_for(shipped: Path) -> None:
     assert _with_pretrained(PlayArguments(task=TASK)).checkpoint == str(shipped)
     _, agent_cfg = load_cfgs(PlayArguments(task=TASK))

@@ -31,6 +31,9 @@ ABOUT = "about.json"
 JOURNEYS = ("leftcolon", "cecum")
 """Whose policies play the robot's other tasks, where these have none of their own: the first that there is."""
 
+WAYS_OUT = ("withdrawal",)
+"""Tasks that go the other way, to which a journey's policy does not fit."""
+
 
 def policies_dir() -> Path:
     """Return the folder of the shipped policies, which lies beside :func:`arcgym.utils.paths.assets_dir`."""
@@ -50,6 +53,8 @@ def robot_of(task: str) -> str:
 def pretrained_checkpoint(task: str, agent: str | None = None) -> Path:
     """Return the checkpoint of the policy that is shipped for a task: its own, or that of a journey of its robot.
 
+    A withdrawal has its own or none.
+
     Args:
         task: Name of the task.
         agent: Agent that was asked for, for the hint how to train one; None is the task's first.
@@ -57,15 +62,17 @@ def pretrained_checkpoint(task: str, agent: str | None = None) -> Path:
     Raises:
         UsageError: There is none, with the tasks that have one.
     """
-    names = [folder_of(task), *(f"{journey}-{robot_of(task)}" for journey in JOURNEYS)]
-    for name in names:
+    out = folder_of(task).startswith(WAYS_OUT)
+    journeys = [] if out else [f"{journey}-{robot_of(task)}" for journey in JOURNEYS]
+    for name in (folder_of(task), *journeys):
         path = policies_dir() / name / FILE
         if path.is_file():
             return path
     plain, further = plain_task(task), f" --agent {agent}" if agent else ""
     there = sorted(found.parent.name for found in policies_dir().glob(f"*/{FILE}"))
+    others = "and those of journeys go the other way" if out else f"and none for a journey of '{robot_of(task)}'"
     raise UsageError(
-        f"No policy is shipped for {plain}, and none for a journey of '{robot_of(task)}'; there are some for: "
+        f"No policy is shipped for {plain}, {others}; there are some for: "
         f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {plain}{further}'."
     )
 
