@@ -76,8 +76,8 @@ def lumen_reward(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) ->
 def lumen_lost(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> torch.Tensor:
     """Visibility ``s_o`` where it is negative, else 0: in [-1, 0], shape (N,).
 
-    In place of ``lumen_reward`` it makes looking at a wall dear without paying for a view, for which policies may wait
-    at a discount near one.
+    In place of ``lumen_reward`` it makes looking at a wall costly without paying for a view, for which policies may
+    wait at a discount near one.
 
     Args:
         lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
