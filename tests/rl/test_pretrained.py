@@ -54,11 +54,15 @@ def test_a_robot_without_a_policy_is_told_which_have_one(shipped: Path) -> None:
         pretrained_checkpoint("ARC-Sigmoid-Mine-Play-v1", "sac")
 
 
-def test_a_withdrawal_does_not_get_the_policy_of_the_way_in(shipped: Path) -> None:
-    with pytest.raises(
-        UsageError, match="ARC-Withdrawal-Magnetic, and those of journeys go the other way; .* for: left"
-    ):
-        pretrained_checkpoint("ARC-Withdrawal-Magnetic-Play")
+@pytest.mark.parametrize(
+    "task, overrides",
+    [("ARC-Withdrawal-Magnetic-Play", ()), ("ARC-Sigmoid-Magnetic-Play", ("env.direction=withdrawal",))],
+)
+@pytest.mark.parametrize("asked", [True, False])
+def test_a_way_back_does_not_get_the_policy_of_the_way_in(shipped: Path, task: str, overrides, asked: bool) -> None:
+    args = PlayArguments(task=task, overrides=overrides, use_pretrained_checkpoint=asked)
+    with pytest.raises(UsageError, match="-Magnetic, and those of journeys go the other way; .* for: leftcolon-mag"):
+        _with_pretrained(args)
 
 
 def test_it_plays_where_nothing_was_trained_and_where_it_is_asked_for(shipped: Path) -> None:

@@ -88,15 +88,16 @@ def _with_pretrained(args: PlayArguments) -> PlayArguments:
 
     chosen = args.checkpoint or args.load_run
     agent = None if args.agent == DEFAULT_AGENT else args.agent
+    if args.use_pretrained_checkpoint and chosen:
+        raise UsageError(f"--use_pretrained_checkpoint and '{chosen}' are two checkpoints: leave one of them out.")
+    env_cfg, agent_cfg = load_cfgs(args)
+    goes_in = getattr(env_cfg, "direction", "insertion") == "insertion"
     if args.use_pretrained_checkpoint:
-        if chosen:
-            raise UsageError(f"--use_pretrained_checkpoint and '{chosen}' are two checkpoints: leave one of them out.")
-        return replace(args, checkpoint=str(pretrained_checkpoint(args.task, agent)))
-    _, agent_cfg = load_cfgs(args)
+        return replace(args, checkpoint=str(pretrained_checkpoint(args.task, agent, goes_in)))
     if chosen or agent_cfg.load_checkpoint != "latest" or has_checkpoints(agent_cfg.experiment_name):
         return args
     try:
-        path = pretrained_checkpoint(args.task, agent)
+        path = pretrained_checkpoint(args.task, agent, goes_in)
     except UsageError as error:
         if args.experiment_name:
             return args

@@ -31,9 +31,6 @@ ABOUT = "about.json"
 JOURNEYS = ("leftcolon", "cecum")
 """Whose policies play the robot's other tasks, where these have none of their own: the first that there is."""
 
-WAYS_OUT = ("withdrawal",)
-"""Tasks that go the other way, to which a journey's policy does not fit."""
-
 
 def policies_dir() -> Path:
     """Return the folder of the shipped policies, which lies beside :func:`arcgym.utils.paths.assets_dir`."""
@@ -50,27 +47,25 @@ def robot_of(task: str) -> str:
     return folder_of(task).rpartition("-")[2]
 
 
-def pretrained_checkpoint(task: str, agent: str | None = None) -> Path:
+def pretrained_checkpoint(task: str, agent: str | None = None, goes_in: bool = True) -> Path:
     """Return the checkpoint of the policy that is shipped for a task: its own, or that of a journey of its robot.
-
-    A withdrawal has its own or none.
 
     Args:
         task: Name of the task.
         agent: Agent that was asked for, for the hint how to train one; None is the task's first.
+        goes_in: Whether the task goes towards the cecum, as journeys do; a withdrawal has a policy of its own or none.
 
     Raises:
         UsageError: There is none, with the tasks that have one.
     """
-    out = folder_of(task).startswith(WAYS_OUT)
-    journeys = [] if out else [f"{journey}-{robot_of(task)}" for journey in JOURNEYS]
+    journeys = [f"{journey}-{robot_of(task)}" for journey in JOURNEYS] if goes_in else []
     for name in (folder_of(task), *journeys):
         path = policies_dir() / name / FILE
         if path.is_file():
             return path
     plain, further = plain_task(task), f" --agent {agent}" if agent else ""
     there = sorted(found.parent.name for found in policies_dir().glob(f"*/{FILE}"))
-    others = "and those of journeys go the other way" if out else f"and none for a journey of '{robot_of(task)}'"
+    others = f"and none for a journey of '{robot_of(task)}'" if goes_in else "and those of journeys go the other way"
     raise UsageError(
         f"No policy is shipped for {plain}, {others}; there are some for: "
         f"{', '.join(there) or 'none'}. Train one with 'arcgym train --task {plain}{further}'."
