@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 import torch
+import warp as wp
 
 from arcgym.envs import mdp
 from arcgym.managers import ObservationTermCfg
@@ -103,3 +104,32 @@ def test_shape_is_the_shaft_seen_from_the_tip(env) -> None:
 def test_insertion_depth(env) -> None:
     env.scope.inserted_length[:] = torch.tensor([0.3, 0.5])
     torch.testing.assert_close(mdp.insertion_depth(env), torch.tensor([[0.3], [0.5]]))
+
+
+def test_recent_advance_by_hand(env) -> None:
+    """Two windows, of one and of three steps; the second world is reset before the third step."""
+    params = {"windows_s": (env.step_dt, 3 * env.step_dt)}
+    term = mdp.recent_advance(ObservationTermCfg(func=mdp.recent_advance, params=params), env)
+    values = []
+    for env.common_step_counter, arc in enumerate([0.1, 0.2, 0.4, 0.7, 1.1]):
+        if env.common_step_counter == 3:
+            term.reset(torch.tensor([1]))
+        env.scope.tip_arc_length[:] = arc
+        term(env, **params)
+        values.append(term(env, **params, scale=0.1))  # a second look in the same step changes nothing
+    first, second = torch.stack(values, dim=1)
+    torch.testing.assert_close(first[:, 0], torch.tensor([0.0, 1.0, 2.0, 3.0, 4.0]))
+    torch.testing.assert_close(first[:, 1], torch.tensor([0.0, 1.0, 3.0, 6.0, 9.0]))
+    torch.testing.assert_close(second[:, 0], torch.tensor([0.0, 1.0, 2.0, 0.0, 4.0]))
+    torch.testing.assert_close(second[:, 1], torch.tensor([0.0, 1.0, 3.0, 0.0, 4.0]))
+
+
+def test_target_lead_is_seen_from_the_tip(env) -> None:
+    """A target 1 cm ahead along the world's X and half a turn on about its Z; the second tip is turned by 90°."""
+    vectors = {"lead": [0.01, 0.0, 0.0], "turn": [0.0, 0.0, math.pi]}
+    pull = SimpleNamespace(**{name: wp.array([value] * 2, dtype=wp.vec3) for name, value in vectors.items()})
+    env.scene["endoscope"].actuator = {"tip": pull}.__getitem__
+    env.scope.tip_quat_w[1] = torch.tensor([0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5)])
+    expected = torch.tensor([[0.5, 0.0, 0.0, 0.0, 0.0, 2.0], [0.0, -0.5, 0.0, 0.0, 0.0, 2.0]])
+    lead = mdp.target_lead(env, linear_scale=0.02, angular_scale=0.5 * math.pi)
+    torch.testing.assert_close(lead, expected, atol=1e-5, rtol=0.0)

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import torch
+import warp as wp
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.force_windows import ABUTTING
@@ -23,6 +24,7 @@ from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
 from arcgym.utils.math import points_at, quat_apply_inverse
 from arcgym.utils.validation import POSITIVE, Range, expects
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -36,8 +38,10 @@ __all__ = [
     "insertion_depth",
     "last_action",
     "lumen_state",
+    "recent_advance",
     "rgb",
     "shaft_shape",
+    "target_lead",
     "tip_axis_distance",
     "tip_bending",
     "tip_force_vector",
@@ -49,6 +53,9 @@ __all__ = [
 
 LOOK_AHEAD = (0.01, 0.02, 0.04, 0.08)
 """Arc lengths ahead of the tip [m] at which :class:`centerline_ahead` looks: half to four scope diameters."""
+
+RECENT = (1.0, 3.0, 10.0)
+"""Windows [s] over which :class:`recent_advance` looks back."""
 
 _CAMERA = SceneEntityCfg("camera")
 
@@ -112,6 +119,41 @@ def tip_progress(env: ManagerBasedEnv, segment: str | None = None) -> torch.Tens
         segment: Name of the segment; None takes the task's, ``env.cfg.segment``.
     """
     return segment_progress(env, segment).unsqueeze(1)
+
+
+@expects(windows_s=POSITIVE, scale=POSITIVE)
+class recent_advance(ManagerTermBase):
+    """Advance of the tip along the lumen over each of several windows, over a scale, shape (N, K).
+
+    It tells a critic how long a tip has been stuck, which its present state does not. Before a window has passed since
+    the world's reset, its advance is that since the reset.
+    """
+
+    def __init__(self, cfg: ObservationTermCfg, env: ManagerBasedEnv) -> None:
+        """Allocate the ring buffer of past positions, shape (longest window + 1, N)."""
+        super().__init__(cfg, env)
+        windows = cfg.params.get("windows_s", RECENT)
+        self._steps = torch.tensor([max(1, round(window / env.step_dt)) for window in windows], device=env.device)
+        self._arc = torch.full((int(self._steps.max()) + 1, env.num_envs), torch.nan, device=env.device)
+        self._now, self._step = 0, -1
+
+    def reset(self, env_ids: torch.Tensor | None = None) -> None:
+        """Forget the past of the given worlds."""
+        fill_worlds(self._arc, env_ids, torch.nan, dim=1)
+
+    def __call__(self, env: ManagerBasedEnv, windows_s: Sequence[float] = RECENT, scale: float = 0.05) -> torch.Tensor:
+        """Return the advances until now; a second call in a control step sees the same past.
+
+        Args:
+            windows_s: Lengths of the windows [s], shape (K,), read once at construction.
+            scale: Advance that becomes one [m].
+        """
+        arc = env.scene["endoscope"].data.tip_arc_length
+        self._now = (self._now + (env.common_step_counter != self._step)) % len(self._arc)
+        self._step = env.common_step_counter
+        self._arc.copy_(torch.where(self._arc.isnan(), arc, self._arc))
+        self._arc[self._now] = arc
+        return ((arc - self._arc[(self._now - self._steps) % len(self._arc)]) / scale).T
 
 
 @expects(scale=POSITIVE)
@@ -205,6 +247,25 @@ def drive_forces(env: ManagerBasedEnv) -> torch.Tensor:
     """``log(1 + F / 1 N)`` of the push at the base and of the pull at the tip, shape (N, 2)."""
     data = env.scene["endoscope"].data
     return torch.log1p(torch.stack((data.base_force.abs(), data.tip_pull_force_w.norm(dim=-1)), dim=1))
+
+
+@expects(linear_scale=POSITIVE, angular_scale=POSITIVE)
+def target_lead(
+    env: ManagerBasedEnv, actuator_name: str = "tip", linear_scale: float = 0.01, angular_scale: float = 1.0
+) -> torch.Tensor:
+    """How far the target of a pulled tip is ahead of it, in the tip's frame: way and turn over scales, shape (N, 6).
+
+    No picture shows it, and it takes as long to undo as it took to grow.
+
+    Args:
+        actuator_name: Which of ``EndoscopeCfg.actuators``, a :class:`arcgym.assets.TipPullCfg`.
+        linear_scale: Way that becomes one [m].
+        angular_scale: Turn that becomes one [rad].
+    """
+    scope = env.scene["endoscope"]
+    pull = scope.actuator(actuator_name)
+    ahead = torch.stack((wp.to_torch(pull.lead) / linear_scale, wp.to_torch(pull.turn) / angular_scale), dim=1)
+    return quat_apply_inverse(scope.data.tip_quat_w.unsqueeze(1), ahead).flatten(1)
 
 
 def tip_force_vector(env: ManagerBasedEnv) -> torch.Tensor:
