@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 import torch
 
@@ -103,6 +105,21 @@ def test_a_corner_is_visible_off_center_and_a_flat_wall_is_centered_and_no_lumen
     assert mdp.visible_rate(env).tolist() == [True, False]
     assert mdp.visible_rate(env, threshold=0.3).tolist() == [False, False]
     torch.testing.assert_close(mdp.lumen_lost(env), torch.tensor([0.0, -1.0]))
+
+
+def test_looking_to_the_side_and_back_is_misaligned(env) -> None:
+    """On the axis of a straight colon along +Z, looking 60 degrees to the side and, in the second world, back."""
+    env.scope.tip_arc_length[:] = 0.15
+    env.scope.tip_pos_w[:] = torch.tensor([0.0, 0.0, 0.15])
+    env.scope.tip_quat_w[:] = torch.tensor([[0.0, 0.5, 0.0, math.sqrt(0.75)], [1.0, 0.0, 0.0, 0.0]])
+    torch.testing.assert_close(mdp.lumen_misalignment(env), torch.tensor([0.5, 2.0]))
+
+
+def test_misalignment_is_of_the_way_to_a_point_ahead(env) -> None:
+    """A tip 3 cm beside the axis that looks along it: the point 4 cm ahead is at a slope of 3 to 4, 5 cm away."""
+    env.scope.tip_arc_length[:] = 0.15
+    env.scope.tip_pos_w[:] = torch.tensor([0.03, 0.0, 0.15])
+    torch.testing.assert_close(mdp.lumen_misalignment(env, ahead=0.04), torch.tensor([0.2, 0.2]))
 
 
 def test_progress_fraction_is_clamped(env) -> None:

@@ -17,8 +17,8 @@ from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores, resolve
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import ManagerTermBase, RewardTermCfg
 from arcgym.sensors.depth_estimators import EstimatedDepth, TransformersDepth
-from arcgym.utils.math import row_sum
-from arcgym.utils.validation import expects
+from arcgym.utils.math import points_at, quat_apply_inverse, row_sum
+from arcgym.utils.validation import POSITIVE, expects
 from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ __all__ = [
     "is_terminated",
     "lumen_centering",
     "lumen_lost",
+    "lumen_misalignment",
     "lumen_part",
     "lumen_reward",
     "lumen_visibility",
@@ -83,6 +84,22 @@ def lumen_lost(env: ManagerBasedRLEnv, lumen: str | LumenCfg | None = None) -> t
         lumen: Constants of the scores, or a preset's name; None takes the task's, ``env.cfg.lumen``.
     """
     return lumen_scores(env, lumen).s_o.clamp(max=0.0)
+
+
+@expects(ahead=POSITIVE)
+def lumen_misalignment(env: ManagerBasedRLEnv, ahead: float = 0.03) -> torch.Tensor:
+    """``1 - cos`` of the angle between the tip's axis and the way to the centerline ahead, in [0, 2], shape (N,).
+
+    A price, with a negative weight, on looking elsewhere than along the lumen. It is privileged: in a tight bend the
+    near wall counts as lumen in the image, so that the paper's reward pays for looking away from the way on.
+
+    Args:
+        ahead: Arc length from the tip to the point of the deformed centerline that it should look at [m].
+    """
+    colon, data = env.scene["colon"].data, env.scene["endoscope"].data
+    target = points_at(colon.centerline_pos_w, colon.centerline_arc, data.tip_arc_length[:, None] + ahead)[:, 0]
+    way = torch.nn.functional.normalize(target - data.tip_pos_w, dim=-1)
+    return 1.0 - quat_apply_inverse(data.tip_quat_w, way)[:, 2]
 
 
 @expects(part=PARTS, lumen=LUMEN_PRESETS)
