@@ -40,8 +40,6 @@ ACTIVATIONS = (
 )
 """Activations that rsl_rl resolves."""
 
-_LASTS = "noise that lasts is arcgym.rl.networks.correlated_gaussian:CorrelatedGaussianDistribution"
-
 LOG_WRITERS = {"wandb": "WandbLogWriter", "neptune": "NeptuneLogWriter"}
 """rsl_rl's writer by the name of the logger; ``tensorboard`` is its own."""
 
@@ -117,10 +115,6 @@ class GaussianDistributionCfg:
     learn_std: bool = True
     """Whether the standard deviation is learnt. Turn off for a fixed exploration noise."""
 
-    correlation: float | None = None
-    """Correlation of the noise of two steps that follow each other, for the class ``CorrelatedGaussianDistribution``;
-    raise it where more than a step's worth of an action has to be tried. None leaves the class's own."""
-
     def validate_config(self) -> None:
         """Check numbers and names.
 
@@ -129,9 +123,6 @@ class GaussianDistributionCfg:
         """
         require_positive(self, "init_std", "std_range")
         require_ascending(self, "std_range")
-        require(self, "correlation", Range(0.0, 1.0, below=True))
-        if self.correlation is not None and self.class_name == "GaussianDistribution":
-            raise FieldError(self, "correlation", f"is {self.correlation} with class_name {self.class_name}: {_LASTS}.")
         require(self, "std_type", ("scalar", "log"))
 
 
