@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from arcgym.cli.arguments import RunArguments
-from arcgym.cli.evaluate import _load
+from arcgym.cli.evaluate import load_trial_cfgs
 from arcgym.cli.main import main
 from arcgym.cli.task import load_run_cfgs
 from arcgym.envs.mdp import rgb
@@ -68,12 +68,12 @@ def test_a_roll_to_and_fro_and_going_back_go_with_their_policy(tmp_path: Path) -
     checkpoint.write_bytes(b"")
     for task in (trained, f"{trained}-Play", "ARC-Cecum-Magnetic", "ARC-LeftColon-Magnetic-Play"):
         played, _, _ = load_run_cfgs(RunArguments(task=task, checkpoint=str(checkpoint)))
-        judged, _ = _load(task, checkpoint, ())
+        judged, _ = load_trial_cfgs(task, checkpoint, ())
         for tip in (played.actions.tip, judged.actions.tip):
             assert (tip.roll_amplitude, tip.roll_period) == (9.0, 3.0)
             assert (tip.back_off_velocity, tip.back_off_after, tip.back_off_time) == (0.03, 4.0, 2.0)
             assert tip.linear_scale == (0.02 if trained in task else 0.045)
-        still, _ = _load(task, checkpoint, ("env.actions.tip.roll_amplitude=0",))
+        still, _ = load_trial_cfgs(task, checkpoint, ("env.actions.tip.roll_amplitude=0",))
         assert still.actions.tip.roll_amplitude == 0.0
     pushed, _, _ = load_run_cfgs(RunArguments(task="ARC-Rectum-Proximal", checkpoint=str(checkpoint)))
     assert pushed.actions.base.roll_amplitude == 0.0
@@ -95,7 +95,7 @@ def test_a_scope_of_another_length_goes_with_its_policy_and_is_told(tmp_path: Pa
         (trained, (f"{field}=null",), None),
         ("ARC-LeftColon-Magnetic", (), None),
     ):
-        judged, _ = _load(task, checkpoint, override)
+        judged, _ = load_trial_cfgs(task, checkpoint, override)
         note = f"note: a scope of its shipped length, as the run had; {task} has one of 2.2 m now, which {field}=2.2"
         assert judged.scene.endoscope.length == length
         assert (note in capsys.readouterr().out) == (trained in task and not override)
@@ -116,7 +116,7 @@ def test_a_run_that_was_stuck_sooner_says_so_and_its_trials_are_not(tmp_path: Pa
         args = RunArguments(task=task, checkpoint=str(checkpoint), overrides=list(overrides))
         assert load_run_cfgs(args)[0].stuck_after_s == seconds
         assert (note in capsys.readouterr().out) == (not overrides)
-    assert _load(task, checkpoint, ())[0].stuck_after_s == 20.0
+    assert load_trial_cfgs(task, checkpoint, ())[0].stuck_after_s == 20.0
     assert "note: " not in capsys.readouterr().out
 
 
@@ -129,11 +129,11 @@ def test_trials_are_drawn_by_the_task_however_the_training_drew(tmp_path: Path) 
     write_params(tmp_path, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
     (tmp_path / "model_0.pt").write_bytes(b"")
     played, _, _ = load_run_cfgs(RunArguments(task=TASK, checkpoint=str(tmp_path / "model_0.pt")))
-    judged, _ = _load(TASK, tmp_path / "model_0.pt", ())
+    judged, _ = load_trial_cfgs(TASK, tmp_path / "model_0.pt", ())
     assert tuple(played.events.friction.params["friction"]) == (0.0, 0.01)
     assert tuple(judged.events.friction.params["friction"]) == own != (0.0, 0.01)
     assert judged.observations.policy.rgb.history_length == 3
-    asked, _ = _load(TASK, tmp_path / "model_0.pt", ("env.events.friction.params.friction=[0.2,0.3]",))
+    asked, _ = load_trial_cfgs(TASK, tmp_path / "model_0.pt", ("env.events.friction.params.friction=[0.2,0.3]",))
     assert tuple(asked.events.friction.params["friction"]) == (0.2, 0.3)
 
 
@@ -144,9 +144,9 @@ def test_trials_have_the_tissue_of_the_suite_whatever_the_policy_learnt_in(tmp_p
     agent_cfg = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
     write_params(tmp_path, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
     (tmp_path / "model_0.pt").write_bytes(b"")
-    judged, _ = _load(TASK, tmp_path / "model_0.pt", ())
+    judged, _ = load_trial_cfgs(TASK, tmp_path / "model_0.pt", ())
     assert tuple(judged.clinical) == () and judged.scene.colon.material == "paper"
-    asked, _ = _load(TASK, tmp_path / "model_0.pt", ("env.clinical=[camera]",))
+    asked, _ = load_trial_cfgs(TASK, tmp_path / "model_0.pt", ("env.clinical=[camera]",))
     assert tuple(asked.clinical) == ("camera",)
     played, _, _ = load_run_cfgs(RunArguments(task=TASK, checkpoint=str(tmp_path / "model_0.pt")))
     assert tuple(played.clinical) == ("all",) and played.scene.colon.material == "in_situ"

@@ -89,7 +89,7 @@ def run(namespace: argparse.Namespace) -> None:
     options = EvaluationOptions(agents, name, overrides, args.num_envs, args.num_patients, args.device, args.share)
 
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
-        return _load(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
+        return load_trial_cfgs(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
     with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"):
         if min(args.processes, len(conditions.trials)) > 1:
@@ -181,7 +181,7 @@ def _check_tasks(tasks: list[str]) -> None:
         _choose(split_task(task)[0], known, "task")
 
 
-def _load(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
+def load_trial_cfgs(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:
     """Return the configurations of a task, as the checkpoint was trained with them, with the overrides on top.
 
     Events, terminations and tissue stay the task's, or the suite's: they make the trials, the same for all agents,

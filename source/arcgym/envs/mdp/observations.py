@@ -18,11 +18,12 @@ import warp as wp
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.assets.force_windows import ABUTTING
+from arcgym.envs.mdp.centerline import points_ahead
 from arcgym.envs.mdp.loads import load, load_parts
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores
 from arcgym.envs.mdp.segments import segment_progress
 from arcgym.managers import ManagerTermBase, ObservationTermCfg, SceneEntityCfg
-from arcgym.utils.math import points_at, quat_apply_inverse
+from arcgym.utils.math import quat_apply_inverse
 from arcgym.utils.validation import POSITIVE, Range, expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -104,11 +105,7 @@ class centerline_ahead(ManagerTermBase):
         Args:
             distances: Arc lengths ahead of the tip [m], shape (K,), read once at construction.
         """
-        colon, data = env.scene["colon"].data, env.scene["endoscope"].data
-        points = points_at(colon.centerline_pos_w, colon.centerline_arc, data.tip_arc_length[:, None] + self._ahead)
-        quat = data.tip_quat_w[:, None].expand(-1, len(self._ahead), -1)
-        local = quat_apply_inverse(quat, points - data.tip_pos_w[:, None])
-        return (local / self._ahead[:, None]).flatten(1)
+        return (points_ahead(env, self._ahead) / self._ahead[:, None]).flatten(1)
 
 
 @expects(segment=SEGMENTS)

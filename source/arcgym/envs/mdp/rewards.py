@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from arcgym.envs.mdp.centerline import points_ahead
 from arcgym.envs.mdp.lumen import LUMEN_PRESETS, LumenCfg, lumen_scores, resolve_lumen, score_depth
 from arcgym.envs.mdp.settings import task_setting
 from arcgym.managers import ManagerTermBase, RewardTermCfg
 from arcgym.sensors.depth_estimators import EstimatedDepth, TransformersDepth
-from arcgym.utils.math import points_at, quat_apply_inverse, row_sum
+from arcgym.utils.math import row_sum
 from arcgym.utils.validation import POSITIVE, expects
 from arcgym.utils.worlds import fill_worlds
 
@@ -96,10 +97,7 @@ def lumen_misalignment(env: ManagerBasedRLEnv, ahead: float = 0.03) -> torch.Ten
     Args:
         ahead: Arc length from the tip to the point of the deformed centerline that it should look at [m].
     """
-    colon, data = env.scene["colon"].data, env.scene["endoscope"].data
-    target = points_at(colon.centerline_pos_w, colon.centerline_arc, data.tip_arc_length[:, None] + ahead)[:, 0]
-    way = torch.nn.functional.normalize(target - data.tip_pos_w, dim=-1)
-    return 1.0 - quat_apply_inverse(data.tip_quat_w, way)[:, 2]
+    return 1.0 - torch.nn.functional.normalize(points_ahead(env, ahead)[:, 0], dim=-1)[:, 2]
 
 
 @expects(part=PARTS, lumen=LUMEN_PRESETS)
