@@ -164,7 +164,7 @@ def _methods(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[R
     lines = [_row(["robot", "method", *section["segments"]]), _rule(2 + len(section["segments"]))]
     used, missing = [], []
     for robot, method, found in cells_of(section, results):
-        asked = section.get("not_asked", {}).get(robot, {}).get(method, section["segments"])
+        asked = section.get("asked", {}).get(robot, {}).get(method, section["segments"])
         published: Sequence[float | None] = published_figures(section, robot, method) or [None] * len(found)
         pairs = zip(found, published, strict=True)
         metric = section.get("metric", "success")
