@@ -265,7 +265,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     extra_observations: tuple[str, ...] = ()
     """Further groups that some robots can sense, of ``force``, ``shape``, ``insertion`` and ``pressure``:
-    ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``. ``policy`` stays the images alone."""
+    ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``. ``policy`` stays the images alone.
+    ``lesson`` is what ``ppo_taught`` learns from."""
 
     rewards: RewardsCfg = RewardsCfg()
     """Reward terms."""
