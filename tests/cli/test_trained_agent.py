@@ -55,6 +55,18 @@ def test_further_images_of_a_policy_go_with_it_to_another_task(tmp_path: Path) -
     assert other.observations.policy.rgb.history_length == 5
 
 
+def test_a_group_that_a_policy_reads_goes_with_it_to_another_task(tmp_path: Path) -> None:
+    """``force``, which its actor reads, and not ``shape``, which was there besides."""
+    env_cfg = load_cfg_from_registry(TASK, "env_cfg_entry_point")
+    env_cfg.extra_observations = ("force", "shape")
+    agent_cfg = load_cfg_from_registry(TASK, "rsl_rl_cfg_entry_point")
+    agent_cfg.obs_groups["actor"] = ["policy", "force"]
+    write_params(tmp_path, run={"task": TASK, "agent": "rsl_rl_cfg_entry_point"}, env=env_cfg, agent=agent_cfg)
+    (tmp_path / "model_0.pt").write_bytes(b"")
+    other, _, _ = load_run_cfgs(RunArguments(task="ARC-Sigmoid-Capsule", checkpoint=str(tmp_path / "model_0.pt")))
+    assert other.extra_observations == ("force",)
+
+
 def test_a_roll_to_and_fro_and_going_back_go_with_their_policy(tmp_path: Path) -> None:
     """In evaluation and play, in its own task and in another one; a robot without such an action is left alone."""
     trained = "ARC-Rectum-Magnetic"

@@ -97,3 +97,16 @@ def test_images_among_the_further_terms_of_a_group_are_checked() -> None:
     policy.terms, policy.rgb = {"picture": policy.rgb}, None
     with pytest.raises(UsageError, match="does not fit the 20x20 px images"):
         check_agent(env_cfg, agent_cfg, trains=False)
+
+
+@pytest.mark.parametrize(("extra", "fits"), [(("force",), True), ((), False)])
+def test_groups_that_a_task_adds_are_there_for_the_agent(extra: tuple[str, ...], fits: bool) -> None:
+    """As ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``; the given configuration stays."""
+    env_cfg, agent_cfg = (load_cfg_from_registry(TASK, key) for key in ("env_cfg_entry_point", agent_key("ppo")))
+    env_cfg.extra_observations, agent_cfg.obs_groups["actor"] = extra, ["policy", "force"]
+    if fits:
+        check_agent(env_cfg, agent_cfg, trains=True)
+    else:
+        with pytest.raises(UsageError, match=r"agent\.obs_groups\.actor reads 'force', which is no observation group"):
+            check_agent(env_cfg, agent_cfg, trains=True)
+    assert env_cfg.observations.force is None

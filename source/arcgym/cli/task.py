@@ -100,7 +100,7 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
             restore(env_cfg, saved.env, "env", keep=kept)
             print(f"params: {saved.folder}")
         else:
-            restore(env_cfg, _further_terms(saved.env, agent_cfg) | _own_fields(saved.env, env_cfg), "env")
+            restore(env_cfg, _further_inputs(saved.env, agent_cfg) | _own_fields(saved.env, env_cfg), "env")
             own = "as registered, but for what is the policy's own"
             print(f"params: agent of {saved.folder}; it was trained in {trained}, and {task} is {own}")
     before = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
@@ -133,12 +133,14 @@ def _tell_settings(args: RunArguments, env_cfg: Any) -> None:
         print(f"note: {told}, which env.{setting.field}={value} gives it")
 
 
-def _further_terms(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:
-    """Return what a policy's observation groups have in ``terms``: without it the network does not fit another task."""
+def _further_inputs(env: dict[str, Any], agent_cfg: Any) -> dict[str, Any]:
+    """Return the further groups that a policy reads and what its groups have in ``terms``: else no other task fits."""
     groups = agent_cfg.obs_groups.get("actor") or agent_cfg.obs_groups.get("student", [])
     saved = env.get("observations", {})
     terms = {group: (saved.get(group) or {}).get("terms") for group in groups}
-    return {"observations": {group: {"terms": added} for group, added in terms.items() if added}}
+    found: dict[str, Any] = {"observations": {group: {"terms": added} for group, added in terms.items() if added}}
+    extra = [name for name in env.get("extra_observations") or () if name in groups]
+    return {**found, "extra_observations": extra} if extra else found
 
 
 def _own_fields(env: dict[str, Any], env_cfg: Any) -> dict[str, Any]:

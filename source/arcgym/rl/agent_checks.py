@@ -14,6 +14,7 @@ import torch
 from rsl_rl.modules import CNN
 from rsl_rl.utils import resolve_callable as resolve_in_rsl_rl
 
+from arcgym.utils.configclass import copy
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
 
@@ -25,7 +26,7 @@ def check_agent(env_cfg: Any, agent_cfg: Any, trains: bool) -> None:
     """Raise unless the agent fits the environment and all that it needs is installed.
 
     Args:
-        env_cfg: Configuration of the environment.
+        env_cfg: Configuration of the environment, checked; looked at as the environment will resolve it.
         agent_cfg: Configuration of the agent.
         trains: Whether there will be updates, and curves to log.
 
@@ -33,6 +34,8 @@ def check_agent(env_cfg: Any, agent_cfg: Any, trains: bool) -> None:
         UsageError: The first thing that does not fit.
     """
     _check_classes(agent_cfg)
+    env_cfg = copy(env_cfg)
+    env_cfg.resolve()
     _check_groups(env_cfg, agent_cfg)
     for name in agent_cfg.obs_groups:
         _check_images(env_cfg, agent_cfg, name)

@@ -265,8 +265,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
 
     extra_observations: tuple[str, ...] = ()
     """Further groups that some robots can sense, of ``force``, ``shape``, ``insertion`` and ``pressure``:
-    ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``. ``policy`` stays the images alone.
-    ``lesson`` is what ``ppo_taught`` learns from."""
+    ``env.extra_observations=[force] agent.obs_groups.actor=[policy,force]``. ``policy`` stays the images alone."""
 
     rewards: RewardsCfg = RewardsCfg()
     """Reward terms."""

@@ -63,12 +63,6 @@ class ObservationsCfg:
 
         lumen = ObsTerm(func=mdp.lumen_pressure)
 
-    @configclass
-    class LessonCfg(ObsGroup):
-        """What a lost policy should do, shape (N, 12): ``ppo_taught`` learns from it, no network reads it."""
-
-        steering = ObsTerm(func=mdp.steering_lesson)
-
     policy: PolicyCfg = PolicyCfg()
     """Group of the actor."""
 
@@ -87,16 +81,12 @@ class ObservationsCfg:
     pressure: PressureCfg | None = None
     """Off; ``env.extra_observations=[pressure]``."""
 
-    lesson: LessonCfg | None = None
-    """Off; ``env.extra_observations=[lesson]``. For robots whose tip is pulled."""
-
 
 EXTRA_OBSERVATIONS = {
     "force": ObservationsCfg.ForceCfg,
     "shape": ObservationsCfg.ShapeCfg,
     "insertion": ObservationsCfg.InsertionCfg,
     "pressure": ObservationsCfg.PressureCfg,
-    "lesson": ObservationsCfg.LessonCfg,
 }
 """Groups that ``env.extra_observations`` adds, by name."""
 

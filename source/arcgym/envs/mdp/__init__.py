@@ -21,5 +21,4 @@ from arcgym.envs.mdp.recorders import *  # noqa: F403
 from arcgym.envs.mdp.rewards import *  # noqa: F403
 from arcgym.envs.mdp.segments import *  # noqa: F403
 from arcgym.envs.mdp.shaft_metrics import *  # noqa: F403
-from arcgym.envs.mdp.steering import *  # noqa: F403
 from arcgym.envs.mdp.terminations import *  # noqa: F403

@@ -15,7 +15,6 @@ AGENTS: dict[str, str] = {
     "rsl_rl_ppo_lagrangian_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationLagrangianPPORunnerCfg",
     "rsl_rl_ppo_predicting_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationPredictingPPORunnerCfg",
     "rsl_rl_ppo_bounded_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationBoundedPPORunnerCfg",
-    "rsl_rl_ppo_taught_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationTaughtPPORunnerCfg",
     "rsl_rl_a2c_cfg_entry_point": f"{_AGENTS}.ppo_variants_cfg:NavigationA2CRunnerCfg",
     "rsl_rl_sac_cfg_entry_point": f"{_AGENTS}.sac_cfg:NavigationSACRunnerCfg",
     "rsl_rl_sac_squint_cfg_entry_point": f"{_AGENTS}.sac_cfg:SquintSACRunnerCfg",

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Relatives of PPO: small, with memory, with rules on actions, limits on costs, bounded means or lessons, and A2C."""
+"""Relatives of PPO: small, with memory, with rules on actions, limits on costs or bounded means, and A2C."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from arcgym.rl.agent_cfgs.ppo_bounded import RslRlPpoBoundedAlgorithmCfg
 from arcgym.rl.agent_cfgs.ppo_lagrangian import RslRlPpoLagrangianAlgorithmCfg, RslRlPpoLagrangianRunnerCfg
 from arcgym.rl.agent_cfgs.ppo_masked import RslRlConstrainedRunnerCfg
 from arcgym.rl.agent_cfgs.ppo_predicting import RslRlPpoPredictingAlgorithmCfg
-from arcgym.rl.agent_cfgs.ppo_taught import RslRlPpoTaughtAlgorithmCfg
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.agents.rsl_rl_cfg import PPO_SETTINGS, NavigationPPORunnerCfg
 
@@ -95,26 +94,6 @@ class NavigationBoundedPPORunnerCfg(NavigationPPORunnerCfg):
     """PPO whose mean actions stay within [-1, 1]: for long trainings, and to go on from a policy that has left them."""
 
     algorithm: RslRlPpoAlgorithmCfg = RslRlPpoBoundedAlgorithmCfg(**PPO_SETTINGS)
-
-
-@configclass
-class NavigationTaughtPPORunnerCfg(NavigationPPORunnerCfg):
-    """PPO with a memory, told where the lumen is wherever it makes no way: ``env.extra_observations=[lesson]``.
-
-    The last pictures of a tip that is stuck show wall alone, so that the way can but be remembered. A rollout is as
-    long as what it learns to remember in one piece; a policy without memory can be the start (``agent.init_policy``).
-    """
-
-    num_steps_per_env: int = 24
-    actor: RslRlMlpModelCfg = RecurrentCnnModelCfg(
-        hidden_dims=[256],
-        cnn_cfg=CnnCfg(),
-        distribution_cfg=GaussianDistributionCfg(init_std=0.6),
-        rnn_type="gru",
-        rnn_hidden_dim=64,
-        skip_connection=True,
-    )
-    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoTaughtAlgorithmCfg(**PPO_SETTINGS)
 
 
 @configclass
