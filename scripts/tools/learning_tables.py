@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Make the tables and pictures of ``docs/learning.md`` from the studies' results in ``docs/data``.
+"""Make the tables and pictures of ``docs/agents_compared.md`` from the studies' results in ``docs/data``.
 
 python scripts/tools/learning_tables.py take keys logs/studies/keys --commit 1e655ad   # a study's cells into the data
 python scripts/tools/learning_tables.py write                                          # tables into the page, pictures
@@ -22,7 +22,7 @@ from arcgym.studies.curves import read_curves
 from arcgym.studies.table import cell_rows
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE = DOCS / "learning.md"
+PAGE = DOCS / "agents_compared.md"
 TASKS = ("ARC-Rectum-Magnetic", "ARC-Splenic-Proximal", "ARC-Sigmoid-Magnetic")
 AGENTS = {
     "ppo": "`ppo`",
@@ -68,7 +68,7 @@ def main() -> None:
     taking.add_argument("data", choices=("keys", *LIMITS))
     taking.add_argument("study", type=Path, help="folder of the study")
     taking.add_argument("--commit", required=True, help="commit that was run")
-    commands.add_parser("write", help="write the tables into docs/learning.md and draw the pictures")
+    commands.add_parser("write", help="write the tables into docs/agents_compared.md and draw the pictures")
     args = parser.parse_args()
     if args.command == "take":
         take(data_file(args.data), args.study, args.commit)

@@ -114,11 +114,11 @@ def test_an_entry_that_rolls_or_goes_back_says_so_in_the_tasks_where_it_does(tmp
     assert f"| `{TASKS[1]}` | Mine | A. Author |" in text
 
 
-def test_the_floor_is_no_entry(tmp_path: Path) -> None:
+def test_a_baseline_is_no_entry(tmp_path: Path) -> None:
     """The expert sees the centreline, whatever the entry says."""
     path = result(tmp_path / "all" / "mine", run={**RUN, "agent": "expert", "checkpoint_sha256": []})
     (path / "entry.yaml").write_text(ENTRY)
-    reason = "is of the agent 'expert', which is the floor: an entry has checkpoints"
+    reason = "is of the agent 'expert', which is a baseline: an entry has checkpoints"
     assert submissions(tmp_path / "all") == ([], {path: [reason]})
 
 

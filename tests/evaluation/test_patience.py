@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from result_folders import write_result_folder
 
+from arcgym.evaluation.baselines import baselines_of, read_baselines, updated, write_baselines
 from arcgym.evaluation.compare import notes
-from arcgym.evaluation.floors import floors_of, read_floors, updated, write_floors
 from arcgym.evaluation.results import Result, find_results
 from arcgym.evaluation.results_page import _earlier, _newest
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
@@ -47,10 +47,10 @@ def test_what_had_less_is_shown_and_marked_until_there_is_what_has_not(results: 
     assert f"note: {TASK} stuck after is 6 s in {old.folder} and 20 s in {new.folder}" in notes(old.folder, new.folder)
 
 
-def test_a_floor_gives_way_to_one_of_now(results: dict[str, Result], tmp_path: Path) -> None:
-    (old,), (new,) = floors_of([results["old"]]), floors_of([results["new"]])
+def test_a_baseline_gives_way_to_one_of_now(results: dict[str, Result], tmp_path: Path) -> None:
+    (old,), (new,) = baselines_of([results["old"]]), baselines_of([results["new"]])
     assert (old.stuck_after_s, old.is_current) == (6.0, False) and new.is_current
     assert updated([old], [new]) == [new] and updated([new], [old]) == [new]
-    write_floors(tmp_path / "floors.csv", [new])
-    (read,) = read_floors(tmp_path / "floors.csv")
+    write_baselines(tmp_path / "baselines.csv", [new])
+    (read,) = read_baselines(tmp_path / "baselines.csv")
     assert read.stuck_after_s == 20.0

@@ -13,7 +13,7 @@ import pytest
 from result_folders import PPO, write_result_folder
 
 from arcgym.cli.main import main
-from arcgym.evaluation.floors import floors_of
+from arcgym.evaluation.baselines import baselines_of
 from arcgym.evaluation.results import find_results, method_of
 from arcgym.evaluation.results_page import SECTIONS_FILE, read_sections, results_page
 from arcgym.evaluation.suites import read_suites
@@ -54,7 +54,7 @@ def test_the_committed_page_is_made_of_the_committed_folders(monkeypatch: pytest
 
 
 def test_a_roll_to_and_fro_is_named_and_takes_no_other_row(tmp_path: Path) -> None:
-    """The same checkpoint with and without, 20 and 10 of 200; an expert that rolls is not the floor's."""
+    """The same checkpoint with and without, 20 and 10 of 200; an expert that rolls is no baseline."""
     task = "ARC-LeftColon-Magnetic"
     roll = {"changes": {task: {"actions.tip.roll_amplitude": [0.0, 9.0]}}}
     expert = {"agent": "expert", "checkpoint": [], "checkpoint_sha256": [], "training": []}
@@ -70,7 +70,7 @@ def test_a_roll_to_and_fro_is_named_and_takes_no_other_row(tmp_path: Path) -> No
     assert f"| `{task}` | ppo `abcdef01` | 200 | 5 (3–9) |" in text
     assert f"| `{task}` | ppo_roll9 `abcdef01` | 200 | 10 (7–15) |" in text
     assert f"| `{task}` | expert_roll9 | 200 | 15 (11–21) |" in text
-    assert [one.agent for one in floors_of(find_results(folders)[0])] == []
+    assert [one.agent for one in baselines_of(find_results(folders)[0])] == []
 
 
 def test_going_back_is_named_and_is_no_constant_velocity(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from arcgym.utils.validation import Range, require
 
 @configclass
 class AbdomenCfg:
-    """Inside of the abdomen, which stops loops, and an assistant's hand on its front. See docs/physics.md, Abdomen."""
+    """Inside of the abdomen, which stops loops, and an assistant's hand on its front. See docs/clinical.md, Abdomen."""
 
     enabled: bool = False
     """Whether there is one. Switch it on for loops that the body stops, and for hand pressure. Off, the colon goes

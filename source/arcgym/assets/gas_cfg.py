@@ -13,7 +13,7 @@ MMHG = 133.322
 
 @configclass
 class GasCfg:
-    """Gas that fills the lumen; pressures are above the surrounding air's. See docs/physics.md, Gas."""
+    """Gas that fills the lumen; pressures are above the surrounding air's. See docs/clinical.md, Gas."""
 
     enabled: bool = False
     """Whether gas is simulated. Switch it on for insufflation, suction and a lumen that collapses. Off, the wall keeps

@@ -101,7 +101,7 @@ al. (1.76 MPa lengthwise, 0.63 around) since a scope's small strains lie at the 
 with slack, so that the sigmoid colon can loop.
 
 ``clinical``: as ``in_situ``, with the modulus of a wall that gas has stretched already and stretches further, 95 kPa,
-inferred from diameters in CT colonography and ex vivo; it goes with ``WallLawCfg.stiffening`` 1.5 (docs/physics.md).
+inferred from diameters in CT colonography and ex vivo; it goes with ``WallLawCfg.stiffening`` 1.5 (docs/clinical.md).
 
 ``soft_nu045`` ... ``stiff_nu049``: the six settings of the ARCGym paper's material sensitivity, {0.5, 5, 10} MPa x
 {0.45, 0.49}, with the anchors of ``paper``."""

@@ -13,7 +13,7 @@ from arcgym.utils.validation import FieldError, Range, require
 
 @configclass
 class MesenteryCfg:
-    """Mesenteries as sheets that swing about their root and stiffen. See docs/physics.md, Mesentery."""
+    """Mesenteries as sheets that swing about their root and stiffen. See docs/clinical.md, Mesentery."""
 
     enabled: bool = False
     """Whether segments hang on sheets. Switch it on for loops that swing as on a mesentery: freely about its root, and

@@ -10,7 +10,7 @@ from arcgym.utils.validation import FieldError, Range, require
 
 @configclass
 class WallLawCfg:
-    """Stiffening, thickness and relaxation of the wall; each is off by default. See docs/physics.md, Wall law."""
+    """Stiffening, thickness and relaxation of the wall; each is off by default. See docs/clinical.md, Wall law."""
 
     stiffening: float | None = None
     """Factor b of the term b mu / 6 (I - 2)^3 that stiffens stretches; ``None`` keeps 2.75, by which a strip bears at
@@ -37,7 +37,7 @@ class WallLawCfg:
 
     cell_strain: bool = False
     """Whether the two triangles between two rings and two sectors share one strain, their mean, so that a coarse wall
-    locks less (docs/physics.md, Wall law). Off, each triangle has its own. Try it with ``mean_surface`` where contacts
+    locks less (docs/clinical.md, Wall law). Off, each triangle has its own. Try it with ``mean_surface`` where contacts
     are light; it does not make the tip's force of a pushed scope independent of the mesh."""
     mean_surface: bool = False
     """Whether the wall's faces lie on the colon's surface on average. Off, its vertices lie there, and the faces

@@ -118,7 +118,7 @@ def _entry_problems(folder: Path) -> list[str]:
     """Return what is wrong with what a submission says of itself, none or one line."""
     agent = read_run(folder).get("agent")
     if agent != "checkpoint":
-        return [f"is of the agent '{agent}', which is the floor: an entry has checkpoints"]
+        return [f"is of the agent '{agent}', which is a baseline: an entry has checkpoints"]
     try:
         entry = read_entry(folder)
     except UsageError as error:

@@ -51,7 +51,7 @@ DROPPED = "dropped_contacts"
 """Entry of ``run.json``: contacts that found no room by task, where there were any."""
 
 UNTRAINED = ("zero", "random", "expert")
-"""Agents that have no checkpoint: the floor."""
+"""Agents that have no checkpoint: the baselines."""
 
 COMMIT, CHANGED, CODE = "arcgym commit", " with changes", "arcgym code"
 """Name of ARCGym's commit among the versions, its ending where the code was not that of the commit, and the name of the

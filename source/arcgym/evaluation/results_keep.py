@@ -12,15 +12,15 @@ from collections.abc import Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from arcgym.evaluation.baselines import FIGURES
 from arcgym.evaluation.check import BASIC
-from arcgym.evaluation.floors import FIGURES
 from arcgym.evaluation.result_folder import HASH, PACKED_FILE, RUN_FILE, TRIALS_FILE, Row
 from arcgym.evaluation.results import Result
 from arcgym.evaluation.results_page import METRICS
 from arcgym.utils.errors import UsageError
 
 COLUMNS = tuple(dict.fromkeys((*BASIC, *METRICS, *FIGURES, "centered_rate")))
-"""Columns that are kept: those of the page and of the floor, and what the check of a result folder asks for."""
+"""Columns that are kept: those of the page and of the baselines, and what the check of a result folder asks for."""
 
 DIGITS = 5
 """Significant digits that are kept: a figure of the page has three."""

@@ -73,7 +73,7 @@ class PushExpert(ExpertBase):
             largest: Largest bending commanded [rad].
             jiggle: Amplitude of a to and fro of the shaft while it is pushed [m/s].
             twist: Amplitude of turning the shaft to and fro [rad/s]: a shaft that turns slides with less friction along
-                its way. 8 rad/s, 150 degrees to either side, frees scopes that 43 N do not move (docs/benchmarks.md).
+                its way. 8 rad/s, 150 degrees to either side, frees scopes that 43 N do not move (docs/experts.md).
             least_pace: Share of the speed at which it is pushed where the way is off to a side.
             patience: Control steps without progress after which it withdraws: until then the push grows.
             slack: Length of scope that may go into loops, beyond where it lay straightest, before it is pulled back to

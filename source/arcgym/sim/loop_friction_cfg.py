@@ -11,7 +11,7 @@ from arcgym.utils.validation import Range, require
 @configclass
 class LoopFrictionCfg:
     """Friction of the colon's outside on itself, and bends that do not fold through themselves, both with
-    ``WallSolverCfg.self_contact``. See docs/physics.md, Loops that rub."""
+    ``WallSolverCfg.self_contact``. See docs/clinical.md, Loops that rub."""
 
     enabled: bool = False
     """Whether loops that touch rub on each other. Off, they slide freely: the outside of the bowel is wet and

@@ -45,7 +45,7 @@ class ContactCfg:
     deep_damping: float = 300.0
     """Added to it in contacts deeper than ``hardening``, in full at twice that depth [N s/m]: a tip that is pushed hard
     into soft tissue does not flutter through it, and light contacts stay as they are. Of 0, 80, 300 and 1000 in a soak,
-    300 is the least with which no link went outside the lumen (docs/physics.md, what pierces)."""
+    300 is the least with which no link went outside the lumen (docs/clinical.md, what pierces)."""
     step_damping: float = 1.0
     """Share kept of what the implicit step adds to the normal damping of a link's contact that is faster than 20 mm/s:
     ``dt`` times its stiffness, 4 N s/m. With 0.5 slips come and go more as with smaller steps (docs/physics.md, known

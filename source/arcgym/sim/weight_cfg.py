@@ -21,7 +21,7 @@ the right side."""
 
 @configclass
 class WeightCfg:
-    """Weight of scope, wall and contents along the patient's posture. See docs/physics.md, Weight."""
+    """Weight of scope, wall and contents along the patient's posture. See docs/clinical.md, Weight."""
 
     enabled: bool = False
     """Whether things weigh. Switch it on for patients who lie on a side or are turned, with

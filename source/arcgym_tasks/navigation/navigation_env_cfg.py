@@ -251,7 +251,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     clinical: tuple[str, ...] = ()
     """Effects of a living colon and a used scope to switch on: ``[all]``, or some of ``tissue``, ``relaxation``,
     ``gas``, ``tension``, ``weight``, ``scope``, ``friction``, ``abdomen``, ``mesentery``, ``loops``, and of the
-    camera's, together ``camera``, ``latency``, ``exposure``, ``light`` and ``preparation``; see docs/physics.md,
+    camera's, together ``camera``, ``latency``, ``exposure``, ``light`` and ``preparation``; see docs/clinical.md,
     Clinical. None in every benchmark."""
 
     force_tiers: mdp.ForceTiersCfg = mdp.ForceTiersCfg()

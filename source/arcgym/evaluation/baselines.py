@@ -23,7 +23,7 @@ from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 from arcgym.utils.errors import UsageError
 
 AGENTS = UNTRAINED
-"""Agents of the floor, in the order of the rows."""
+"""Baselines, in the order of the rows."""
 
 FIGURES = {
     "success": ("success [%]", 0),
@@ -48,7 +48,7 @@ DIGITS = 4
 
 
 @dataclass(frozen=True)
-class Floor:
+class Baseline:
     """Figures of one agent in one task of a suite."""
 
     suite: str
@@ -94,16 +94,16 @@ class Floor:
         return self.stuck_after_s == PATIENCE.registered(self.task)
 
 
-def floors_of(results: Iterable[Result]) -> list[Floor]:
-    """Return the floors in results, of each suite, task and agent the one with the most trials."""
+def baselines_of(results: Iterable[Result]) -> list[Baseline]:
+    """Return the baselines in results, of each suite, task and agent the one with the most trials."""
     of: dict[tuple[str, str, str], list[Result]] = {}
     for one in results:
         if one.method in AGENTS:
             of.setdefault((one.suite, one.task, one.method), []).append(one)
-    return [_floor(chosen) for own in of.values() if (chosen := best(own))]
+    return [_baseline(chosen) for own in of.values() if (chosen := best(own))]
 
 
-def updated(known: Sequence[Floor], new: Sequence[Floor]) -> list[Floor]:
+def updated(known: Sequence[Baseline], new: Sequence[Baseline]) -> list[Baseline]:
     """Return the known rows with new ones in their places, in the order of suites, tasks and agents.
 
     A new row takes a place if it has at least as many trials and every figure of the one before: fewer trials, or a
@@ -119,13 +119,13 @@ def updated(known: Sequence[Floor], new: Sequence[Floor]) -> list[Floor]:
     return sorted(rows.values(), key=lambda one: (suites.index(one.suite), one.task, AGENTS.index(one.agent)))
 
 
-def _is_better(new: Floor, old: Floor) -> bool:
+def _is_better(new: Baseline, old: Baseline) -> bool:
     if new.is_current != old.is_current:
         return new.is_current
     return new.trials >= old.trials and set(old.figures) <= set(new.figures)
 
 
-def read_floors(path: Path) -> list[Floor]:
+def read_baselines(path: Path) -> list[Baseline]:
     """Return the rows of a file; none if there is no file.
 
     Raises:
@@ -134,24 +134,24 @@ def read_floors(path: Path) -> list[Floor]:
     if not path.is_file():
         return []
     with path.open(newline="") as file:
-        floors = [_read(row) for row in csv.DictReader(file)]
-    for one in floors:
+        baselines = [_read(row) for row in csv.DictReader(file)]
+    for one in baselines:
         if one.suite not in read_suites() or one.agent not in AGENTS:
             raise UsageError(f"{path} has {one.agent} in '{one.suite}'; expected {', '.join(AGENTS)} in a suite.")
-    return floors
+    return baselines
 
 
-def write_floors(path: Path, floors: Sequence[Floor]) -> None:
+def write_baselines(path: Path, baselines: Sequence[Baseline]) -> None:
     """Write rows into a file."""
     out = io.StringIO()
     columns = [*ABOUT, *(name + bound for name in FIGURES for bound in BOUNDS)]
     writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
     writer.writeheader()
-    writer.writerows(_cells(one) for one in floors)
+    writer.writerows(_cells(one) for one in baselines)
     path.write_text(out.getvalue())
 
 
-def _floor(result: Result) -> Floor:
+def _baseline(result: Result) -> Baseline:
     (of,) = summarize(result.rows).values()
     figures = {name: of[name] for name in FIGURES if name in of}
     about = (
@@ -165,10 +165,10 @@ def _floor(result: Result) -> Floor:
         result.steps,
         result.patience,
     )
-    return Floor(*about, figures)
+    return Baseline(*about, figures)
 
 
-def _cells(one: Floor) -> dict[str, Any]:
+def _cells(one: Baseline) -> dict[str, Any]:
     cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT}
     for entry in (PHYSICS_STEP.entry, PATIENCE.entry):
         cells[entry] = "" if cells[entry] is None else f"{cells[entry]:g}"
@@ -178,7 +178,7 @@ def _cells(one: Floor) -> dict[str, Any]:
     return cells
 
 
-def _read(row: dict[str, str]) -> Floor:
+def _read(row: dict[str, str]) -> Baseline:
     figures = {
         name: Interval(*(float(row[name + bound]) for bound in BOUNDS)) for name in FIGURES if row.get(name, "") != ""
     }
@@ -187,4 +187,4 @@ def _read(row: dict[str, str]) -> Floor:
     for setting in (PHYSICS_STEP, PATIENCE):
         said = {row["task"]: float(row[setting.entry])} if row.get(setting.entry) else {}
         about[setting.entry] = setting.in_run({setting.entry: said}, row["task"])
-    return Floor(**about, figures=figures)
+    return Baseline(**about, figures=figures)
