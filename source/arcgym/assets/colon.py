@@ -259,7 +259,7 @@ class Colon:
         given = {"abdominal": abdominal_pressure, "start": start_pressure, "leak": leak_conductance}
         for name, value in given.items():
             if value is not None:
-                array = self.data._of_gas(name)
+                array = self.data.gas_state(name)
                 array[self._worlds(env_ids)] = value.to(array)
 
     def set_gas_flow(self, flow: torch.Tensor, env_ids: Sequence[int] | torch.Tensor | None = None) -> None:
@@ -272,7 +272,7 @@ class Colon:
         Raises:
             ValueError: If no gas is simulated.
         """
-        array = self.data._of_gas("flow")
+        array = self.data.gas_state("flow")
         array[self._worlds(env_ids)] = flow.to(array)
 
     def write_abdomen_to_sim(
@@ -291,7 +291,7 @@ class Colon:
         Raises:
             ValueError: If there is no abdomen.
         """
-        shape = self.data._abdomen().shape
+        shape = self.data.abdomen().shape
         for array, value in ((shape.gap, gap), (shape.stiffness, stiffness)):
             if value is not None:
                 tensor = wp.to_torch(array)
@@ -313,7 +313,7 @@ class Colon:
         Raises:
             ValueError: If the mesenteries are no sheets.
         """
-        sheets = self.data._mesentery().sheets
+        sheets = self.data.mesentery().sheets
         for array, value in ((sheets.fullness, fullness), (sheets.stiffness, stiffness)):
             if value is not None:
                 tensor = wp.to_torch(array)
@@ -336,7 +336,7 @@ class Colon:
         Raises:
             ValueError: If there is no abdomen.
         """
-        hand, worlds = self.data._abdomen().hand, self._worlds(env_ids)
+        hand, worlds = self.data.abdomen().hand, self._worlds(env_ids)
         wp.to_torch(hand.force)[worlds] = force.to(self.data.hand_dent).clamp(min=0.0)
         if place is not None:
             self.data.hand_place[worlds] = place.to(self.data.hand_place)
@@ -351,7 +351,10 @@ class Colon:
             IndexError: If there is no such patient; indices on a GPU are not checked, for that would wait for it.
         """
         if not patient.is_cuda and ((patient < 0) | (patient >= len(self.patients))).any():
-            raise IndexError(f"Patients {patient.tolist()}: there are {len(self.patients)}, from 0.")
+            last = len(self.patients) - 1
+            raise IndexError(
+                f"patient is {patient.tolist()}, expected indices from 0 to {last}: one of Colon.patients each."
+            )
         worlds = self._worlds(env_ids)
         self.data.exchange(patient, worlds)
         self.data.nodal_pos_w[worlds] = self.data.rest_of(self.data.patient[worlds])

@@ -49,11 +49,11 @@ class ColonData:
         self.wall_strain: torch.Tensor = wp.to_torch(readout.strain).transpose(0, 1)
         """Largest principal strain (stretch - 1) of each ring's lumen faces, mean over the control step, (N, R)."""
         self.wall_strain_peak: torch.Tensor = wp.to_torch(readout.strain_peak).transpose(0, 1)
-        """The same, largest physics step of the control step, shape (N, R)."""
+        """Largest principal strain of each ring's lumen faces in any physics step of the control step, shape (N, R)."""
         self.anchor_tension: torch.Tensor = wp.to_torch(readout.tension).transpose(0, 1)
         """Net pull of each ring on its anchors [N], mean over the control step, shape (N, R)."""
         self.anchor_tension_peak: torch.Tensor = wp.to_torch(readout.tension_peak).transpose(0, 1)
-        """The same, largest physics step of the control step [N], shape (N, R)."""
+        """Largest net pull of each ring on its anchors in any physics step of the control step [N], shape (N, R)."""
 
     @property
     def lumen_pressure(self) -> torch.Tensor:
@@ -62,25 +62,25 @@ class ColonData:
         Raises:
             ValueError: If no gas is simulated.
         """
-        return self._of_gas("pressure")
+        return self.gas_state("pressure")
 
     @property
     def lumen_pressure_mean(self) -> torch.Tensor:
-        """The same, mean over the control step [Pa], shape (N,).
+        """Pressure of the gas in the lumen, mean over the control step [Pa], shape (N,).
 
         Raises:
             ValueError: If no gas is simulated.
         """
-        return self._of_gas("mean")
+        return self.gas_state("mean")
 
     @property
     def lumen_pressure_peak(self) -> torch.Tensor:
-        """The same, highest of the control step [Pa], shape (N,).
+        """Pressure of the gas in the lumen, highest of the control step [Pa], shape (N,).
 
         Raises:
             ValueError: If no gas is simulated.
         """
-        return self._of_gas("peak")
+        return self.gas_state("peak")
 
     @property
     def lumen_volume(self) -> torch.Tensor:
@@ -89,9 +89,14 @@ class ColonData:
         Raises:
             ValueError: If no gas is simulated.
         """
-        return self._of_gas("volume")
+        return self.gas_state("volume")
 
-    def _of_gas(self, name: str) -> torch.Tensor:
+    def gas_state(self, name: str) -> torch.Tensor:
+        """Return a field of the simulation's ``GasState``, such as ``pressure`` or ``flow``, shape (N,).
+
+        Raises:
+            ValueError: If no gas is simulated.
+        """
         if self._gas is None:
             raise ValueError("No gas is simulated in the colon: set env.scene.colon.gas.enabled=true.")
         return wp.to_torch(getattr(self._gas.state, name))
@@ -103,7 +108,7 @@ class ColonData:
         Raises:
             ValueError: If there is no abdomen.
         """
-        return wp.to_torch(self._abdomen().push)
+        return wp.to_torch(self.abdomen().push)
 
     @property
     def hand_dent(self) -> torch.Tensor:
@@ -112,7 +117,7 @@ class ColonData:
         Raises:
             ValueError: If there is no abdomen.
         """
-        return wp.to_torch(self._abdomen().hand.dent)
+        return wp.to_torch(self.abdomen().hand.dent)
 
     @property
     def hand_place(self) -> torch.Tensor:
@@ -121,7 +126,7 @@ class ColonData:
         Raises:
             ValueError: If there is no abdomen.
         """
-        return wp.to_torch(self._abdomen().hand.place)
+        return wp.to_torch(self.abdomen().hand.place)
 
     @property
     def mesentery_stretch(self) -> torch.Tensor:
@@ -130,14 +135,24 @@ class ColonData:
         Raises:
             ValueError: If the mesenteries are no sheets.
         """
-        return self._mesentery().stretch(self.centerline_pos_w)
+        return self.mesentery().stretch(self.centerline_pos_w)
 
-    def _mesentery(self) -> Mesentery:
+    def mesentery(self) -> Mesentery:
+        """Return the sheets that hold the colon.
+
+        Raises:
+            ValueError: If the mesenteries are no sheets.
+        """
         if self._surroundings is None or self._surroundings.mesentery is None:
             raise ValueError("The mesenteries are no sheets: set env.scene.colon.mesentery.enabled=true.")
         return self._surroundings.mesentery
 
-    def _abdomen(self) -> Abdomen:
+    def abdomen(self) -> Abdomen:
+        """Return the abdomen around the colon, with its hand.
+
+        Raises:
+            ValueError: If there is no abdomen.
+        """
         if self._surroundings is None or self._surroundings.abdomen is None:
             raise ValueError("There is no abdomen around the colon: set env.scene.colon.abdomen.enabled=true.")
         return self._surroundings.abdomen

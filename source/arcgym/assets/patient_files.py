@@ -39,7 +39,7 @@ def find_stages(usd_path: str | Sequence[str], count: int | None = None) -> list
     paths = paths[:count]
     twice = next((path for path in paths if paths.count(path) > 1), None)
     if twice is not None:
-        raise ValueError(f"ColonCfg.usd_path names {twice} twice.")
+        raise ValueError(f"ColonCfg.usd_path names {twice} twice, expected each stage once.")
     return paths
 
 

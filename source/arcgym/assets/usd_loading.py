@@ -180,7 +180,7 @@ def _check_wall_mesh(
     points = np.asarray(builder.particle_q)[particles.start : particles.stop]
     if not np.allclose(points, wall.points, atol=1e-6):
         offset = np.abs(points - wall.points).max()
-        mend = "Use metresPerUnit 1 and no transform above the TetMesh."
+        mend = "Set metersPerUnit = 1 and remove transforms above the TetMesh."
         raise StageError(check.path, WALL_PATH, "points", f"Newton moved them by up to {offset:g} m", mend)
 
 

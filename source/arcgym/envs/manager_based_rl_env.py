@@ -97,12 +97,12 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.extras = {"log": {}}
         self._move(action)
         self.episode_length_buf += 1
-        self._look_and_find_done()
-        self._judge()
+        self._update_sensors_and_terminations()
+        self._compute_rewards_and_metrics()
         self.recorder_manager.record_post_step()
         self.event_manager.apply("interval", dt=self.step_dt)
         if self.cfg.autoreset:
-            self._restart_done()
+            self._reset_done()
         self.obs_buf = self.observation_manager.compute()
         return self.obs_buf, self.reward_buf, self.reset_terminated, self.reset_time_outs, self.extras
 
@@ -127,16 +127,16 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
             self.curriculum_manager,
         ]
 
-    def _look_and_find_done(self) -> None:
+    def _update_sensors_and_terminations(self) -> None:
         """Read the sensors, and find the worlds that are done: first if no termination looks at a sensor."""
         if self.termination_manager.reads_sensors:
             self.scene.update(self.step_dt)
-            self._find_done()
+            self._compute_terminations()
         else:
-            self._find_done()
+            self._compute_terminations()
             self.scene.update(self.step_dt)
 
-    def _find_done(self) -> None:
+    def _compute_terminations(self) -> None:
         """Compute the terminations, and ask for the worlds to reset."""
         self.termination_manager.compute()
         self._failed = self.sim.non_finite.clone()
@@ -147,7 +147,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         if self.cfg.autoreset:
             self._done_on_host.ask(self.reset_buf)
 
-    def _judge(self) -> None:
+    def _compute_rewards_and_metrics(self) -> None:
         """Compute reward, costs and metrics of the step."""
         dt = self.step_dt if self.cfg.scale_rewards_by_dt else 1.0
         self.reward_buf = self.reward_manager.compute(dt)
@@ -156,7 +156,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         self.extras["time_outs"] = self.reset_time_outs
         self.metrics_manager.compute()
 
-    def _restart_done(self) -> None:
+    def _reset_done(self) -> None:
         """Start a new episode in every world that is done, after a last look at the old one where it is asked for."""
         host_ids = self._done_on_host.wait().nonzero().flatten()
         if len(host_ids) > 0:

@@ -38,9 +38,6 @@ class Piece:
     tip_distance: float
     """Distance of the tip from the recorded one at the end [m]."""
 
-    arc_difference: float
-    """Arc length of the tip at the end less the recorded one [m]."""
-
     is_exact: bool
     """Whether the tip is where it was, bit for bit, in every step."""
 
@@ -93,5 +90,4 @@ def _piece(env: Any, episode: Episode, mark: int, start: int, end: int, on_step:
         exact = exact and np.array_equal(there, data["poses/tip_pos_w"][step])
         on_step(step + 1)
     distance = float(np.linalg.norm(there - data["poses/tip_pos_w"][end - 1]))
-    arc = float(scope.tip_arc_length[0]) - float(data["poses/tip_arc_length"][end - 1])
-    return Piece(start, end, distance, arc, exact)
+    return Piece(start, end, distance, exact)

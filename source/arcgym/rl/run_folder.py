@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import re
 import shutil
@@ -33,14 +32,15 @@ def create_run_folder(experiment: str, run_name: str = "", root: Path = LOG_ROOT
     name = f"{stamp}_{run_name}".rstrip("_")
     parent = (root / experiment).resolve()
     parent.mkdir(parents=True, exist_ok=True)
-    for number in itertools.count(1):
+    number = 1
+    while True:
         folder = parent / (name if number == 1 else f"{name}_{number}")
         try:
             folder.mkdir()
         except FileExistsError:
-            continue
-        return folder
-    raise AssertionError("the numbers never end")
+            number += 1
+        else:
+            return folder
 
 
 def claim_folder(path: Path) -> Path:

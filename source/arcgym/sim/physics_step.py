@@ -35,8 +35,8 @@ class PhysicsStep:
         self._pace = Pace()
         self._beside = Beside(sim.device)
 
-    def make(self, steps: int = 1) -> None:
-        """Make some steps."""
+    def advance(self, steps: int = 1) -> None:
+        """Advance all worlds by ``steps`` physics steps."""
         while steps > 0 and (not self._sim.cfg.use_graph or self._eager_steps < 2):
             self._launch()
             self._eager_steps += 1

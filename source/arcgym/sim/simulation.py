@@ -28,8 +28,6 @@ from arcgym.sim.scope.scope_readout import ScopeReadout
 from arcgym.sim.simulation_cfg import SimulationCfg
 from arcgym.sim.snapshot import Snapshot, SnapshotSet, optional
 from arcgym.sim.snapshot_library import SnapshotLibrary
-from arcgym.sim.wall.lumen_gas import LumenGas
-from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.wall_readout import WallReadout
 from arcgym.sim.wall.wall_solver import WallSolver
 from arcgym.sim.wall.wall_topology import LumenTopology
@@ -68,7 +66,7 @@ class Simulation:
         """
         validate(cfg, "sim")
         if num_envs < 1:
-            raise ValueError(f"num_envs is {num_envs}; at least one world is needed.")
+            raise ValueError(f"num_envs is {num_envs}, expected 1 or more worlds.")
         self.cfg, self.colon, self.endoscope, self.num_envs = cfg, colon, endoscope, num_envs
         self.device = cfg.device
         patients = np.arange(num_envs, dtype=np.int32) % len(colon.patients)
@@ -85,9 +83,13 @@ class Simulation:
         self.coupling: Coupling = self._coupling()
         self.ring_centers = self.contact.centers
         self.friction: torch.Tensor = wp.to_torch(self.contact.friction)
+        """Coulomb coefficient between scope and wall of each world, shape (N,)."""
         self.moduli: torch.Tensor = wp.to_torch(self.wall.tissue.moduli)
+        """Elastic moduli of each world's wall, see :meth:`arcgym.assets.Colon.moduli`, shape (N, 3)."""
         self.anchor_scale: torch.Tensor = wp.to_torch(self.wall.tissue.anchor).fill_(colon.anchor_scale)
+        """Factor on the stiffness of each world's anchors, shape (N,)."""
         self.rigid: torch.Tensor = wp.to_torch(self.wall.tissue.rigid)
+        """1 where a world's wall is held still, 0 elsewhere, shape (N,), int32."""
         self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=self.device)
         self.written_states = 0
         """How often states were written so far, see :meth:`forward`."""
@@ -121,8 +123,7 @@ class Simulation:
         )
         slots = len(self.contact.records.face)
         effects = wall_effects(self, walls, modes, lumen)
-        self.gas: LumenGas | None = effects[0]
-        self.surroundings: Surroundings | None = effects[3]
+        self.gas, self.surroundings = effects.gas, effects.surroundings
         self.wall = WallSolver(cfg.wall, walls, modes, cfg.dt, self.patient, slots, self.device, *effects)
         self.contact.still = not self.wall.moves
         if isinstance(colon.wall, ShellMesh):
@@ -212,9 +213,9 @@ class Simulation:
             for left in range(n, 0, -1):
                 for watch in self.watchers:
                     watch(left, n)
-                self._physics.make()
+                self._physics.advance()
         else:
-            self._physics.make(n)
+            self._physics.advance(n)
         for array in averages:
             wp.to_torch(array).mul_(1.0 / n)
         self.scope_readout.finish(n)

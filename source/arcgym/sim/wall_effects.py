@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import warp as wp
 
@@ -25,10 +25,23 @@ if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
 
 
+class WallEffects(NamedTuple):
+    """Effects on the wall; None for each that is off."""
+
+    gas: LumenGas | None
+    """Gas in the lumen."""
+    weight: WallWeight | None
+    """Weight of the walls and their contents."""
+    law: WallLawCfg | None
+    """How the walls stiffen and relax."""
+    surroundings: Surroundings | None
+    """Abdomen, mesenteries and loops around the colon."""
+
+
 def wall_effects(
     sim: Simulation, walls: Sequence[WallParameters], modes: Sequence[RingModes], lumen: LumenTopology
-) -> tuple[LumenGas | None, WallWeight | None, WallLawCfg | None, Surroundings | None]:
-    """Return gas in the lumen, weight of the walls, how they stretch and their surroundings; None for each that is off.
+) -> WallEffects:
+    """Return the effects on the walls.
 
     Args:
         sim: Simulation with colon, patients and actuation.
@@ -39,7 +52,8 @@ def wall_effects(
     Raises:
         ValueError: If one is on that ``SimulationCfg.solver`` does not have.
     """
-    return _gas(sim, walls, modes, lumen), _weight(sim, walls), _law(sim), _surroundings(sim, walls, modes)
+    gas, weight = _gas(sim, walls, modes, lumen), _weight(sim, walls)
+    return WallEffects(gas, weight, _law(sim), _surroundings(sim, walls, modes))
 
 
 def _gas(

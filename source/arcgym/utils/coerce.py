@@ -66,7 +66,7 @@ def from_dict(cfg: Any, data: dict[str, Any], path: str = "") -> None:
 
     Args:
         cfg: Configuration to change.
-        data: As :func:`to_dict` returns it; entries may be left out.
+        data: As :func:`arcgym.utils.configclass.to_dict` returns it; entries may be left out.
         path: Where ``cfg`` sits in a larger configuration, for messages.
 
     Raises:

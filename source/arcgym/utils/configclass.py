@@ -110,7 +110,7 @@ def validate(cfg: Any, name: str = "") -> None:
     entries = list(_walk(cfg, name))
     missing = [path for path, value in entries if is_missing(value)]
     if missing:
-        raise ValueError(f"{type(cfg).__name__} has fields without a value: {', '.join(missing)}.")
+        raise ValueError(f"{type(cfg).__name__} has fields without a value: {', '.join(missing)}. Set each.")
     for path, value in entries:
         if isinstance(value, float) and math.isnan(value):
             raise ValueError(f"{path} is nan, expected a number.")

@@ -15,7 +15,7 @@ from typing import Any
 from arcgym.utils.registry import register_task
 from arcgym.utils.string import resolve_callable
 from arcgym_tasks.navigation.agents import AGENTS
-from arcgym_tasks.navigation.segments import JOURNEYS, TIME_LIMIT_S, Made
+from arcgym_tasks.navigation.segments import JOURNEYS, TIME_LIMIT_S, ConfigClass
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class CfgEntry:
         """Return a fresh configuration."""
         cfg = (resolve_callable(self.target) if isinstance(self.target, str) else self.target)()
         for name, value in self.fields:
-            setattr(cfg, name, resolve_callable(value.target)() if isinstance(value, Made) else value)
+            setattr(cfg, name, resolve_callable(value.target)() if isinstance(value, ConfigClass) else value)
         if self.play:
             cfg.play()
         return cfg

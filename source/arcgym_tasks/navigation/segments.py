@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 
 @dataclass(frozen=True)
-class Made:
-    """A configuration that a task sets in a field, made anew for each use."""
+class ConfigClass:
+    """A class of configuration; a task that has it in a field gets a new object of it."""
 
     target: str
     """Its class, ``"module:Class"``."""
@@ -53,9 +53,9 @@ JOURNEYS: dict[str, dict[str, Any]] = {
         "segment": "cecum",
         "direction": "withdrawal",
         "episode_length_s": 480.0,
-        "rewards": Made("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalRewardsCfg"),
-        "terminations": Made("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalTerminationsCfg"),
-        "metrics": Made("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalMetricsCfg"),
+        "rewards": ConfigClass("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalRewardsCfg"),
+        "terminations": ConfigClass("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalTerminationsCfg"),
+        "metrics": ConfigClass("arcgym_tasks.navigation.withdrawal_cfg:WithdrawalMetricsCfg"),
     },
 }
 """Tasks of one continuous way: name in the task, and the fields of its configuration. ``LeftColon`` goes from the anus

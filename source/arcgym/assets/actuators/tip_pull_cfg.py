@@ -18,17 +18,19 @@ class TipPullCfg(ActuatorBaseCfg):
     class_type: Any = "arcgym.assets.actuators.tip_pull:TipPull"
     """Class built from this configuration."""
     stiffness: float = 400.0
-    """[N/m]. The target leads the tip by at most ``force_limit / stiffness``."""
+    """Spring from the tip to its target [N/m]. The target leads the tip by at most ``force_limit / stiffness``: lower it
+    for a softer pull, raise it for one that follows commands at once."""
     damping: float = 4.0
-    """[N s/m]."""
+    """Damper beside that spring [N s/m]. Raise it if the tip overshoots its target."""
     force_limit: float = 4.0
     """Largest pull [N]. Magnetic colonoscopes reach 1 to 2 N in practice; 4 N passes the sigmoid with a soft tether."""
     angular_stiffness: float = 0.02
-    """[N m/rad]."""
+    """Spring that turns the tip to its target [N m/rad], which leads by at most ``torque_limit / angular_stiffness``:
+    raise it for turns that follow commands sooner, and are undone sooner."""
     angular_damping: float = 1.5e-4
-    """[N m s/rad]."""
+    """Damper beside that spring [N m s/rad]. Raise it if the tip swings."""
     torque_limit: float = 0.05
-    """Largest torque [N m]."""
+    """Largest torque on the tip [N m]. Raise it for a magnet that turns the tip against a wall."""
 
     def validate_config(self) -> None:
         """Check names and bounds.

@@ -22,8 +22,9 @@ def shaft_spec(links: int, **changes: Any) -> EndoscopeSpec:
     """Return the shaft links of the shipped colonoscope, without its base link and its bending section."""
     spec = proximal_spec()
     kept = slice(1, 1 + links)
-    if spec.bending_links + links + 1 > len(spec.link_length):
-        raise ValueError(f"The shipped shaft has fewer than {links} links.")
+    most = len(spec.link_length) - spec.bending_links - 1
+    if links > most:
+        raise ValueError(f"links is {links}, expected at most {most}, the links of the shipped shaft.")
     return replace(
         spec,
         link_length=spec.link_length[kept],
