@@ -12,7 +12,7 @@ from load_rows import read_rows
 
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.contact.link_load_block_kernels import THREADS, load_contacts_by_block
-from arcgym.sim.contact.link_load_kernels import LinkMotion, load_contacts
+from arcgym.sim.contact.link_load_kernels import MovingLink, load_contacts
 from arcgym.sim.scope.load_row_kernels import FOURS, LoadRows
 from arcgym.sim.scope.scope_kernels import LinkLoads
 from arcgym.utils.warp_vote_kernels import GROUP
@@ -117,7 +117,7 @@ class Contacts:
         rows.fours = wp.full(WORLDS * LINKS * FOURS, np.nan, dtype=wp.vec4, device=self.device)
         rows.loaded = wp.full(WORLDS * LINKS, 7, dtype=int, device=self.device)
         threads, group = (1, 1) if self.device == "cpu" else (THREADS, GROUP)
-        motions = wp.zeros(WORLDS * LINKS, dtype=LinkMotion, device=self.device)
+        motions = wp.zeros(WORLDS * LINKS, dtype=MovingLink, device=self.device)
         inputs, outputs = [*self.inputs, elapsed, 0.001, threads, group], [motions, rows, near]
         launched = {"inputs": inputs, "outputs": outputs, "device": self.device, "block_dim": threads}
         wp.launch(load_contacts_by_block, (worlds, threads), **launched)

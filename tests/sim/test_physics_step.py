@@ -10,7 +10,7 @@ import warp as wp
 from tiny_sim import TinySim
 
 from arcgym.utils.cpu_threads import VARIABLE
-from arcgym.utils.stages import Stages
+from arcgym.utils.threaded_graph import ThreadedGraph
 
 
 @pytest.mark.parametrize("kind", ["capsule", "proximal"])
@@ -24,7 +24,7 @@ def test_several_threads_make_the_same_steps_as_one(
         wp.to_torch(sim.nodal_pos)[..., 0] += 0.014  # of a tube of 20 mm radius around the scope
         sim.forward()
         sim.step(30)
-        assert isinstance(sim._physics.recorded, Stages) == (threads != "1")
+        assert isinstance(sim._physics.recorded, ThreadedGraph) == (threads != "1")
         assert sim.contact.records.start.numpy()[:, -1].min() > 0
         ends.append({name: array.clone() for name, array in sim.world_arrays().items()})
     for name, array in ends[0].items():

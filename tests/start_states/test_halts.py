@@ -80,7 +80,7 @@ def test_worlds_of_a_patient_that_is_done_go_to_the_other(tmp_path: Path, monkey
         drive.routes[0].problem = "cut off"
 
     assert not drive.run("sigmoid", report)
-    assert drive.population.owner.tolist() == drive.scene.colon.data.patient.tolist() == [1] * 4
+    assert drive.pool.owner.tolist() == drive.scene.colon.data.patient.tolist() == [1] * 4
     assert list(drive.routes[1].states) == ["rectum", "sigmoid"] and list(drive.routes[0].states) == ["rectum"]
     length = drive.routes[1].bounds["sigmoid"][0]
     assert drive.scene["endoscope"].data.tip_arc_length.max() > length  # settling has put the worlds back

@@ -13,8 +13,8 @@ from arcgym.experts import PullExpert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
-from arcgym.start_states.population import MOST_NEAR, NEAR, Population
 from arcgym.start_states.trail import REACH, SPACING, Trail
+from arcgym.start_states.world_pool import MOST_NEAR, NEAR, WorldPool
 
 
 def scene_of(folder: Path, worlds: int = 4) -> InteractiveScene:
@@ -50,7 +50,7 @@ def test_states_are_a_few_centimeters_apart_and_not_kept_for_ever(tmp_path: Path
 
 def test_worlds_beside_a_foremost_that_is_stuck_try_again(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 16)
-    population = Population(scene, PullExpert(scene))
+    population = WorldPool(scene, PullExpert(scene))
     arc = torch.full((16,), 0.50)
     arc[:4] = 0.51
     for _ in range(3):  # 3, 6 and 9 cm behind are allowed

@@ -11,9 +11,9 @@ import warp as wp
 
 from arcgym.sim.coupling.two_level_coupling import TwoLevelCoupling
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.beside import Beside
 from arcgym.utils.cpu_threads import Pace, cpu_threads
-from arcgym.utils.stages import Stages, at_the_same_time
+from arcgym.utils.side_stream import SideStream
+from arcgym.utils.threaded_graph import ThreadedGraph, at_the_same_time
 
 if TYPE_CHECKING:
     from arcgym.sim.simulation import Simulation
@@ -29,11 +29,11 @@ class PhysicsStep:
     def __init__(self, sim: Simulation):
         """Nothing is launched yet; ``sim`` has to be built but for this."""
         self._sim = sim
-        self.recorded: wp.Graph | Stages | None = None
+        self.recorded: wp.Graph | ThreadedGraph | None = None
         """The recorded step: stages for several threads of a CPU, a graph for one of them or a GPU."""
         self._eager_steps = 0
         self._pace = Pace()
-        self._beside = Beside(sim.device)
+        self._side = SideStream(sim.device)
 
     def advance(self, steps: int = 1) -> None:
         """Advance all worlds by ``steps`` physics steps."""
@@ -45,7 +45,7 @@ class PhysicsStep:
             return
         if self.recorded is None:
             self._record()
-        if isinstance(self.recorded, Stages):
+        if isinstance(self.recorded, ThreadedGraph):
             self._pace.run(functools.partial(self.recorded.run, steps), steps)
             return
         for _ in range(steps):
@@ -59,11 +59,11 @@ class PhysicsStep:
             self._read_wall()
             return
         coupling.move()
-        if self._beside.on_gpu:
-            with self._beside.work():
+        if self._side.on_gpu:
+            with self._side.scope():
                 self._read_wall()
             self._finish_contacts(coupling)
-            self._beside.join()
+            self._side.join()
             return
         at_the_same_time(functools.partial(self._finish_contacts, coupling), self._read_wall)
 
@@ -82,7 +82,7 @@ class PhysicsStep:
     def _record(self) -> None:
         threads = self._threads()
         if threads > 1:
-            self.recorded = Stages(threads)
+            self.recorded = ThreadedGraph(threads)
             self.recorded.record(self._launch)
             return
         with wp.ScopedCapture(device=self._sim.device) as capture:

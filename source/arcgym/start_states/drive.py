@@ -13,10 +13,10 @@ from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import Snapshot, SnapshotSet
 from arcgym.sim.snapshot import fingerprint
 from arcgym.start_states.leaps import Leaps
-from arcgym.start_states.population import Population
 from arcgym.start_states.route import Peaks, Route, what_holds
 from arcgym.start_states.settling import CONTROL_STEP, settle
 from arcgym.start_states.trail import Trail
+from arcgym.start_states.world_pool import WorldPool
 from arcgym.utils.threads import one_thread
 
 OUT_OF_PLACE = -1.0
@@ -60,7 +60,7 @@ class Drive:
         self.time = 0.0
         """Simulated time [s]."""
         self.expert = make_expert(scene, speed=speed)
-        self.population = Population(scene, self.expert, seed)
+        self.pool = WorldPool(scene, self.expert, seed)
         self._peaks = Peaks(scene)
         self._leaps = Leaps(scene["endoscope"].data.tip_arc_length)
         self.trail = Trail(scene.sim, len(self.routes), self.memory)
@@ -119,14 +119,14 @@ class Drive:
         return SnapshotSet(tuple(states), empty, fingerprint(self.scene.sim, patient), about)
 
     def _step(self) -> None:
-        self.population.disturb()
+        self.pool.disturb()
         self.expert.act()
         self.scene.sim.step(self._steps)
         self._count += 1
         self.time = self._count * CONTROL_STEP
         self._peaks.update()
         arcs = self._arcs()
-        front = self.population.foremost(arcs)
+        front = self.pool.foremost(arcs)
         broken = self._all_broken()
         places = zip(self.routes, arcs[front].tolist(), front.tolist(), broken.tolist(), strict=True)
         for patient, (route, arc, world, lost) in enumerate(places):
@@ -136,11 +136,11 @@ class Drive:
                 self._follow(patient, arc, world)
         if self.scene.num_envs > 1 and self._count % self.expert.PERIOD == 0:
             merit = torch.where(arcs == OUT_OF_PLACE, OUT_OF_PLACE, self.expert.merit())
-            self._carry_over(*self.population.exchange(merit, arcs))
+            self._carry_over(*self.pool.exchange(merit, arcs))
             self._try_again(arcs)
             ended = [patient for patient, route in enumerate(self.routes) if not route.running]
             if 0 < len(ended) < len(self.routes):
-                self._carry_over(*self.population.hand_over(ended, merit))
+                self._carry_over(*self.pool.hand_over(ended, merit))
 
     def _carry_over(self, moved: torch.Tensor, sources: torch.Tensor) -> None:
         """Let worlds that took over the states of others remember what those have met."""
@@ -149,10 +149,10 @@ class Drive:
 
     def _try_again(self, arcs: torch.Tensor) -> None:
         """Let some worlds go on from farther back where the foremost is stuck."""
-        worlds, back = self.population.tries_again(arcs)
-        owner = self.population.owner[worlds]
-        least = (arcs[self.population.foremost(arcs)][owner] - back).tolist()
-        draws = torch.rand(len(worlds), generator=self.population.random, device=self.scene.device).tolist()
+        worlds, back = self.pool.tries_again(arcs)
+        owner = self.pool.owner[worlds]
+        least = (arcs[self.pool.foremost(arcs)][owner] - back).tolist()
+        draws = torch.rand(len(worlds), generator=self.pool.random, device=self.scene.device).tolist()
         self.trail.put_back(worlds.tolist(), owner.tolist(), least, draws)
 
     def memory(self) -> list[torch.Tensor]:
@@ -161,7 +161,7 @@ class Drive:
 
     def _all_broken(self) -> torch.Tensor:
         """Return the patients in all of whose worlds the simulation broke, shape (P,), bool."""
-        owner = self.population.owner
+        owner = self.pool.owner
         whole = torch.zeros(len(self.routes), dtype=torch.int32, device=owner.device)
         return whole.index_add_(0, owner, (~self.scene.sim.non_finite).int()) == 0
 

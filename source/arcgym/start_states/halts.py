@@ -59,7 +59,7 @@ class Halt:
 
 def halt_of(drive: Drive, patient: int) -> Halt:
     """Return what is needed to go on in a patient of a drive."""
-    worlds = torch.nonzero(drive.population.owner == patient)[:, 0]
+    worlds = torch.nonzero(drive.pool.owner == patient)[:, 0]
     route, places = drive.routes[patient], drive.trail.places[patient]
     names, kept = drive.scene.sim.world_arrays(), drive.memory()
     trail = {name: torch.stack([place.state[name] for place in places]) for name in names if places}
@@ -91,7 +91,7 @@ def go_on(drive: Drive, patient: int, halt: Halt) -> None:
     if halt.fingerprint != fingerprint(scene.sim, patient):
         name = scene.colon.patients[patient].name
         raise ValueError(f"The drive that was cut off is not of {name} with {scene.endoscope.path.name}.")
-    worlds = torch.nonzero(drive.population.owner == patient)[:, 0]
+    worlds = torch.nonzero(drive.pool.owner == patient)[:, 0]
     source = np.arange(len(worlds)) % len(halt.memory[0])
     scene.sim.write_state(_on(device, {name: array[source] for name, array in halt.worlds.items()}), worlds)
     scene.sim.forward()

@@ -18,8 +18,8 @@ class TipPullCfg(ActuatorBaseCfg):
     class_type: Any = "arcgym.assets.actuators.tip_pull:TipPull"
     """Class built from this configuration."""
     stiffness: float = 400.0
-    """Spring from the tip to its target [N/m]. The target leads the tip by at most ``force_limit / stiffness``: lower it
-    for a softer pull, raise it for one that follows commands at once."""
+    """Spring from the tip to its target [N/m]. The target leads the tip by at most ``force_limit / stiffness``:
+    lower it for a softer pull, raise it for one that follows commands at once."""
     damping: float = 4.0
     """Damper beside that spring [N s/m]. Raise it if the tip overshoots its target."""
     force_limit: float = 4.0

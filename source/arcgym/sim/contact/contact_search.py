@@ -16,7 +16,7 @@ from arcgym.sim.contact.carried_surface import CarriedSurface
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
 from arcgym.sim.simulation_cfg import ContactCfg
 from arcgym.sim.wall.wall_topology import PATCH_FACES, LumenTopology
-from arcgym.utils.beside import Beside
+from arcgym.utils.side_stream import SideStream
 from arcgym.utils.warp_setup import GPU_BLOCK
 from arcgym.utils.warp_vote_kernels import LANES
 
@@ -93,7 +93,7 @@ class ContactSearch:
         self.bounds.patch = wp.zeros((patches, num_envs), dtype=wp.vec4, device=device)
         self.bounds.ring_of_world = wp.zeros((worlds, self.ring_count), dtype=wp.vec4, device=device)
         self.bounds.patch_of_world = wp.zeros((worlds, patches), dtype=wp.vec4, device=device)
-        self._beside = Beside(device)
+        self._side = SideStream(device)
         rings_apart = np.ptp(vertex_ring[topology.faces], axis=1).max() if carried is None else 1
         self._follows = rings_apart <= 1
         if self._follows:
@@ -242,11 +242,11 @@ class ContactSearch:
         if self._follows and not self.still:
             shape, inputs = (self.ring_count, self.num_envs), [x, self.surface, SPHERE_SLACK]
             self._launch(lumen_kernels.follow_rings, shape, inputs, [self.centers, self._place, self._moved])
-            with self._beside.work():
+            with self._side.scope():
                 self._begin(x)
             self.track(body_q)
             return
-        with self._beside.work():
+        with self._side.scope():
             self._begin(x)
         if not self.still:
             self.update_centers(x)
@@ -254,7 +254,7 @@ class ContactSearch:
 
     def find(self, x: wp.array, body_q: wp.array) -> None:
         """Find and record the contacts of the links; arguments as in :meth:`detect`."""
-        self._beside.join()
+        self._side.join()
         if not self.still and self.carried is not None:
             self._measure_near(x, body_q)
         self._find(body_q)

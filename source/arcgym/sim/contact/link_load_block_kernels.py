@@ -12,7 +12,7 @@ wall vertices a world.
 import warp as wp
 
 from arcgym.sim.contact.contact_kernels import ContactLaw, ContactRecords, LinkShapes
-from arcgym.sim.contact.link_load_kernels import ContactPush, LinkMotion, link_motion, push_at
+from arcgym.sim.contact.link_load_kernels import ContactPush, MovingLink, link_motion, push_at
 from arcgym.sim.scope.load_row_kernels import LoadRows, LoadSum, with_push, write_row
 from arcgym.utils import warp_setup  # noqa: F401
 from arcgym.utils.block_queue_kernels import wait_for_block
@@ -114,7 +114,7 @@ def load_contacts_by_block(
     dt: float,
     threads: int,
     group: int,
-    motions: wp.array[LinkMotion],
+    motions: wp.array[MovingLink],
     rows: LoadRows,
     penetrated: wp.array[int],
 ):

@@ -119,7 +119,7 @@ def load_of(push: ContactPush) -> ArticulatedBody:
 
 
 @wp.struct
-class LinkMotion:
+class MovingLink:
     """Where a link is and how it moves."""
 
     pose: wp.transform
@@ -133,7 +133,7 @@ def push_at(
     slot: int,
     link: int,
     w: int,
-    motion: LinkMotion,
+    motion: MovingLink,
     x: wp.array2d[wp.vec3],
     v: wp.array2d[wp.vec3],
     links: LinkShapes,
@@ -169,9 +169,9 @@ def link_motion(
     body_qd: wp.array[wp.spatial_vector],
     com: wp.array[wp.vec3],
     body_q_prev: wp.array[wp.transform],
-) -> LinkMotion:
+) -> MovingLink:
     """Return the motion of the link in ``row``; see :func:`load_contacts`."""
-    out = LinkMotion()
+    out = MovingLink()
     out.pose = body_q[row]
     out.center = wp.transform_point(out.pose, com[link])
     out.velocity = body_qd[row]

@@ -11,8 +11,8 @@ import warp as wp
 from arcgym.sim.contact import link_load_block_kernels as block_kernels
 from arcgym.sim.contact import link_load_kernels as kernels
 from arcgym.sim.scope.scope_solver import SolverArticulatedChain
-from arcgym.utils.beside import Beside
-from arcgym.utils.stages import at_the_same_time
+from arcgym.utils.side_stream import SideStream
+from arcgym.utils.threaded_graph import at_the_same_time
 from arcgym.utils.warp_vote_kernels import GROUP
 
 if TYPE_CHECKING:
@@ -58,10 +58,10 @@ class TwoLevelCoupling:
         self.body_q_prev = wp.clone(sim.state.body_q)
         """Link poses at the start of the last step, shape (W*L,), transform."""
         rows = self.body_q_prev.shape[0] if self.solver.by_warp else 0
-        self._motions = wp.zeros(rows, dtype=kernels.LinkMotion, device=sim.device)
+        self._motions = wp.zeros(rows, dtype=kernels.MovingLink, device=sim.device)
         self._on_gpu = wp.get_device(sim.device).is_cuda
         self._scope_stream = wp.Stream(sim.device, priority=-1) if self._on_gpu else None
-        self._beside, self._drives = Beside(sim.device), Beside(sim.device, priority=-1)
+        self._side, self._drives = SideStream(sim.device), SideStream(sim.device, priority=-1)
 
     def step(self) -> None:
         """Advance by one physics step, in place."""
@@ -90,14 +90,14 @@ class TwoLevelCoupling:
             return
         wp.copy(self.body_q_prev, sim.state.body_q)
         contact.follow(sim.nodal_pos, sim.state.body_q)
-        with self._drives.work():
+        with self._drives.scope():
             self._drive()
         contact.find(sim.nodal_pos, sim.state.body_q)
-        with self._beside.work():
+        with self._side.scope():
             contact.order()
             sim.wall.begin_contacts(sim.nodal_pos, contact, self.body_q_prev)
         self._move_scope()
-        self._beside.join()
+        self._side.join()
 
     def prepare_wall(self) -> None:
         """Begin the wall's step; may be done at the same time as :meth:`move_scope`."""
@@ -115,12 +115,12 @@ class TwoLevelCoupling:
         dt = sim.cfg.dt / count
         for k in range(count):
             if k > 0 or not self._on_gpu:
-                with self._drives.work():
+                with self._drives.scope():
                     self._drive()
             self.load_contacts(k * dt, dt)
             self._drives.join()
             self.solver.move(state, state, sim.control, dt, sim.scope_readout.step_force, 1.0 / count)
-            with self._drives.work():
+            with self._drives.scope():
                 sim.actuation.record(work.drive_force, work.acc_lin, 1.0 / count)
         self._drives.join()
 

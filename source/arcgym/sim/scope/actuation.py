@@ -14,7 +14,7 @@ import warp as wp
 from arcgym.assets.endoscope import Endoscope
 from arcgym.sim.scope import actuation_kernels as kernels
 from arcgym.sim.simulation_cfg import SimulationCfg
-from arcgym.utils.beside import Beside
+from arcgym.utils.side_stream import SideStream
 
 
 class Actuation:
@@ -44,7 +44,7 @@ class Actuation:
         self.gravity = wp.full(num_envs, wp.vec3(*gravity), dtype=wp.vec3, device=device)
         """Acceleration of free fall in each world [m/s^2], shape (W,), vec3."""
         self._mass_scaling = cfg.mass_scaling
-        self._weights = Beside(device, priority=-1)
+        self._weights = SideStream(device, priority=-1)
 
     def _introducer(self, endoscope: Endoscope) -> kernels.Introducer:
         guide, cfg = kernels.Introducer(), endoscope.cfg.introducer
@@ -81,7 +81,7 @@ class Actuation:
         inputs += [state.joint_q, self.coords, link_ring, dt]
         outputs = [state.body_f, self.resistance]
         shape = (self.num_envs, self.link_count)
-        with self._weights.work():
+        with self._weights.scope():
             wp.launch(kernels.load_links, shape, inputs=inputs, outputs=outputs, device=self.device)
         for actuator in self.actuators.values():
             if actuator.loads_links:

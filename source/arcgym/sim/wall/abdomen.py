@@ -56,7 +56,7 @@ class Abdomen:
         shape.stiffness = wp.full(num_envs, cfg.stiffness, dtype=float, device=device)
         shape.squareness, shape.damping = cfg.squareness, cfg.damping
         shape.core = CORE * 3.0 ** (-1.0 / cfg.squareness)
-        hand = self.hand = kernels.Hand()
+        hand = self.hand = kernels.AbdominalHand()
         hand.force, hand.dent = (wp.zeros(num_envs, dtype=float, device=device) for _ in range(2))
         hand.place = wp.zeros(num_envs, dtype=wp.vec2, device=device)
         hand.home = wp.vec2(*cfg.hand_place)

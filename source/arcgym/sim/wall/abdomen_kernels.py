@@ -35,7 +35,7 @@ class AbdomenShape:
 
 
 @wp.struct
-class Hand:
+class AbdominalHand:
     """A hand on the front of the abdomen of each world."""
 
     force: wp.array[float]  # with which it presses [N], shape (W,)
@@ -76,7 +76,7 @@ def hand_window(away: float, radius: float) -> wp.vec2:
 
 
 @wp.func
-def hand_place(shape: AbdomenShape, hand: Hand, axes: wp.vec3, w: int) -> wp.vec2:
+def hand_place(shape: AbdomenShape, hand: AbdominalHand, axes: wp.vec3, w: int) -> wp.vec2:
     """Return where the hand of world ``w`` is, to the right and cranial of the abdomen's middle [m]."""
     at = hand.place[w] + wp.vec2(hand.home[0] * axes[0], hand.home[1] * axes[2])
     wide, high = FARTHEST * axes[0], FARTHEST * axes[2]
@@ -106,7 +106,7 @@ def depth_in_shape(q: wp.vec3, axes: wp.vec3, n: float, core: float) -> Depth:
 
 
 @wp.func
-def depth_in_abdomen(shape: AbdomenShape, hand: Hand, x: wp.vec3, w: int) -> Depth:
+def depth_in_abdomen(shape: AbdomenShape, hand: AbdominalHand, x: wp.vec3, w: int) -> Depth:
     """Return how deep a point at ``x`` [m] is in the inside of world ``w``'s abdomen."""
     axes = semi_axes(shape, w)
     q = x - shape.center[shape.patient[w]]
@@ -134,7 +134,7 @@ def depth_in_abdomen(shape: AbdomenShape, hand: Hand, x: wp.vec3, w: int) -> Dep
 def press_wall(
     x: wp.array2d[wp.vec3],
     shape: AbdomenShape,
-    hand: Hand,
+    hand: AbdominalHand,
     dt: float,
     outer: OuterForce,
     load: wp.array2d[wp.vec3],
@@ -171,7 +171,7 @@ def press_wall(
 
 
 @wp.kernel
-def move_hand(load: wp.array2d[wp.vec3], dt: float, hand: Hand, push: wp.array[float]):
+def move_hand(load: wp.array2d[wp.vec3], dt: float, hand: AbdominalHand, push: wp.array[float]):
     """Let every hand press the front in until front and colon resist as much. Launch (W,).
 
     The dent follows force - stiffness * dent - load through a damper of stiffness * time, implicitly.

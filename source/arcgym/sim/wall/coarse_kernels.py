@@ -120,7 +120,7 @@ def axis(i: int) -> wp.vec3:
 
 
 @wp.func
-def contact_push(normal: wp.vec3, stiffness: wp.vec2, move: wp.vec3) -> wp.vec3:
+def contact_stiffness_times(normal: wp.vec3, stiffness: wp.vec2, move: wp.vec3) -> wp.vec3:
     """Return the stiffness of a contact, along its normal and across it, times a displacement of its point."""
     return ((stiffness[0] - stiffness[1]) * wp.dot(normal, move)) * normal + stiffness[1] * move
 
@@ -304,7 +304,7 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
                         fields = own_fields
                         if which == 1:
                             fields = next_fields
-                        push = contact_push(normal, stiffness, wp.dot(fields, field) * along)
+                        push = contact_stiffness_times(normal, stiffness, wp.dot(fields, field) * along)
                         own_row = add_share(own_row, fields, push)
                         if which == 0 and next_free == 1:
                             next_row = add_share(next_row, next_fields, push)

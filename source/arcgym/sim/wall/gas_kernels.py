@@ -19,7 +19,7 @@ SHUT_SHARE = wp.constant(0.4)
 
 
 @wp.struct
-class Lumen:
+class LumenRings:
     """Faces that close a lumen: the wall's by ring, those of each ring followed by its lids'."""
 
     patient: wp.array[int]  # patient of each world, shape (W,)
@@ -72,7 +72,7 @@ class GasLoads:
 
 
 @wp.func
-def slice_volume(x: wp.array2d[wp.vec3], lumen: Lumen, r: int, w: int) -> float:
+def slice_volume(x: wp.array2d[wp.vec3], lumen: LumenRings, r: int, w: int) -> float:
     """Return 4/3 of the volume between a ring's faces and their middle line [m^3]; zero for a flat slice."""
     middle = wp.vec3(0.0)
     count = float(0.0)
@@ -104,7 +104,7 @@ def prop_share(opening: float) -> float:
 @wp.func
 def measure_slice(
     x: wp.array2d[wp.vec3],
-    lumen: Lumen,
+    lumen: LumenRings,
     law: GasLaw,
     volume: wp.array2d[float],
     prop: wp.array2d[float],
@@ -138,7 +138,7 @@ def measure_slice(
 @wp.kernel
 def measure_slices(
     x: wp.array2d[wp.vec3],
-    lumen: Lumen,
+    lumen: LumenRings,
     law: GasLaw,
     volume: wp.array2d[float],
     prop: wp.array2d[float],

@@ -16,7 +16,7 @@ from arcgym.sim.wall.lumen_gas import LumenGas
 from arcgym.sim.wall.ring_modes import MODES
 from arcgym.sim.wall.shell_kernels import ShellElements
 from arcgym.sim.wall.wall_kernels import Tissue
-from arcgym.utils.stages import launch_rows
+from arcgym.utils.threaded_graph import launch_rows
 
 
 class GasRings:

@@ -19,7 +19,7 @@ from arcgym.utils.warp_setup import FAST
 
 
 @wp.struct
-class KeptRings:
+class KeptRingState:
     """What the rings were like when the stiffness around them was measured."""
 
     place: wp.array2d[wp.vec3]  # positions of the vertices [m], shape (V, W)
@@ -43,7 +43,7 @@ def place_changed_rings(
     shift: wp.array2d[wp.vec3],
     tissue: Tissue,
     unmoved: float,
-    kept: KeptRings,
+    kept: KeptRingState,
 ):
     """Do as ``place_rings``, and find the rings that have moved since they were measured. Launch (R, W).
 
@@ -74,7 +74,7 @@ def place_changed_rings(
 
 
 @wp.kernel
-def find_changed_rows(records: ContactRecords, self_contact: SelfContactForce, kept: KeptRings, rows: KeptRows):
+def find_changed_rows(records: ContactRecords, self_contact: SelfContactForce, kept: KeptRingState, rows: KeptRows):
     """Find the row of each world from which on all are what they were at the last solution. Launch (R, W).
 
     A row holds the stiffness of the bands on either side of its ring, and that of the contacts there.

@@ -27,7 +27,7 @@ class KeptRings:
     def __init__(self, vertices: int, rings: int, num_envs: int, device: str):
         """Know nothing yet of the ``num_envs`` walls, of so many vertices and rings."""
         self._shape, self._device = (rings, num_envs), device
-        self.rings = kernels.KeptRings()
+        self.rings = kernels.KeptRingState()
         """The rings."""
         self.rings.place = wp.zeros((vertices, num_envs), dtype=wp.vec3, device=device)
         self.rings.tissue = wp.full(self._shape, -1.0, dtype=wp.vec4, device=device)

@@ -235,7 +235,7 @@ def lids(faces: np.ndarray) -> np.ndarray:
     return np.array(out, np.int32).reshape(-1, 3)
 
 
-def _lumen(topology: LumenTopology, patient: wp.array, device: str) -> kernels.Lumen:
+def _lumen(topology: LumenTopology, patient: wp.array, device: str) -> kernels.LumenRings:
     """Return the faces that close the lumen, without what differs between patients."""
     count = len(topology.ring_start) - 1
     closing = lids(topology.faces)
@@ -247,7 +247,7 @@ def _lumen(topology: LumenTopology, patient: wp.array, device: str) -> kernels.L
     faces = np.concatenate([topology.faces, closing]).astype(np.int32)
     order = np.lexsort((np.arange(len(faces)), lowest))
     start = np.searchsorted(lowest[order], np.arange(count + 1)).astype(np.int32)
-    lumen = kernels.Lumen()
+    lumen = kernels.LumenRings()
     lumen.patient = patient
     lumen.face = wp.array(faces[order], dtype=wp.vec3i, device=device)
     lumen.start = wp.array(start, dtype=int, device=device)

@@ -26,7 +26,7 @@ from arcgym.sim.wall.shell_fans import ordered_corners, own_hinges, triangle_res
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_topology import vertex_entries
-from arcgym.utils.stages import in_parts, launch_rows
+from arcgym.utils.threaded_graph import in_parts, launch_rows
 
 
 class Shell:

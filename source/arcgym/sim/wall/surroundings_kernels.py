@@ -6,7 +6,7 @@
 import warp as wp
 
 from arcgym.sim.contact.bend_contact_kernels import Bends, push_limbs
-from arcgym.sim.wall.abdomen_kernels import AbdomenShape, Hand, press_wall
+from arcgym.sim.wall.abdomen_kernels import AbdomenShape, AbdominalHand, press_wall
 from arcgym.sim.wall.mesentery_kernels import Sheets, pull_ring
 from arcgym.sim.wall.outer_force_kernels import OuterForce, clear_outer_force
 from arcgym.utils import warp_setup  # noqa: F401
@@ -19,7 +19,7 @@ class Around:
     members: wp.array2d[int]  # vertices of each ring, -1 padded, shape (R, S)
     pressing: int  # whether there is an abdomen
     shape: AbdomenShape
-    hand: Hand
+    hand: AbdominalHand
     load: wp.array2d[wp.vec3]  # of each ring on hand and abdomen, see ``press_wall``, shape (R, W)
     pulling: int  # whether there are mesenteries
     sheets: Sheets

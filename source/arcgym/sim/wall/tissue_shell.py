@@ -24,7 +24,7 @@ from arcgym.sim.wall.shell_kernels import STIFFENING
 from arcgym.sim.wall.sweep_kernels import sweep_kernels
 from arcgym.sim.wall.wall_kernels import Tissue
 from arcgym.sim.wall.wall_parameters import ShellParameters, WallParameters
-from arcgym.utils.stages import launch_rows
+from arcgym.utils.threaded_graph import launch_rows
 
 RELAXATION = "relaxation."
 """Begins the names of the wall's memory of its tension. A state without them is that of a wall that has rested."""

@@ -15,7 +15,7 @@ from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall.strain_kernels import RestRings, measure_rings
 from arcgym.sim.wall.wall_parameters import wall_anchors
 from arcgym.sim.wall.wall_topology import LumenTopology
-from arcgym.utils.stages import launch_rows
+from arcgym.utils.threaded_graph import launch_rows
 from arcgym.utils.world_rows import WorldRows
 
 

@@ -31,7 +31,7 @@ from arcgym.sim.wall.wall_elements import wall_elements
 from arcgym.sim.wall.wall_parameters import WallParameters, wall_nodes
 from arcgym.sim.wall.wall_topology import ring_mean
 from arcgym.sim.wall.wall_weight import WallWeight
-from arcgym.utils.stages import in_parts, in_sequence, launch_rows
+from arcgym.utils.threaded_graph import in_parts, in_sequence, launch_rows
 from arcgym.utils.warp_setup import GPU_BLOCK
 
 REGULARISATION = 1.0e-5

@@ -11,7 +11,7 @@ import warp as wp
 
 from arcgym.sim.patient_arrays import patient_array
 from arcgym.sim.wall import wall_tension_kernels as kernels
-from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, Lumen
+from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, LumenRings
 from arcgym.sim.wall.ring_modes import RingModes
 from arcgym.sim.wall.wall_parameters import WallParameters
 
@@ -55,7 +55,7 @@ class WallTension:
         shape = (len(self._held.members), x.shape[1])
         wp.launch(kernels.turn_loads, shape, inputs=[x, self._held], outputs=[self._loads], device=self._device)
 
-    def measure(self, x: wp.array, lumen: Lumen, law: GasLaw, parts: wp.array) -> None:
+    def measure(self, x: wp.array, lumen: LumenRings, law: GasLaw, parts: wp.array) -> None:
         """Measure the lumen at ``x`` [m], shape (V, W), vec3, too.
 
         Args:

@@ -11,7 +11,7 @@ V wall vertices, R rings, P patients, W worlds.
 
 import warp as wp
 
-from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, Lumen, measure_slice
+from arcgym.sim.wall.gas_kernels import GasLaw, GasLoads, LumenRings, measure_slice
 from arcgym.utils import warp_setup  # noqa: F401
 
 
@@ -67,7 +67,7 @@ def turn_loads(x: wp.array2d[wp.vec3], held: HeldShape, loads: GasLoads):
 @wp.kernel
 def measure_held_slices(
     x: wp.array2d[wp.vec3],
-    lumen: Lumen,
+    lumen: LumenRings,
     law: GasLaw,
     held: HeldShape,
     volume: wp.array2d[float],

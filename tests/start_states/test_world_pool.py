@@ -15,8 +15,8 @@ from arcgym.experts import PullExpert
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
-from arcgym.start_states import population as module
-from arcgym.start_states.population import Population
+from arcgym.start_states import world_pool as module
+from arcgym.start_states.world_pool import WorldPool
 
 
 @pytest.fixture(autouse=True)
@@ -39,7 +39,7 @@ def scene_of(folder: Path, worlds: int) -> InteractiveScene:
 def test_those_behind_go_on_from_the_foremost_of_their_patient(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 8)
     expert = PullExpert(scene)
-    population = Population(scene, expert)
+    pool = WorldPool(scene, expert)
     assert expert.speed[:2].tolist() == pytest.approx([0.04] * 2) and len(set(expert.speed.tolist())) == 7
     velocity = torch.zeros(8, 3)
     velocity[:, 2] = torch.linspace(0.02, 0.06, 8)
@@ -48,7 +48,7 @@ def test_those_behind_go_on_from_the_foremost_of_their_patient(tmp_path: Path) -
         scene.sim.step(48)
     before, speed = scene["endoscope"].data.joint_pos.clone(), expert.speed.clone()
     arc = scene["endoscope"].data.tip_arc_length.clone()
-    moved, sources = population.exchange(arc, 10.0 * arc)
+    moved, sources = pool.exchange(arc, 10.0 * arc)
     assert sorted(zip(moved.tolist(), sources.tolist(), strict=True)) == [(0, 6), (1, 7), (2, 6), (3, 7)]
     now = scene["endoscope"].data.joint_pos
     assert torch.equal(now[:4], before[[6, 7, 6, 7]]) and torch.equal(now[4:], before[4:])
@@ -59,11 +59,11 @@ def test_those_behind_go_on_from_the_foremost_of_their_patient(tmp_path: Path) -
 def test_those_hardly_behind_keep_their_states_and_some_get_new_settings(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 8)
     expert = PullExpert(scene)
-    population = Population(scene, expert)
+    pool = WorldPool(scene, expert)
     before, speed = scene["endoscope"].data.joint_pos.clone(), expert.speed.clone()
     arc = torch.tensor([0.50, 0.50, 0.40, 0.50, 0.51, 0.51, 0.52, 0.52])
     score = arc - torch.tensor([0.10, 0.10, 0.10, 0.10, 0.0, 0.0, 0.0, 0.0])
-    moved, sources = population.exchange(score, arc)  # world 2 alone is 12 cm behind; the others have more in loops
+    moved, sources = pool.exchange(score, arc)  # world 2 alone is 12 cm behind; the others have more in loops
     assert (moved.tolist(), sources.tolist()) == ([2], [6])
     now = scene["endoscope"].data.joint_pos
     assert torch.equal(now[[0, 1, 3]], before[[0, 1, 3]])
@@ -72,44 +72,44 @@ def test_those_hardly_behind_keep_their_states_and_some_get_new_settings(tmp_pat
     arc[2] = 0.50
     for _ in range(40):  # four worlds that are hardly behind: a quarter of 160
         speed = expert.speed.clone()
-        assert len(population.exchange(score, arc)[0]) == 0
+        assert len(pool.exchange(score, arc)[0]) == 0
         renewed += int((expert.speed[:4] != speed[:4]).sum())
     assert torch.equal(expert.speed[4:], speed[4:]) and 20 <= renewed <= 60
 
 
 def test_worlds_of_a_patient_that_needs_none_help_the_others(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 8)
-    population = Population(scene, PullExpert(scene))
+    pool = WorldPool(scene, PullExpert(scene))
     velocity = torch.zeros(8, 3)
     velocity[:, 2] = torch.linspace(0.02, 0.06, 8)
     for _ in range(2):
         scene["endoscope"].set_tip_velocity_command(velocity, torch.zeros(8, 3))
         scene.sim.step(48)
     arc = scene["endoscope"].data.tip_arc_length.clone()
-    moved, sources = population.hand_over([0], arc)  # world 7 is the foremost of the second patient
+    moved, sources = pool.hand_over([0], arc)  # world 7 is the foremost of the second patient
     assert (moved.tolist(), sources.tolist()) == ([0, 2, 4, 6], [7, 7, 7, 7])
-    assert population.owner.tolist() == [1] * 8 and scene.colon.data.patient.tolist() == [1] * 8
+    assert pool.owner.tolist() == [1] * 8 and scene.colon.data.patient.tolist() == [1] * 8
     assert torch.equal(scene["endoscope"].data.tip_arc_length[[0, 2, 4, 6]], arc[[7, 7, 7, 7]])
-    ranking = population.rank(arc)
+    ranking = pool.rank(arc)
     assert ranking.counts.tolist() == [0, 8] and ranking.order.tolist() == [7, 6, 5, 4, 3, 2, 1, 0]
-    assert len(population.hand_over([0], arc)[0]) == 0 and len(population.hand_over([0, 1], arc)[0]) == 0
+    assert len(pool.hand_over([0], arc)[0]) == 0 and len(pool.hand_over([0, 1], arc)[0]) == 0
 
 
 def test_the_longer_the_foremost_is_stuck_the_farther_behind_others_may_be(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 8)
-    population = Population(scene, PullExpert(scene))
+    pool = WorldPool(scene, PullExpert(scene))
     arc = torch.tensor([0.45, 0.47, 0.50, 0.50, 0.51, 0.51, 0.52, 0.52])  # 7 cm behind and 5 cm behind, in that order
-    assert sorted(population.exchange(arc, arc)[0].tolist()) == [0, 1]
-    assert sorted(population.exchange(arc, arc)[0].tolist()) == [0]  # 6 cm are allowed now
-    assert len(population.exchange(arc, arc)[0]) == 0  # 9 cm
-    assert sorted(population.exchange(arc, arc + 0.02)[0].tolist()) == [0, 1]  # it got on: 3 cm
+    assert sorted(pool.exchange(arc, arc)[0].tolist()) == [0, 1]
+    assert sorted(pool.exchange(arc, arc)[0].tolist()) == [0]  # 6 cm are allowed now
+    assert len(pool.exchange(arc, arc)[0]) == 0  # 9 cm
+    assert sorted(pool.exchange(arc, arc + 0.02)[0].tolist()) == [0, 1]  # it got on: 3 cm
 
 
 def test_the_first_world_of_a_patient_is_not_disturbed(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 4)
     expert = PullExpert(scene)
-    population = Population(scene, expert)
-    population.disturb()
+    pool = WorldPool(scene, expert)
+    pool.disturb()
     assert not expert.disturbance[:2].any() and expert.disturbance[2:].all()
 
 
@@ -117,8 +117,8 @@ def test_some_worlds_vary_only_in_how_they_roll(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(module, "PLAIN", 0.5)
     scene = scene_of(tmp_path, 80)
     expert = PullExpert(scene, speed=0.05)
-    population = Population(scene, expert)
-    population.disturb()
+    pool = WorldPool(scene, expert)
+    pool.disturb()
     plain = expert.speed == 0.05
     assert 25 <= int(plain[2:].sum()) <= 53  # half of 78, give or take three deviations
     assert torch.equal(expert.disturbance.any(dim=1), ~plain)
@@ -129,4 +129,4 @@ def test_some_worlds_vary_only_in_how_they_roll(tmp_path: Path, monkeypatch: pyt
 def test_patients_have_as_many_worlds_each(tmp_path: Path) -> None:
     scene = scene_of(tmp_path, 3)
     with pytest.raises(ValueError, match="3 worlds cannot be shared out evenly among 2 patients"):
-        Population(scene, PullExpert(scene))
+        WorldPool(scene, PullExpert(scene))

@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 import warp as wp
 
-from arcgym.utils.stages import Stages, at_the_same_time, in_parts, in_sequence, launch_rows
+from arcgym.utils.threaded_graph import ThreadedGraph, at_the_same_time, in_parts, in_sequence, launch_rows
 
 
 @wp.kernel
@@ -32,7 +32,7 @@ def sum_rows(first: int, rows: int, values: wp.array, sums: wp.array) -> None:
 def test_parts_of_one_stage_are_done_before_the_next(threads: int) -> None:
     """Each value doubles and gets its row added, twice a round: v -> 4 v + 3 row."""
     values = wp.ones(7, dtype=float, device="cpu")
-    stages = Stages(threads)
+    stages = ThreadedGraph(threads)
 
     def work() -> None:
         for _ in range(2):
@@ -52,7 +52,7 @@ def test_parts_of_one_stage_are_done_before_the_next(threads: int) -> None:
 def test_what_follows_row_by_row_finds_the_rows_before_it(threads: int) -> None:
     """The sums of 1 + row, doubled each round before row is added: in round n the values are 2^n + (2^n - 1) row."""
     values, sums = wp.ones(9, dtype=float, device="cpu"), wp.zeros(9, dtype=float, device="cpu")
-    stages = Stages(threads)
+    stages = ThreadedGraph(threads)
 
     def produce(first: int, rows: int) -> None:
         wp.launch(double_and_add_row, rows, inputs=[first, values], device="cpu")
@@ -68,7 +68,7 @@ def test_what_follows_row_by_row_finds_the_rows_before_it(threads: int) -> None:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_two_chains_are_both_done_before_what_follows(threads: int) -> None:
     one, other, both = (wp.ones(5, dtype=float, device="cpu") for _ in range(3))
-    stages = Stages(threads)
+    stages = ThreadedGraph(threads)
 
     def chain(values: wp.array, times: int) -> None:
         for _ in range(times):
@@ -97,7 +97,7 @@ def test_a_failure_while_recording_leaves_nothing_open() -> None:
         raise ValueError("broken")
 
     with pytest.raises(ValueError, match="broken"):
-        Stages(2).record(lambda: in_parts(4, fail))
+        ThreadedGraph(2).record(lambda: in_parts(4, fail))
     with wp.ScopedCapture(device="cpu"):
         pass
     in_parts(1, lambda first, rows: None)

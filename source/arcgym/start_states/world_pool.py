@@ -30,7 +30,7 @@ PLAIN = 0.5
 ON = 0.01
 """Way that the foremost has to get on between two exchanges, or it counts as stuck [m]."""
 STUCK = 0.1
-"""The same, from which worlds that stand beside the foremost go on from a state farther back [m]."""
+"""From this arc length behind on, worlds that stand beside the foremost go on from a state farther back [m]."""
 MOST_NEAR = 0.35
 """Largest arc length by which a world may be behind, after many exchanges in which the foremost was stuck [m]."""
 
@@ -48,7 +48,7 @@ class Ranking(NamedTuple):
     """Worlds of each patient, shape (P,)."""
 
 
-class Population:
+class WorldPool:
     """The worlds of each patient: N worlds, P patients, at first N / P worlds of each: world ``n`` has ``n % P``.
 
     The first of each patient's worlds keeps the expert's own settings and no disturbance until it falls behind. Of the

@@ -13,7 +13,7 @@ import numpy as np
 import warp as wp
 from warp._src import context
 
-from arcgym.utils import stage_kernels, warp_setup  # noqa: F401
+from arcgym.utils import threaded_graph_kernels, warp_setup  # noqa: F401
 from arcgym.utils.cpu_threads import on_threads
 from arcgym.utils.warp_setup import GPU_BLOCK
 
@@ -27,7 +27,7 @@ Rows = Callable[[int, int], None]
 
 
 @dataclass
-class Stage:
+class TaskGroup:
     """Tasks that may be done in any order and at the same time."""
 
     graphs: list[wp.Graph]
@@ -36,14 +36,14 @@ class Stage:
 
 
 @dataclass
-class Stages:
+class ThreadedGraph:
     """Recorded work. Launches outside :func:`in_parts` are done one after the other, each stage after the one before.
 
     What :func:`at_the_same_time` was given is two chains of stages that do not wait for each other.
     """
 
     threads: int
-    _stages: list[Stage] = field(default_factory=list)
+    _stages: list[TaskGroup] = field(default_factory=list)
     _ends: list[int] = field(default_factory=list)
     """Stages that the next one has to wait for."""
     _rounds: int = 0
@@ -72,7 +72,7 @@ class Stages:
         def share(thread: int) -> None:
             inputs = [self._calls, self._plan, self._graphs, thread, threads, self._rounds, times]
             outputs = [self._taken, self._progress]
-            wp.launch(stage_kernels.share, 1, inputs=inputs, outputs=outputs, device="cpu")
+            wp.launch(threaded_graph_kernels.share, 1, inputs=inputs, outputs=outputs, device="cpu")
 
         on_threads(threads, share)
         self._rounds += times
@@ -119,7 +119,7 @@ class Stages:
     def _add(self, graphs: list[wp.Graph]) -> None:
         if not any(_operations(graph) for graph in graphs):
             return
-        self._stages.append(Stage(graphs, self._ends))
+        self._stages.append(TaskGroup(graphs, self._ends))
         self._ends = [len(self._stages) - 1]
 
     def _pack(self) -> None:
@@ -136,10 +136,10 @@ class Stages:
         self._taken = wp.zeros(len(states), dtype=wp.int64, device="cpu")
         self._progress = wp.zeros((len(self._stages) + 1, LINE), dtype=wp.int64, device="cpu")
         self._counters = self._progress.numpy()
-        wp.load_module(stage_kernels, device="cpu")
+        wp.load_module(threaded_graph_kernels, device="cpu")
 
 
-_recording: list[Stages] = []
+_recording: list[ThreadedGraph] = []
 
 
 def _operations(graph: wp.Graph) -> int:

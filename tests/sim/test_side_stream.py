@@ -10,28 +10,28 @@ import torch
 import warp as wp
 from tiny_sim import TinySim
 
-from arcgym.utils.beside import Beside
+from arcgym.utils.side_stream import SideStream
 
 CUDA = pytest.mark.skipif(not wp.is_cuda_available(), reason="needs CUDA")
 
 
 def test_on_a_cpu_work_is_done_where_it_is_launched() -> None:
     numbers = wp.zeros(3, dtype=float, device="cpu")
-    beside = Beside("cpu")
-    with beside.work():
+    side = SideStream("cpu")
+    with side.scope():
         numbers.fill_(2.0)
-    beside.join()
-    assert not beside.on_gpu
+    side.join()
+    assert not side.on_gpu
     assert numbers.numpy().tolist() == [2.0, 2.0, 2.0]
 
 
 @CUDA
 def test_on_a_gpu_what_follows_waits() -> None:
     numbers, copies = (wp.zeros(1 << 24, dtype=float, device="cuda:0") for _ in range(2))
-    beside = Beside("cuda:0")
-    with beside.work():
+    side = SideStream("cuda:0")
+    with side.scope():
         numbers.fill_(2.0)
-    beside.join()
+    side.join()
     wp.copy(copies, numbers)
     assert copies.numpy().min() == 2.0
 

@@ -12,7 +12,7 @@ import warp as wp
 from arcgym.utils import warp_setup  # noqa: F401
 
 
-class Beside:
+class SideStream:
     """A second stream of a GPU; on a CPU everything is done in order."""
 
     def __init__(self, device: str, priority: int = 0):
@@ -22,7 +22,7 @@ class Beside:
         self._stream = wp.Stream(self._device, priority=priority) if self.on_gpu else None
 
     @contextmanager
-    def work(self) -> Iterator[None]:
+    def scope(self) -> Iterator[None]:
         """Launch what is done in here after all that was launched before, and beside what follows until :meth:`join`.
 
         Neither may write what the other reads or writes.
