@@ -10,9 +10,10 @@ from types import SimpleNamespace
 import pytest
 import torch
 
-from arcgym.benchmarks.experts.measure import OUT_OF_TIME, Attempt, attempt, row_of
+from arcgym.benchmarks.experts.measure import Attempt, attempt, row_of
 from arcgym.benchmarks.experts.table import failures, read_rows, table
 from arcgym.benchmarks.experts.ways import Ways, read_way
+from arcgym.benchmarks.worlds import OUT_OF_TIME
 from arcgym.cli.bench_experts import _missing
 from arcgym.start_states.route import Entry, Route
 from arcgym.utils.paths import assets_dir

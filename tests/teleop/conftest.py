@@ -10,7 +10,7 @@ import pytest
 from small_session import choice, until
 
 import arcgym_tasks  # noqa: F401
-from arcgym.rl.rollout import UNTRAINED
+from arcgym.rl.rollout import UNTRAINED_POLICIES
 from arcgym.teleop.session import Session
 
 
@@ -20,7 +20,9 @@ def make_session(tiny_colon_path, tmp_path_factory) -> Iterator[Callable[..., Se
     made: list[Session] = []
 
     def make(robot: str = "Proximal", **changes) -> Session:
-        session = Session(choice(tiny_colon_path, robot, **changes), tmp_path_factory.mktemp("teleop"), UNTRAINED)
+        session = Session(
+            choice(tiny_colon_path, robot, **changes), tmp_path_factory.mktemp("teleop"), UNTRAINED_POLICIES
+        )
         session.needs_page, session.speed = False, 100.0
         session.start()
         until(lambda: session.status.state in ("paused", "failed"))

@@ -10,6 +10,9 @@ from typing import Any
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
 
+OUT_OF_TIME = "no computing time left"
+"""Problem of a patient in which an expert was stopped from outside."""
+
 
 def load_env_cfg(
     task: str, overrides: Sequence[str], seed: int, num_envs: int | None = None, device: str | None = None

@@ -113,7 +113,8 @@ def _drive(
     args: argparse.Namespace, robot: str, tissue: str, stages: Sequence[Path], rows: Path, deadline: float
 ) -> None:
     """Drive one batch, appending rows as they come; those for which there was no time left are not written."""
-    from arcgym.benchmarks.experts.measure import OUT_OF_TIME, Attempt, attempt
+    from arcgym.benchmarks.experts.measure import Attempt, attempt
+    from arcgym.benchmarks.worlds import OUT_OF_TIME
     from arcgym.rl.device import choose_device
 
     device = choose_device(args.device)

@@ -27,6 +27,7 @@ from arcgym.cli.stopping import stopped_cleanly
 from arcgym.evaluation.result_folder import ResultFolder
 from arcgym.evaluation.sharing import Share, share
 from arcgym.evaluation.trials import Conditions
+from arcgym.utils.untrained import UNTRAINED
 
 TAKES_OVERRIDES = True
 
@@ -38,9 +39,6 @@ USUAL_SUITE = "paper"
 
 TRIALS_OWN = ("events", "terminations", "clinical", "scene.colon.material")
 """Parts of an environment that belong to a trial and not to an agent."""
-
-REFERENCE_AGENTS = ("zero", "random", "expert")
-"""Agents that need no checkpoint."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +149,7 @@ def _robot_of(agent: str) -> str:
     from arcgym.utils.errors import UsageError
     from arcgym.utils.registry import plain_task
 
-    if agent in REFERENCE_AGENTS:
+    if agent in UNTRAINED:
         raise UsageError(f"--agent {agent} needs --robot, such as Magnetic, or --tasks.")
     params = read_params(_checkpoint(agent).parent)
     if params is None:
@@ -167,7 +165,7 @@ def _checkpoint(agent: str) -> Path:
 
     path = Path(agent)
     if not path.is_file():
-        raise UsageError(f"No checkpoint {agent}; expected a file, or one of {', '.join(REFERENCE_AGENTS)}.")
+        raise UsageError(f"No checkpoint {agent}; expected a file, or one of {', '.join(UNTRAINED)}.")
     return path
 
 

@@ -27,7 +27,7 @@ class Reach:
     """Last segment that it entered."""
     simulated_s: float
     """Simulated time [s]."""
-    wall_s: float
+    elapsed_s: float
     """Time that took [s]."""
     problem: str
     """Why it ended before the caecum; empty if it arrived there."""

@@ -21,6 +21,7 @@ from dataclasses import dataclass, replace
 from arcgym.cli.arguments import DEFAULT_AGENT, FilmedRunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.task import load_cfgs, load_run_cfgs
 from arcgym.utils.errors import UsageError
+from arcgym.utils.untrained import UNTRAINED
 
 TAKES_OVERRIDES = True
 
@@ -29,9 +30,7 @@ TAKES_OVERRIDES = True
 class PlayArguments(FilmedRunArguments):
     """Arguments of ``arcgym play``."""
 
-    policy: str = argument(
-        "source of the actions (default: trained)", "trained", choices=("trained", "zero", "random", "expert")
-    )
+    policy: str = argument("source of the actions (default: trained)", "trained", choices=("trained", *UNTRAINED))
     steps: int | None = argument(
         "control steps (default: until each world's first episode has ended)", None, type=positive
     )

@@ -23,10 +23,9 @@ from arcgym.cli.stopping import stopped_cleanly
 from arcgym.cli.task import agent_names, load_cfgs, load_run_cfgs
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
+from arcgym.utils.untrained import UNTRAINED
 
 TAKES_OVERRIDES = True
-SCRIPTED = ("expert", "zero", "random")
-"""Agents without a checkpoint."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,9 +55,9 @@ def run(namespace: argparse.Namespace) -> int:
         UsageError: The task, a patient, the agent or an override is wrong.
     """
     args = read_fields(RecordArguments, namespace)
-    scripted = args.agent in SCRIPTED
-    known = (*SCRIPTED, "policy", *agent_names(args.task))
-    if len(known) > len(SCRIPTED) + 1 and args.agent not in known and not args.agent.endswith("cfg_entry_point"):
+    scripted = args.agent in UNTRAINED
+    known = (*UNTRAINED, "policy", *agent_names(args.task))
+    if len(known) > len(UNTRAINED) + 1 and args.agent not in known and not args.agent.endswith("cfg_entry_point"):
         raise UsageError(f"--agent is '{args.agent}'. {did_you_mean(args.agent, known)}")
     key = "rsl_rl_cfg_entry_point" if scripted or args.agent == "policy" else args.agent
     asked = replace(args, agent=key)

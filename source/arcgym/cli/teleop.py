@@ -19,12 +19,11 @@ from typing import Any
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields, whole
 from arcgym.utils.errors import UsageError
+from arcgym.utils.untrained import UNTRAINED
 
 TAKES_OVERRIDES = True
 SIZE, REDUCED_SIZE = 320, 192
 """Width and height of the endoscope's view, and of that of a reduced session [px]."""
-SCRIPTED = ("expert", "zero", "random")
-"""Drivers without a checkpoint."""
 UNPACED = 100.0
 """Simulated seconds a second that a measurement aims at: more than any machine reaches."""
 
@@ -69,8 +68,8 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.rl.agent_checks import check_installed
 
     check_installed("viser", "teleoperation", extra="teleop")
-    if args.driver not in ("hand", "policy", *SCRIPTED):
-        raise UsageError(f"--driver is '{args.driver}', expected hand, policy, {', '.join(SCRIPTED)}.")
+    if args.driver not in ("hand", "policy", *UNTRAINED):
+        raise UsageError(f"--driver is '{args.driver}', expected hand, policy, {', '.join(UNTRAINED)}.")
     if args.reduced and (args.driver == "policy" or args.checkpoint or args.load_run):
         raise UsageError("--reduced leaves out what a policy sees: choose one of --reduced and a policy.")
     serve(args, steers=True)
@@ -81,9 +80,9 @@ def make_drivers(args: Any) -> tuple[dict[str, Any], dict[str, Any] | None]:
 
     ``policy`` is there where a checkpoint was asked for.
     """
-    from arcgym.rl.rollout import UNTRAINED
+    from arcgym.rl.rollout import UNTRAINED_POLICIES
 
-    drivers: dict[str, Any] = {name: UNTRAINED[name] for name in SCRIPTED if name in UNTRAINED}
+    drivers: dict[str, Any] = dict(UNTRAINED_POLICIES)
     if not (args.driver == "policy" or args.checkpoint or args.load_run):
         return drivers, None
     from arcgym.cli.task import load_run_cfgs

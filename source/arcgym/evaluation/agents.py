@@ -46,7 +46,9 @@ def _added(group: Any) -> set[str]:
 def _functions(group: ObservationGroupCfg) -> set[str]:
     terms = [*vars(group).values(), *group.terms.values()]
     functions = [term.func for term in terms if isinstance(term, ObservationTermCfg)]
-    return {re.split(r"[:.]", of)[-1] if isinstance(of, str) else of.__name__ for of in functions}
+    return {
+        re.split(r"[:.]", function)[-1] if isinstance(function, str) else function.__name__ for function in functions
+    }
 
 
 def _reads_truth(depth: Any) -> bool:

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.result_folder import UNTRAINED
 from arcgym.evaluation.results import Result, best
 from arcgym.evaluation.statistics import Interval
 from arcgym.evaluation.suites import read_suites
 from arcgym.evaluation.summary import summarize
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
 from arcgym.utils.errors import UsageError
+from arcgym.utils.untrained import UNTRAINED
 
 AGENTS = UNTRAINED
 """Baselines, in the order of the rows."""
@@ -96,11 +96,11 @@ class Baseline:
 
 def baselines_of(results: Iterable[Result]) -> list[Baseline]:
     """Return the baselines in results, of each suite, task and agent the one with the most trials."""
-    of: dict[tuple[str, str, str], list[Result]] = {}
+    groups: dict[tuple[str, str, str], list[Result]] = {}
     for one in results:
         if one.method in AGENTS:
-            of.setdefault((one.suite, one.task, one.method), []).append(one)
-    return [_baseline(chosen) for own in of.values() if (chosen := best(own))]
+            groups.setdefault((one.suite, one.task, one.method), []).append(one)
+    return [_baseline(chosen) for own in groups.values() if (chosen := best(own))]
 
 
 def updated(known: Sequence[Baseline], new: Sequence[Baseline]) -> list[Baseline]:
@@ -152,14 +152,14 @@ def write_baselines(path: Path, baselines: Sequence[Baseline]) -> None:
 
 
 def _baseline(result: Result) -> Baseline:
-    (of,) = summarize(result.rows).values()
-    figures = {name: of[name] for name in FIGURES if name in of}
+    (summary,) = summarize(result.rows).values()
+    figures = {name: summary[name] for name in FIGURES if name in summary}
     about = (
         result.suite,
         result.conditions,
         result.task,
         result.method,
-        of["trials"],
+        summary["trials"],
         result.commit,
         result.run["machine"],
         result.steps,
@@ -172,8 +172,8 @@ def _cells(one: Baseline) -> dict[str, Any]:
     cells: dict[str, Any] = {name: getattr(one, name) for name in ABOUT}
     for entry in (PHYSICS_STEP.entry, PATIENCE.entry):
         cells[entry] = "" if cells[entry] is None else f"{cells[entry]:g}"
-    for name, of in one.figures.items():
-        values = zip(BOUNDS, (of.value, of.low, of.high), strict=True)
+    for name, interval in one.figures.items():
+        values = zip(BOUNDS, (interval.value, interval.low, interval.high), strict=True)
         cells |= {name + bound: f"{value:.{DIGITS}g}" for bound, value in values}
     return cells
 

@@ -17,7 +17,6 @@ from arcgym.evaluation.result_folder import (
     DROPPED,
     HASH,
     TEXTS,
-    UNTRAINED,
     Row,
     read_run,
     read_trial_rows,
@@ -25,6 +24,7 @@ from arcgym.evaluation.result_folder import (
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.task_settings import SCOPE_LENGTH
 from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
+from arcgym.utils.untrained import UNTRAINED
 
 AGENTS_OWN = (
     *("observations", "extra_observations", "reward", "rewards", "costs", "curriculum", "viewer"),

@@ -41,7 +41,7 @@ def compare(first: Path, second: Path) -> dict[str, dict[str, Interval]]:
     if not common:
         raise UsageError(f"{first} and {second} have no trial in common.")
     by_task = {task: [key for key in common if key[0] == task] for task in sorted({task for task, _ in common})}
-    return {task: _differences(*([of[key] for key in keys] for of in rows)) for task, keys in by_task.items()}
+    return {task: _differences(*([by_key[key] for key in keys] for by_key in rows)) for task, keys in by_task.items()}
 
 
 def notes(first: Path, second: Path) -> list[str]:
@@ -51,12 +51,14 @@ def notes(first: Path, second: Path) -> list[str]:
     trials that only one of them has.
     """
     runs = [read_run(path) for path in (first, second)]
-    of = [
+    settings = [
         {**run.get("versions", {}), "machine": run.get("machine"), "overrides": run.get("overrides"), **_settings(run)}
         for run in runs
     ]
-    names = [name for name in {**of[0], **of[1]} if of[0].get(name) != of[1].get(name)]
-    lines = [f"note: {name} is {of[0].get(name)} in {first} and {of[1].get(name)} in {second}" for name in names]
+    names = [name for name in {**settings[0], **settings[1]} if settings[0].get(name) != settings[1].get(name)]
+    lines = [
+        f"note: {name} is {settings[0].get(name)} in {first} and {settings[1].get(name)} in {second}" for name in names
+    ]
     keys = [{(row["task"], row["trial"]) for row in read_trial_rows(path)} for path in (first, second)]
     if keys[0] != keys[1]:
         common = len(keys[0] & keys[1])
@@ -83,8 +85,11 @@ def to_markdown(differences: dict[str, dict[str, Interval]]) -> str:
     """Return the differences as a table: mean and 95 % interval."""
     names = list(next(iter(differences.values())))
     lines = ["| task | " + " | ".join(names) + " |", "|---|" + "---|" * len(names)]
-    for task, of in differences.items():
-        cells = [f"{of[name].value:+.3g} ({of[name].low:+.3g} to {of[name].high:+.3g})" for name in names]
+    for task, intervals in differences.items():
+        cells = [
+            f"{intervals[name].value:+.3g} ({intervals[name].low:+.3g} to {intervals[name].high:+.3g})"
+            for name in names
+        ]
         lines.append(f"| `{task}` | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -24,7 +24,7 @@ from arcgym.managers import EventTermCfg
 from arcgym.rl.device import place
 from arcgym.rl.make_env import make_env
 from arcgym.rl.preflight import check_values
-from arcgym.rl.rollout import UNTRAINED, Policy
+from arcgym.rl.rollout import UNTRAINED_POLICIES, Policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 from arcgym.utils.errors import UsageError
 from arcgym.utils.progress import counted
@@ -97,7 +97,7 @@ def _run_batch(
     folder.note_changes(task, changes_of(task, cfgs[0]))
     for setting in SETTINGS:
         folder.note_setting(setting, task, setting.of(cfgs[0]))
-    if agent not in UNTRAINED:
+    if agent not in UNTRAINED_POLICIES:
         folder.note_inputs(task, inputs_of(*cfgs))
     with opened(task, agent, trials, cfgs, options) as (env, make_policy):
         with counted(task if len(patients) > 1 else f"{task}, {patients[0]}", len(trials)) as show:
@@ -131,7 +131,7 @@ def opened(
     place(env_cfg, agent_cfg, options.device)
     env = make_env(split_task(task)[0], env_cfg, agent_cfg)
     try:
-        yield env, UNTRAINED.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
+        yield env, UNTRAINED_POLICIES.get(agent) or (lambda env: trained_agent(env, agent_cfg, Path(agent)))
     finally:
         env.close()
 
@@ -148,7 +148,7 @@ def agent_of(trial: Trial, agents: Sequence[str]) -> str:
 
 def checkpoint_of(agent: str) -> Path | None:
     """Return the checkpoint that an agent is, None for one without."""
-    return None if agent in UNTRAINED else Path(agent)
+    return None if agent in UNTRAINED_POLICIES else Path(agent)
 
 
 def _hold_patients(env_cfg: Any, patients: list[str]) -> None:

@@ -21,7 +21,7 @@ from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.device import choose_device
 from arcgym.rl.params import differences, read_params
 from arcgym.rl.pretrained import ABOUT
-from arcgym.rl.rollout import UNTRAINED
+from arcgym.rl.rollout import UNTRAINED_POLICIES
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
@@ -47,7 +47,7 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
     Raises:
         UsageError: A checkpoint is missing or would run no trial, or of several agents one is no checkpoint.
     """
-    untrained = [agent for agent in options.agents if agent in UNTRAINED]
+    untrained = [agent for agent in options.agents if agent in UNTRAINED_POLICIES]
     if untrained and len(options.agents) > 1:
         raise UsageError(
             f"--agent is {','.join(options.agents)}; expected checkpoints, which are training seeds, or {untrained[0]} "
@@ -60,10 +60,12 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
             "or take a suite with more groups, such as paper or population."
         )
     agents = dict.fromkeys(agent for task in tasks for agent in options.agents_for(task))
-    checkpoints = [] if options.agents[0] in UNTRAINED else [Path(agent) for agent in agents]
+    checkpoints = [] if options.agents[0] in UNTRAINED_POLICIES else [Path(agent) for agent in agents]
     missing = [str(path) for path in checkpoints if not path.is_file()]
     if missing:
-        raise UsageError(f"No checkpoint {', '.join(missing)}; expected files, or one of {', '.join(UNTRAINED)}.")
+        raise UsageError(
+            f"No checkpoint {', '.join(missing)}; expected files, or one of {', '.join(UNTRAINED_POLICIES)}."
+        )
     return {
         "agent": ",".join(options.agents) if not checkpoints else "checkpoint",
         "checkpoint": [str(path) for path in checkpoints],

@@ -176,12 +176,14 @@ def _lines(folder: Path) -> list[tuple[str, bool, float, str]]:
         _version(run),
     ]
     lines = []
-    for task, of in summarize(read_trial_rows(folder)).items():
-        figures = [_text(of[metric], digits) if metric in of else "" for metric, (_, digits) in METRICS.items()]
+    for task, summary in summarize(read_trial_rows(folder)).items():
+        figures = [
+            _text(summary[metric], digits) if metric in summary else "" for metric, (_, digits) in METRICS.items()
+        ]
         earlier = marks(run, task)
-        cells = [f"`{task}`", name + _added(run, task), entry.by, _text(of["success"], 0, 100.0), *figures, *about]
+        cells = [f"`{task}`", name + _added(run, task), entry.by, _text(summary["success"], 0, 100.0), *figures, *about]
         cells += [PHYSICS_STEP.as_text(PHYSICS_STEP.in_run(run, task)) + earlier, marked]
-        lines.append((task, bool(earlier), -of["success"].value, f"| {' | '.join(cells)} |"))
+        lines.append((task, bool(earlier), -summary["success"].value, f"| {' | '.join(cells)} |"))
     return lines
 
 

@@ -53,9 +53,9 @@ def _merge_settings(folder: ResultFolder, part: Path, run: dict[str, Any]) -> No
     notes |= {setting.entry: partial(folder.note_setting, setting) for setting in SETTINGS}
     for entry, note in notes.items():
         before = read_run(folder.path).get(entry, {})
-        for task, of in run.get(entry, {}).items():
-            if before.get(task, of) != of:
+        for task, value in run.get(entry, {}).items():
+            if before.get(task, value) != value:
                 raise UsageError(
                     f"{part} ran {task} with other settings than the folders before: '{entry}' in run.json."
                 )
-            note(task, of)
+            note(task, value)

@@ -52,13 +52,13 @@ def write_page(folder: Path) -> Path:
     """
     run, rows = read_run(folder), read_trial_rows(folder)
     summaries = summarize(rows)
-    names = [name for name in KEY_METRICS if any(name in of for of in summaries.values())]
+    names = [name for name in KEY_METRICS if any(name in summary for summary in summaries.values())]
     body = [
         f"<h1>{html.escape(str(run.get('suite')))}: {html.escape(_agent(run))}</h1>",
         "<h2>Tasks</h2><p>Interquartile means and success over all trials, with 95 % intervals.</p>",
         _table(
             ["task", "trials", "success [%]", *(LABELS.get(name, name) for name in names)],
-            [_summary_row(task, of, names) for task, of in summaries.items()],
+            [_summary_row(task, summary, names) for task, summary in summaries.items()],
         ),
         _picture(_success_figure(summaries)),
         *_strengths(rows),
@@ -78,7 +78,9 @@ def write_page(folder: Path) -> Path:
 
 def _strengths(rows: Sequence[Row]) -> list[str]:
     """Return what robustness variants change, a table a task and agent."""
-    return [f"<h2>{html.escape(of.title)}</h2>" + _table(of.head, of.lines) for of in strengths_tables(rows)]
+    return [
+        f"<h2>{html.escape(table.title)}</h2>" + _table(table.head, table.lines) for table in strengths_tables(rows)
+    ]
 
 
 def _films(folder: Path, rows: Sequence[Row]) -> str:
@@ -109,8 +111,8 @@ def _agent(run: dict[str, Any]) -> str:
 
 def _plain(value: Any) -> str:
     if isinstance(value, dict):
-        nested = any(isinstance(of, dict) for of in value.values())
-        return ("; " if nested else ", ").join(_pair(name, of) for name, of in value.items()) or "none"
+        nested = any(isinstance(entry, dict) for entry in value.values())
+        return ("; " if nested else ", ").join(_pair(name, entry) for name, entry in value.items()) or "none"
     if isinstance(value, list):
         return ", ".join(map(_plain, value)) or "none"
     return f"{value:g}" if isinstance(value, float) else str(value)
@@ -146,8 +148,8 @@ def _success_figure(summaries: dict[str, dict[str, Any]]) -> Any:
     height = 0.5 if len(summaries) <= FEW else 0.22
     figure = Figure(figsize=(7.0, height * len(summaries) + 1.2), layout="constrained")
     axes = figure.subplots()
-    for place, of in enumerate(summaries.values()):
-        rate = of["success"]
+    for place, summary in enumerate(summaries.values()):
+        rate = summary["success"]
         axes.errorbar(
             100 * rate.value,
             place,

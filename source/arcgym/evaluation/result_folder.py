@@ -50,9 +50,6 @@ HASH = 12
 DROPPED = "dropped_contacts"
 """Entry of ``run.json``: contacts that found no room by task, where there were any."""
 
-UNTRAINED = ("zero", "random", "expert")
-"""Agents that have no checkpoint: the baselines."""
-
 COMMIT, CHANGED, CODE = "arcgym commit", " with changes", "arcgym code"
 """Name of ARCGym's commit among the versions, its ending where the code was not that of the commit, and the name of the
 hash of the code of an installation, which has no commit."""
@@ -258,7 +255,7 @@ def _check_same(file: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
             )
     versions = [run.get("versions", {}) for run in (old, new)]
     for name in sorted({*versions[0], *versions[1]} - {*ANY_VERSION}):
-        before, now = (of.get(name) for of in versions)
+        before, now = (version.get(name) for version in versions)
         if all(versions) and before != now:
             raise UsageError(
                 f"{file} was begun with {name} {before}, and now it is {now}: rows of other code do not belong "

@@ -54,6 +54,6 @@ def draw_results(results: Sequence[Result], section: dict[str, Any], out: Path) 
 
 def _point(axes: Any, place: int, result: Result) -> None:
     """Draw a success rate with Wilson's interval [%]."""
-    of = wilson(sum(row["success"] for row in result.rows), len(result.rows))
-    error = [[100 * (of.value - of.low)], [100 * (of.high - of.value)]]
-    axes.errorbar(100 * of.value, place, xerr=error, fmt="o", capsize=3, ms=4, color="C0")
+    rate = wilson(sum(row["success"] for row in result.rows), len(result.rows))
+    error = [[100 * (rate.value - rate.low)], [100 * (rate.high - rate.value)]]
+    axes.errorbar(100 * rate.value, place, xerr=error, fmt="o", capsize=3, ms=4, color="C0")

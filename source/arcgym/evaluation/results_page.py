@@ -22,6 +22,7 @@ from arcgym.evaluation.strengths import strengths_tables
 from arcgym.evaluation.suites import FOLDER, read_suites
 from arcgym.evaluation.summary import summarize
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP
+from arcgym.utils.untrained import UNTRAINED
 
 SECTIONS_FILE = FOLDER / "results.yaml"
 """Sections of the page."""
@@ -39,8 +40,6 @@ METRICS = {
 }
 """Heading and digits of the figures beside success."""
 
-REFERENCE_AGENTS = ("zero", "random", "expert")
-"""Agents without training, first in every table."""
 TRAINED = "model.pt"
 """Stands for a checkpoint in commands."""
 
@@ -214,17 +213,19 @@ def _newest(results: Sequence[Result]) -> list[Result]:
 
 
 def _place(result: Result) -> int:
-    return REFERENCE_AGENTS.index(result.method) if result.method in REFERENCE_AGENTS else len(REFERENCE_AGENTS)
+    return UNTRAINED.index(result.method) if result.method in UNTRAINED else len(UNTRAINED)
 
 
 def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
-    (of,) = summarize(result.rows).values()
+    (summary,) = summarize(result.rows).values()
     name = _agent(result)
-    figures = [_interval(of[name], METRICS[name][1]) if name in of else _mean(result.rows, name) for name in metrics]
+    figures = [
+        _interval(summary[name], METRICS[name][1]) if name in summary else _mean(result.rows, name) for name in metrics
+    ]
     name += f", limit {result.limits}" if result.limits else ""
     name += "" if result.conditions == read_suites()[result.suite].conditions else f", {result.conditions}"
     name += result.marks
-    return [f"`{result.task}`", name, str(of["trials"]), _interval(of["success"], 0, 100.0), *figures]
+    return [f"`{result.task}`", name, str(summary["trials"]), _interval(summary["success"], 0, 100.0), *figures]
 
 
 def _mean(rows: Sequence[Row], name: str) -> str:
@@ -261,12 +262,12 @@ def _cell(result: Result | None, metric: str) -> str:
     """Return a cell of a table of methods; † where rules on actions read what the policy does not see."""
     if result is None:
         return NOTHING
-    (of,) = summarize(result.rows).values()
+    (summary,) = summarize(result.rows).values()
     if metric != "success":
-        return _interval(of[metric], METRICS[metric][1]) + result.marks
+        return _interval(summary[metric], METRICS[metric][1]) + result.marks
     seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""
-    few = f" of {of['trials']}" if of["trials"] != 30 else ""
-    return _interval(of["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "") + result.marks
+    few = f" of {summary['trials']}" if summary["trials"] != 30 else ""
+    return _interval(summary["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "") + result.marks
 
 
 def _provenance(results: Sequence[Result]) -> str:
@@ -275,12 +276,12 @@ def _provenance(results: Sequence[Result]) -> str:
     head += ["physics step", "commit", "machine", "folder"]
     lines = [_row(head), _rule(len(head))]
     for one in dict.fromkeys((one.folder, one.task.partition(":")[0]) for one in results):
-        of = [result for result in results if (result.folder, result.task.partition(":")[0]) == one]
-        hashes = ", ".join(digest[:12] for digest in of[0].checkpoints)
-        transitions = f"{of[0].transitions:,.0f}".replace(",", " ") if of[0].transitions else ""
-        about = [str(sum(len(result.rows) for result in of)), transitions, hashes, PHYSICS_STEP.as_text(of[0].steps)]
-        about += [of[0].commit, of[0].run["machine"], one[0].name]
-        lines.append(_row([of[0].suite, of[0].conditions, f"`{one[1]}`", of[0].method, *about]))
+        own = [result for result in results if (result.folder, result.task.partition(":")[0]) == one]
+        hashes = ", ".join(digest[:12] for digest in own[0].checkpoints)
+        transitions = f"{own[0].transitions:,.0f}".replace(",", " ") if own[0].transitions else ""
+        about = [str(sum(len(result.rows) for result in own)), transitions, hashes, PHYSICS_STEP.as_text(own[0].steps)]
+        about += [own[0].commit, own[0].run["machine"], one[0].name]
+        lines.append(_row([own[0].suite, own[0].conditions, f"`{one[1]}`", own[0].method, *about]))
     return "\n".join(lines) + "\n"
 
 
@@ -297,5 +298,7 @@ def _rule(columns: int) -> str:
     return f"|{'---|' * columns}"
 
 
-def _interval(of: Interval, digits: int, factor: float = 1.0) -> str:
-    return f"{factor * of.value:.{digits}f} ({factor * of.low:.{digits}f}–{factor * of.high:.{digits}f})"
+def _interval(interval: Interval, digits: int, factor: float = 1.0) -> str:
+    return (
+        f"{factor * interval.value:.{digits}f} ({factor * interval.low:.{digits}f}–{factor * interval.high:.{digits}f})"
+    )

@@ -8,29 +8,29 @@ from collections.abc import Callable
 from typing import Any
 
 
-def _is_changes(of: Any) -> bool:
-    pairs = [pair for fields in of.values() if isinstance(fields, dict) for pair in fields.values()]
-    return all(isinstance(fields, dict) for fields in of.values()) and all(
+def _is_changes(entry: Any) -> bool:
+    pairs = [pair for fields in entry.values() if isinstance(fields, dict) for pair in fields.values()]
+    return all(isinstance(fields, dict) for fields in entry.values()) and all(
         isinstance(pair, list) and len(pair) == 2 for pair in pairs
     )
 
 
-def _is_inputs(of: Any) -> bool:
+def _is_inputs(entry: Any) -> bool:
     return all(
         isinstance(one, dict) and isinstance(one.get("sees"), list) and isinstance(one.get("simulator_depth"), bool)
-        for one in of.values()
+        for one in entry.values()
     )
 
 
-def _is_positive(of: Any) -> bool:
-    return all(isinstance(number, int | float) and number > 0 for number in of.values())
+def _is_positive(entry: Any) -> bool:
+    return all(isinstance(number, int | float) and number > 0 for number in entry.values())
 
 
-def _is_counts(of: Any) -> bool:
-    return all(isinstance(count, int) and count > 0 for count in of.values())
+def _is_counts(entry: Any) -> bool:
+    return all(isinstance(count, int) and count > 0 for count in entry.values())
 
 
-def _is_any(of: Any) -> bool:
+def _is_any(entry: Any) -> bool:
     return True
 
 

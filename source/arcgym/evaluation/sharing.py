@@ -102,7 +102,7 @@ def _run_shares(
     (out / PARTS).mkdir(parents=True, exist_ok=True)
     for part, folder in zip(shares, folders, strict=True):
         _hand_down(out, folder, {trial.trial for trial in part.trials(trials)})
-    running = [_start([*words, "--share", str(part)], of) for part, of in zip(shares, folders, strict=True)]
+    running = [_start([*words, "--share", str(part)], folder) for part, folder in zip(shares, folders, strict=True)]
     try:
         failed = _wait(running, folders, len(trials) * num_tasks)
     finally:

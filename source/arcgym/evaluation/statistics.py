@@ -103,9 +103,9 @@ def bootstrap(
     count = max(round(len(values) / len(members)), 1)
     drawn = rng.integers(len(members), size=(RESAMPLES, len(members)))
     trials = np.empty((RESAMPLES, len(members), count), int)
-    for run, of in enumerate(members):
+    for run, places in enumerate(members):
         chosen = drawn == run
-        trials[chosen] = rng.choice(of, (int(chosen.sum()), count))
+        trials[chosen] = rng.choice(places, (int(chosen.sum()), count))
     tail = 100 * (1 - CONFIDENCE) / 2
     low, high = np.percentile(statistic(values[trials.reshape(RESAMPLES, -1)]), [tail, 100 - tail])
     return Interval(float(statistic(values)), float(low), float(high))

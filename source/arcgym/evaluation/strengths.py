@@ -57,17 +57,17 @@ def strengths_tables(rows: Sequence[dict[str, Any]]) -> list[StrengthsTable]:
         if match or variant == UNSPOILED:
             place = (match[1], match[2]) if match else (UNSPOILED, "")
             cells.setdefault((task, str(row["agent"])), {}).setdefault(place, []).append(row)
-    return [_table(task, agent, of) for (task, agent), of in cells.items() if set(of) - {(UNSPOILED, "")}]
+    return [_table(task, agent, own) for (task, agent), own in cells.items() if set(own) - {(UNSPOILED, "")}]
 
 
-def _table(task: str, agent: str, of: Cells) -> StrengthsTable:
-    plain = {row["trial"]: row for row in of.get((UNSPOILED, ""), [])}
+def _table(task: str, agent: str, cells: Cells) -> StrengthsTable:
+    plain = {row["trial"]: row for row in cells.get((UNSPOILED, ""), [])}
     who = "/".join(Path(agent).parts[-2:])
     title = f"{task}, {who}: success {_success(list(plain.values()))} % in {len(plain)} trials without trouble"
     columns = [f"success [%], {s}" for s in STRENGTHS] + [f"progress, {s} less none" for s in STRENGTHS]
     lines = []
-    for kind in _ordered({kind for kind, _ in of} - {UNSPOILED}):
-        found = [of.get((kind, strength), []) for strength in STRENGTHS]
+    for kind in _ordered({kind for kind, _ in cells} - {UNSPOILED}):
+        found = [cells.get((kind, strength), []) for strength in STRENGTHS]
         lines.append([kind, *map(_success, found), *(_change(some, plain) for some in found)])
     return StrengthsTable(title, ["kind", *columns], lines)
 
@@ -81,8 +81,8 @@ def _ordered(kinds: set[str]) -> list[str]:
 def _success(rows: Sequence[dict[str, Any]]) -> str:
     if not rows:
         return "no trial"
-    of = wilson(sum(row["success"] for row in rows), len(rows))
-    return f"{100 * of.value:.0f} ({100 * of.low:.0f}–{100 * of.high:.0f})"
+    rate = wilson(sum(row["success"] for row in rows), len(rows))
+    return f"{100 * rate.value:.0f} ({100 * rate.low:.0f}–{100 * rate.high:.0f})"
 
 
 def _change(rows: Sequence[dict[str, Any]], plain: dict[int, dict[str, Any]]) -> str:
@@ -91,5 +91,5 @@ def _change(rows: Sequence[dict[str, Any]], plain: dict[int, dict[str, Any]]) ->
         return ""
     first = np.array([plain[row["trial"]]["progress"] for row in both], float)
     second = np.array([row["progress"] for row in both], float)
-    of = paired_difference(first, second, training_runs(both))
-    return f"{of.value:+.2f} ({of.low:+.2f} to {of.high:+.2f})"
+    change = paired_difference(first, second, training_runs(both))
+    return f"{change.value:+.2f} ({change.low:+.2f} to {change.high:+.2f})"

@@ -9,13 +9,12 @@ from typing import ClassVar
 
 import torch
 
+from arcgym.experts.expert_base import CONTROL_STEP
 from arcgym.experts.pull_back import PullBack
 from arcgym.experts.push_expert import LARGEST_BENDING, PushExpert
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.math import norm
 
-CONTROL_STEP = 0.1
-"""Time between two calls of :meth:`ExaminerExpert.act` [s]."""
 HALF_TURN = math.pi
 """Largest turn of the shaft during a pull [rad]; it is turned back afterwards."""
 HOOKING = 0.15

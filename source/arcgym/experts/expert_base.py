@@ -15,6 +15,9 @@ from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.string import did_you_mean, resolve_callable
 from arcgym.utils.world_random import WorldRandom
 
+CONTROL_STEP = 0.1
+"""Time between two decisions of an expert [s]: 10 Hz, as in the tasks."""
+
 
 class ExpertBase(ABC):
     """Commands the endoscopes of all worlds, each on its own. N worlds.

@@ -9,14 +9,12 @@ from typing import ClassVar
 
 import torch
 
-from arcgym.experts.expert_base import ExpertBase
+from arcgym.experts.expert_base import CONTROL_STEP, ExpertBase
 from arcgym.experts.lumen_way import LumenWay, along
 from arcgym.experts.retreat import Retreat
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.utils.math import norm, normalize, quat_apply_inverse, row_sum
 
-CONTROL_STEP = 0.1
-"""Time between two commands [s]."""
 REST_TIME, REST_PULL, REST_SPEED = 2.0, 0.3, 0.03
 """Time from one rest of the pull to the next [s], pull along the tip's axis meanwhile [N], and speed at which it gets
 there, where the pull is off by 1 N or more [m/s]."""

@@ -18,7 +18,7 @@ from arcgym.envs import mdp
 from arcgym.managers import count_episodes, episode_paths
 from arcgym.managers.recorder_files import PARTIAL, open_recording
 from arcgym.rl.make_env import make_env
-from arcgym.rl.rollout import UNTRAINED, Policy
+from arcgym.rl.rollout import UNTRAINED_POLICIES, Policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
 from arcgym.utils.errors import UsageError
 
@@ -40,7 +40,7 @@ class GenerationPlan:
     """Stages of colons that are simulated together. A group of several draws a world's patient at every reset."""
 
     agent: str = "expert"
-    """A key of :data:`arcgym.rl.rollout.UNTRAINED`, or ``policy``."""
+    """A key of :data:`arcgym.rl.rollout.UNTRAINED_POLICIES`, or ``policy``."""
 
     images: mdp.PostStepImagesRecorderCfg | None = None
     """Pictures to record; None for none."""
@@ -118,7 +118,7 @@ def generate(
             report.skipped.append(f"{group_name(group)}: {error}")
             continue
         try:
-            policy = load_policy(env) if load_policy else UNTRAINED[plan.agent](env)
+            policy = load_policy(env) if load_policy else UNTRAINED_POLICIES[plan.agent](env)
             _fill(env, policy, plan.episodes, found, report, say)
         finally:
             env.close()

@@ -15,7 +15,7 @@ from arcgym.rl.exporter import export_policy_as_jit, export_policy_as_onnx
 from arcgym.rl.make_env import VideoOptions, make_env
 from arcgym.rl.preflight import check_environment, check_run
 from arcgym.rl.pretrained import is_pretrained
-from arcgym.rl.rollout import UNTRAINED, Policy, RolloutResult, run_policy
+from arcgym.rl.rollout import UNTRAINED_POLICIES, Policy, RolloutResult, run_policy
 from arcgym.rl.run_folder import LOG_ROOT
 from arcgym.rl.trained_policy import trained_policy
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
@@ -27,7 +27,7 @@ class PlayOptions:
     """Settings of :func:`play` that are no part of the configurations."""
 
     policy: str = "trained"
-    """``trained``, or a key of :data:`arcgym.rl.rollout.UNTRAINED`."""
+    """``trained``, or a key of :data:`arcgym.rl.rollout.UNTRAINED_POLICIES`."""
 
     checkpoint: Path | None = None
     """Checkpoint of a trained policy."""
@@ -68,7 +68,7 @@ def play(task: str, env_cfg: Any, agent_cfg: Any, options: PlayOptions = PlayOpt
         if options.checkpoint:
             policy = load_policy(env, agent_cfg, options.checkpoint)
         else:
-            policy = UNTRAINED[options.policy](env)
+            policy = UNTRAINED_POLICIES[options.policy](env)
         with counted("playing", options.steps or int(env.max_episode_length)) as show:
             result = run_policy(env, policy, options.steps, show)
         print(result)

@@ -51,7 +51,7 @@ class RolloutResult:
     """Fraction of these episodes that a termination term with ``success=True`` ended; NaN when none ended."""
 
     wall_time: float
-    """Duration [s]."""
+    """Real time that it took [s]."""
 
     metrics: dict[str, float] = field(default_factory=dict)
     """Mean of each ``Episode_Metrics/…`` over these episodes."""
@@ -86,12 +86,12 @@ def random_policy(env: RslRlVecEnvWrapper) -> Policy:
     return lambda obs: 2.0 * env.unwrapped.random.uniform("random policy", env.num_actions) - 1.0
 
 
-UNTRAINED: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {
+UNTRAINED_POLICIES: dict[str, Callable[[RslRlVecEnvWrapper], Policy]] = {
     "zero": zero_policy,
     "random": random_policy,
     "expert": ExpertPolicy,
 }
-"""Policies that need no checkpoint, by name."""
+"""Policies that need no checkpoint, by name: those of :data:`arcgym.utils.untrained.UNTRAINED`."""
 
 
 def run_policy(

@@ -62,8 +62,8 @@ class SkinnedSurface:
         """
         visuals = list(visual) if isinstance(visual, Sequence) else [visual]
         walls = list(wall) if isinstance(wall, Sequence) else [wall]
-        for one, of in zip(visuals, walls, strict=True):
-            _check_binding(one, of)
+        for surface, carrier in zip(visuals, walls, strict=True):
+            _check_binding(surface, carrier)
         self.num_envs = num_envs
         self.num_nodes = len(walls[0].points)
         self.num_vertices = max(len(one.points) for one in visuals)
@@ -82,7 +82,7 @@ class SkinnedSurface:
         self.normals = wp.zeros(count, dtype=wp.vec3, device=device)
         self.mesh = RayTree(*self._tree(visuals, walls[0]), self.points, self.patient)
         self.roots = self.mesh.roots
-        rest = np.stack([of.points for of in walls], axis=1)[:, self.patient.numpy()]
+        rest = np.stack([one.points for one in walls], axis=1)[:, self.patient.numpy()]
         self.update(wp.array(rest, dtype=wp.vec3, device=device))
 
     def update(self, nodal_pos: wp.array, drawn: wp.array | None = None) -> None:
@@ -118,7 +118,7 @@ class SkinnedSurface:
     def _bind(self, visuals: list[VisualMesh], walls: list[WallMesh | ShellMesh]) -> None:
         """Store offsets and normals of the visual vertices in the frames of the wall vertices that carry them."""
         count = len(walls)
-        rest = wp.array(np.stack([of.points for of in walls], axis=1), dtype=wp.vec3, device=self.device)
+        rest = wp.array(np.stack([one.points for one in walls], axis=1), dtype=wp.vec3, device=self.device)
         frames = wp.zeros((self.num_nodes, count), dtype=wp.mat33, device=self.device)
         everywhere = wp.full(count, True, dtype=wp.bool, device=self.device)
         wp.launch(

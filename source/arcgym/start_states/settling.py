@@ -9,12 +9,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import torch
 
+from arcgym.experts.expert_base import CONTROL_STEP
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import Snapshot
 from arcgym.sim.snapshot_library import with_room
 
-CONTROL_STEP = 0.1
-"""Time over which forces are averaged [s]."""
 SETTLING = 1.0
 """Time without commands before a state is kept, at least, and between two looks at its forces [s]."""
 LONGEST_SETTLING = 10.0

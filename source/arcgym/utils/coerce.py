@@ -225,14 +225,14 @@ def _coerce_sequence(value: Any, expected: Any, kind: type, current: Any, path: 
         list(current) if isinstance(current, (list, tuple)) and len(current) == len(value) else [None] * len(value)
     )
     items = zip(value, element_types, samples, strict=True)
-    return kind(coerce(item, of, sample, f"{path}.{i}") for i, (item, of, sample) in enumerate(items))
+    return kind(coerce(item, element, sample, f"{path}.{i}") for i, (item, element, sample) in enumerate(items))
 
 
 def _coerce_mapping(value: Any, expected: Any, current: Any, path: str) -> dict[Any, Any]:
     _check(isinstance(value, dict), value, value, expected, path)
-    of = (get_args(expected) or (Any, Any))[1]
+    element = (get_args(expected) or (Any, Any))[1]
     known = current if isinstance(current, dict) else {}
-    return {name: coerce(item, of, known.get(name), f"{path}.{name}") for name, item in value.items()}
+    return {name: coerce(item, element, known.get(name), f"{path}.{name}") for name, item in value.items()}
 
 
 def _build_config(value: dict[str, Any], kind: type, current: Any, path: str) -> Any:

@@ -15,7 +15,7 @@ import numpy as np
 
 from arcgym.benchmarks.clinical.pausing import pause, resume
 from arcgym.benchmarks.clinical.record import FIELDS, Diary, RecordedExaminer, RecordedPushExpert
-from arcgym.benchmarks.worlds import load_env_cfg
+from arcgym.benchmarks.worlds import OUT_OF_TIME, load_env_cfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.start_states import Drive
@@ -28,8 +28,6 @@ TASK = "ARC-Cecum-Proximal"
 """Task whose scene is taken."""
 COLONOSCOPE = "env.scene.endoscope.length=null"
 """Override of the task's longer scope by one as long as colonoscopes, those of the published insertions, are."""
-OUT_OF_TIME = "no computing time left"
-"""Problem of a patient in which the drive was stopped from outside."""
 EXAMINER_SPEED = 0.015
 """Speed of the examiner's script [m/s]; a choice, real tips come on by 2 to 6 mm/s."""
 KEPT_EVERY = 200
@@ -84,8 +82,8 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
     expert = drive.expert
     if not isinstance(expert, Diary):
         raise TypeError(f"The drive has a {type(expert).__name__}, expected one with a Diary.")
-    for patient, of in enumerate(scene.colon.patients):
-        resume(drive, expert, patient, _paused(plan, of.name, out))
+    for index, patient in enumerate(scene.colon.patients):
+        resume(drive, expert, index, _paused(plan, patient.name, out))
     began, ended = time.monotonic(), set[int]()
 
     def keep(patients: Sequence[int]) -> None:
@@ -140,8 +138,8 @@ def _ended(path: Path) -> bool:
 
 def _write(plan: Plan, drive: Drive, patient: int, steps: np.ndarray, out: Path) -> None:
     """Write the file of one insertion."""
-    route, of = drive.routes[patient], drive.scene.colon.patients[patient]
-    about: dict[str, Any] = {"patient": of.name, "name": plan.name, "overrides": plan.overrides, "worlds": plan.worlds}
+    route, name = drive.routes[patient], drive.scene.colon.patients[patient].name
+    about: dict[str, Any] = {"patient": name, "name": plan.name, "overrides": plan.overrides, "worlds": plan.worlds}
     about |= {
         "seed": plan.seed,
         "speed": plan.speed,
@@ -153,7 +151,7 @@ def _write(plan: Plan, drive: Drive, patient: int, steps: np.ndarray, out: Path)
     about |= {"entries": {name: asdict(entry) for name, entry in route.entries.items()}, "fields": FIELDS}
     folder = out / plan.name
     folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f"{of.name}.part"
+    part = folder / f"{name}.part"
     with open(part, "wb") as file:
         np.savez_compressed(file, steps=steps.astype(np.float32), about=np.array(json.dumps(about)))
-    part.replace(folder / f"{of.name}.npz")
+    part.replace(folder / f"{name}.npz")

@@ -13,7 +13,7 @@ from typing import Any
 
 from arcgym.assets import CAPSULE_CFG, MAGNETIC_CFG, PROXIMAL_CFG, ColonCfg
 from arcgym.benchmarks.experts.ways import Ways
-from arcgym.benchmarks.worlds import load_env_cfg
+from arcgym.benchmarks.worlds import OUT_OF_TIME, load_env_cfg
 from arcgym.scene import InteractiveSceneCfg
 from arcgym.scene.interactive_scene import InteractiveScene
 from arcgym.sim import SimulationCfg
@@ -29,9 +29,6 @@ ROBOTS = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL
 
 HALT_EVERY = 30.0
 """Simulated time after which drives under way are kept again, should the process be killed [s]."""
-
-OUT_OF_TIME = "no computing time left"
-"""Problem of a patient in which the drive was stopped from outside."""
 
 
 @dataclass(frozen=True)

@@ -136,13 +136,13 @@ def insert_all(run: Run, cases: list[Insertion]) -> list[list[dict[str, float]]]
 
 def keep_figures(run: Run, case: Insertion, numbers: Sequence[int], figures: list[dict[str, float]]) -> None:
     """Keep the figures of insertions of a case among the run's results."""
-    for number, of in zip(numbers, figures, strict=True):
-        run.shared["insertion", case, number] = of
+    for number, one in zip(numbers, figures, strict=True):
+        run.shared["insertion", case, number] = one
 
 
 def mean_figures(figures: list[dict[str, float]]) -> dict[str, float]:
     """Return the means of the figures of insertions."""
-    return {name: float(np.mean([of[name] for of in figures])) for name in figures[0]}
+    return {name: float(np.mean([one[name] for one in figures])) for name in figures[0]}
 
 
 def insert(case: Insertion, numbers: Sequence[int], device: str, folder: Path) -> list[dict[str, float]]:

@@ -17,6 +17,7 @@ from arcgym.benchmarks.fidelity.rows import Run
 from arcgym.benchmarks.fidelity.smooth_colon import write_smooth
 from arcgym.benchmarks.fidelity.tubes import Tube
 from arcgym.benchmarks.fidelity.volumes import volume_ratios
+from arcgym.experts.expert_base import CONTROL_STEP
 from arcgym.sim import WallSolverCfg
 
 BEND = Tube(0.40, math.radians(100.0), 0.14, 0.05)
@@ -25,8 +26,6 @@ STRAIGHT = Tube(0.40)
 """Tube without one."""
 SPEED = 0.05
 """Speed of the base [m/s]."""
-CONTROL_STEP = 0.1
-"""Time over which forces are averaged [s]."""
 DEPTH = 0.30
 """Inserted length at the end of a push through a tube [m]."""
 SIGMOID_DEPTH = 0.36

@@ -53,8 +53,8 @@ def smooth_stage(refine: int, until: float = math.inf, colon: str | None = None)
 
 def write_smooth(folder: Path, refine: int, until: float = math.inf, colon: str | None = None) -> Path:
     """Write :func:`smooth_stage` into a folder of its own within ``folder``, once, and return its path."""
-    of = f"_{Path(colon).parent.name}" if colon else ""
-    path = folder / f"smooth_{refine}_{until:g}{of}" / "colon.usda"
+    whose = f"_{Path(colon).parent.name}" if colon else ""
+    path = folder / f"smooth_{refine}_{until:g}{whose}" / "colon.usda"
     return path if path.exists() else write_colon(smooth_stage(refine, until, colon), path)
 
 

@@ -14,12 +14,11 @@ import torch
 from arcgym.benchmarks.looping.pictures import view_of
 from arcgym.benchmarks.looping.shape import Loop, crossings, from_front, measure_loop
 from arcgym.experts import PushExpert
+from arcgym.experts.expert_base import CONTROL_STEP
 from arcgym.scene import InteractiveScene
 from arcgym.sim import SnapshotSet
 from arcgym.sim.snapshot import fingerprint
 
-CONTROL_STEP = 0.1
-"""Time from one command to the next [s]."""
 PAST_SIGMOID = 0.12
 """How far into the descending colon the tip is pushed before the shaft is rolled [m]."""
 LOOPING = {"roll": -1.0, "time": 15.0}

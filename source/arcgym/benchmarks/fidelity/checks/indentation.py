@@ -77,7 +77,7 @@ def light(run: Run) -> list[Row]:
         ]
         for name, curve in curves.items()
     }
-    notes = [f"{name} " + ", ".join(f"{row.error:+.1%}" for row in of) for name, of in rows.items()]
+    notes = [f"{name} " + ", ".join(f"{row.error:+.1%}" for row in own) for name, own in rows.items()]
     worst = max(rows["mended"], key=lambda row: abs(row.error))
     note = "; ".join(notes) + f" under {', '.join(f'{load:g}' for load in LIGHT)} N"
     return [relative("light_dent", worst.value, worst.reference, 0.10, "m", note)]

@@ -36,7 +36,7 @@ def sensitivity(run: Run, setting: str) -> list[Row]:
     found = insert_all(run, [*SCENES, *(replace(case, setting=setting) for case in SCENES)])
     scenes = [case.scene for case in SCENES]
     old, new = (dict(zip(scenes, part, strict=True)) for part in (found[: len(scenes)], found[len(scenes) :]))
-    before, after = ({scene: mean_figures(of[scene]) for scene in scenes} for of in (old, new))
+    before, after = ({scene: mean_figures(figures[scene]) for scene in scenes} for figures in (old, new))
     compared = {scene: [*METRICS, *(FAR + name for name in METRICS if FAR + name in before[scene])] for scene in scenes}
     table = {scene: {name: change(before[scene], after[scene], name) for name in compared[scene]} for scene in scenes}
     errors = {s: {name: standard_error(old[s], new[s], name) for name in compared[s]} for s in scenes}
@@ -44,10 +44,12 @@ def sensitivity(run: Run, setting: str) -> list[Row]:
     run.tables.setdefault("sensitivity_standard_error", {})[setting] = errors
     rows = []
     for row, names in ((f"sensitivity_{setting}", FORCES), (f"sensitivity_{setting}_time", TIMES)):
-        judged = [of for of in scenes if names is FORCES or is_timed(before[of])]
-        worst = {of: max((abs(table[of][at]), at) for at in names)[1] for of in judged}
+        judged = [scene for scene in scenes if names is FORCES or is_timed(before[scene])]
+        worst = {scene: max((abs(table[scene][at]), at) for at in names)[1] for scene in judged}
         scene, name = max(worst.items(), key=lambda at: abs(table[at[0]][at[1]]))
-        largest = "; ".join(f"{of}: {table[of][at]:+.0%} ± {errors[of][at]:.0%}" for of, at in worst.items())
+        largest = "; ".join(
+            f"{scene}: {table[scene][at]:+.0%} ± {errors[scene][at]:.0%}" for scene, at in worst.items()
+        )
         note = f"{SETTINGS[setting]}: {name} of {scene}; largest change, ± standard error, of {largest}"
         unit = "s" if name in TIMES else "N"
         rows.append(Row(row, after[scene][name], before[scene][name], table[scene][name], 0.1, unit, note))
