@@ -29,8 +29,8 @@ class EvaluationOptions:
     """Settings of :func:`evaluate` beside tasks and trials."""
 
     agents: tuple[str, ...]
-    """A name in :data:`arcgym.utils.untrained.UNTRAINED`, or checkpoints. Trials of group g get checkpoint g, or the only
-    one. ``{task}`` in a path stands for the registered name of the task: each has policies of its own."""
+    """A name in :data:`arcgym.utils.untrained.UNTRAINED`, or checkpoints. Trials of group g get checkpoint g, or the
+    only one. ``{task}`` in a path stands for the registered name of the task: each has policies of its own."""
 
     def agents_for(self, task: str) -> tuple[str, ...]:
         """Return the agents of a task."""

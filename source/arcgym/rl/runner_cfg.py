@@ -104,13 +104,15 @@ class GaussianDistributionCfg:
     """Distribution class, resolved by rsl_rl."""
 
     init_std: float = 1.0
-    """Initial standard deviation in units of the raw action, which the action terms scale from [-1, 1]."""
+    """Initial standard deviation in units of the raw action, which the action terms scale from [-1, 1]. Lower it to go
+    on from a policy."""
 
     std_type: str = "scalar"
-    """``scalar`` learns the standard deviation, ``log`` its logarithm."""
+    """``scalar`` learns the standard deviation, ``log`` its logarithm, which cannot become negative."""
 
     std_range: list[float] | None = None
-    """Lowest and highest standard deviation; None leaves rsl_rl's wide default."""
+    """Lowest and highest standard deviation; None leaves rsl_rl's wide default. Raise the lowest for a policy that
+    stops exploring."""
 
     learn_std: bool = True
     """Whether the standard deviation is learnt. Turn off for a fixed exploration noise."""
@@ -154,7 +156,7 @@ class RslRlMlpModelCfg:
     """Model class: a name in rsl_rl or ``module:Class``."""
 
     hidden_dims: list[int] = [256, 128]
-    """Width of each hidden layer; at least one."""
+    """Width of each hidden layer; at least one. Narrow them for a CPU."""
 
     activation: str = "elu"
     """Activation between layers."""
@@ -196,7 +198,7 @@ class RslRlPpoAlgorithmCfg:
     """Algorithm class: a name in rsl_rl or ``module:Class``; extra constructor arguments go in a subclass of this."""
 
     num_learning_epochs: int = 5
-    """Passes over the rollout in one update."""
+    """Passes over the rollout in one update. Lower it if the KL divergence is large."""
 
     num_mini_batches: int = 4
     """Mini-batches of one pass. More of them when a batch of images does not fit the device."""
@@ -208,28 +210,31 @@ class RslRlPpoAlgorithmCfg:
     """``adaptive`` holds the KL divergence near ``desired_kl``, ``fixed`` keeps the learning rate."""
 
     desired_kl: float = 0.01
-    """KL divergence of one update that the adaptive schedule aims at."""
+    """KL divergence of one update that the adaptive schedule aims at. Lower it for steadier learning."""
 
     gamma: float = 0.99
-    """Discount of one control step."""
+    """Discount of one control step. Raise it with the length of the task; near one, waiting where rewards are small
+    costs little."""
 
     lam: float = 0.95
-    """Trace decay of generalised advantage estimation (Schulman et al. 2016)."""
+    """Trace decay of generalised advantage estimation (Schulman et al. 2016). Lower it where returns vary a lot."""
 
     clip_param: float = 0.2
-    """Clipping range of the probability ratio and, with ``use_clipped_value_loss``, of the value step."""
+    """Clipping range of the probability ratio and, with ``use_clipped_value_loss``, of the value step. Lower it for
+    steadier learning."""
 
     entropy_coef: float = 0.005
     """Weight of the entropy bonus. Must match the reward's scale: too large and the noise never falls."""
 
     value_loss_coef: float = 1.0
-    """Weight of the value loss."""
+    """Weight of the value loss against the policy's. Lower it if a shared encoder serves the critic alone."""
 
     use_clipped_value_loss: bool = True
-    """Whether the value step is clipped."""
+    """Whether the value step is clipped. Turn off where values are much larger than ``clip_param``: the critic cannot
+    follow then."""
 
     max_grad_norm: float = 1.0
-    """Gradient clipping by norm."""
+    """Largest norm of a gradient; larger ones are scaled down. Lower it if the loss jumps."""
 
     optimizer: str = "adam"
     """Optimiser that rsl_rl resolves (``adam``, ``adamw``, ``sgd``, ``rmsprop``)."""

@@ -18,10 +18,10 @@ class RslRlA2cAlgorithmCfg(RslRlPpoAlgorithmCfg):
     """Algorithm class."""
 
     num_learning_epochs: int = 1
-    """Must be 1."""
+    """Must be 1: A2C takes one step a rollout."""
 
     num_mini_batches: int = 1
-    """Must be 1."""
+    """Must be 1: A2C takes one step a rollout."""
 
     learning_rate: float = 7.0e-4
     """Learning rate. Lower it for rollouts of few worlds."""
@@ -33,16 +33,16 @@ class RslRlA2cAlgorithmCfg(RslRlPpoAlgorithmCfg):
     """Trace decay; 1 is the n-step return of the original. Lower it for long rollouts."""
 
     use_clipped_value_loss: bool = False
-    """Whether the value step is clipped; the original's is not."""
+    """Whether the value step is clipped; the original's is not. Turn on if ``Loss/value`` jumps."""
 
     value_loss_coef: float = 0.5
-    """Weight of the value loss."""
+    """Weight of the value loss against the policy's. It matters where both share an encoder."""
 
     entropy_coef: float = 0.0
-    """Weight of the entropy bonus."""
+    """Weight of the entropy bonus. Raise it when the noise falls before anything is learnt."""
 
     max_grad_norm: float = 0.5
-    """Gradient clipping by norm."""
+    """Largest norm of a gradient; larger ones are scaled down. Lower it if the loss jumps."""
 
     optimizer: str = "rmsprop"
     """Optimizer of the original. Its first step is ten times the learning rate; ``adam`` where a few updates drive the

@@ -25,7 +25,7 @@ class RslRlBehaviorCloningAlgorithmCfg:
     scripted expert is asked when learning begins. Must be set."""
 
     successful_only: bool = True
-    """Whether episodes that did not succeed are left out."""
+    """Whether episodes that did not succeed are left out. Turn off where the recorded ones end before the goal."""
 
     expert_steps: int = 20_000
     """Steps that the expert is asked for, at least. A step of five images of 84×84 takes 106 kB of the device."""
@@ -44,16 +44,16 @@ class RslRlBehaviorCloningAlgorithmCfg:
     does not know how to get back onto it; give the policy time to come to where it errs by ``num_steps_per_env``."""
 
     learning_rate: float = 3.0e-4
-    """Learning rate."""
+    """Learning rate. Lower it if the loss jumps."""
 
     batch_size: int = 256
-    """Recorded steps of one gradient step."""
+    """Recorded steps of one gradient step. Raise it on a GPU that waits between steps."""
 
     steps_per_update: int = 100
-    """Gradient steps of one iteration."""
+    """Gradient steps of one iteration. Raise it where the loss still falls at the end."""
 
     max_grad_norm: float = 1.0
-    """Gradient clipping by norm."""
+    """Largest norm of a gradient; larger ones are scaled down. Lower it if the loss jumps."""
 
     action_units: str = "raw"
     """What a difference of actions is counted in. ``raw``: as it is. ``deviation``: each action in its own standard
@@ -102,20 +102,20 @@ class RslRlDistillationAlgorithmCfg:
     """Algorithm class."""
 
     num_learning_epochs: int = 2
-    """Passes over the rollout in one update."""
+    """Passes over the rollout in one update. Raise it for a simulator that is slower than the learner."""
 
     gradient_length: int = 4
     """Steps whose losses are added up for one gradient step, and through which a recurrent student remembers. Must
     divide ``num_learning_epochs * num_steps_per_env``."""
 
     learning_rate: float = 3.0e-4
-    """Learning rate."""
+    """Learning rate. Lower it if the loss jumps."""
 
     max_grad_norm: float = 1.0
-    """Gradient clipping by norm."""
+    """Largest norm of a gradient; larger ones are scaled down. Lower it if the loss jumps."""
 
     loss_type: str = "mse"
-    """``mse`` or ``huber``."""
+    """``mse``, or ``huber`` where single actions of the teacher lie far off."""
 
 
 @configclass

@@ -25,7 +25,7 @@ class MultiplierCfg:
     """One of ``pid``, ``ascent``, ``fixed``."""
 
     init: float = 0.001
-    """First value, in units of reward per unit of cost."""
+    """First value, in units of reward per unit of cost. Raise it where the first updates must be safe already."""
 
     def validate_config(self) -> None:
         """Check names and bounds.
@@ -42,7 +42,7 @@ class PidMultiplierCfg(MultiplierCfg):
     """PID controller on the mean episode cost minus its limit (Stooke et al. 2020); constants as in OmniSafe."""
 
     kind: str = "pid"
-    """The controller."""
+    """Name of this rule; choose another class for another one."""
 
     kp: float = 0.1
     """Gain of the violation. Raise it when the cost swings around its limit."""
@@ -51,16 +51,17 @@ class PidMultiplierCfg(MultiplierCfg):
     """Gain of the sum of all violations. Raise it when the cost stays above its limit for too long."""
 
     kd: float = 0.01
-    """Gain of rising cost."""
+    """Gain of a rising cost. Raise it when the cost shoots over its limit."""
 
     smoothing: float = 0.95
-    """Weight of the past in the running means, for each update in which episodes ended."""
+    """Weight of the past in the running means, for each update in which episodes ended. Lower it for trainings of
+    minutes."""
 
     delay: int = 10
-    """Updates over which a rise of the cost is measured."""
+    """Updates over which a rise of the cost is measured. Raise it when few episodes end in an update."""
 
     maximum: float = 100.0
-    """Largest value."""
+    """Largest value of a multiplier. Lower it where the costs drown the reward."""
 
     def validate_config(self) -> None:
         """Check names and bounds.
@@ -80,13 +81,13 @@ class AscentMultiplierCfg(MultiplierCfg):
     """Plain gradient ascent on the mean episode cost minus its limit; constants as in OmniSafe."""
 
     kind: str = "ascent"
-    """The rule."""
+    """Name of this rule; choose another class for another one."""
 
     learning_rate: float = 0.035
-    """Change of the multiplier for each unit of violation."""
+    """Change of the multiplier for each unit of violation. Lower it when the cost swings around its limit."""
 
     maximum: float = 100.0
-    """Largest value."""
+    """Largest value of a multiplier. Lower it where the costs drown the reward."""
 
     def validate_config(self) -> None:
         """Check names and bounds.
@@ -103,10 +104,10 @@ class FixedPenaltyCfg(MultiplierCfg):
     """A constant penalty on the costs: the control that a constrained method has to beat."""
 
     kind: str = "fixed"
-    """Nothing moves."""
+    """Name of this rule; choose another class for another one."""
 
     init: float = 1.0
-    """The penalty, in units of reward per unit of cost."""
+    """The penalty, in units of reward per unit of cost. Raise it for a safer policy."""
 
 
 @configclass
@@ -127,7 +128,7 @@ class RslRlPpoLagrangianAlgorithmCfg(RslRlPpoAlgorithmCfg):
     """Discount of the costs. Nearer to one than the reward's, as the limit is on the undiscounted sum."""
 
     cost_lam: float = 0.95
-    """Trace decay of the costs' advantages."""
+    """Trace decay of the costs' advantages. Raise it for costs that follow late on what caused them."""
 
     min_episodes: int = 1
     """Episodes that must have ended before the multipliers move again. Raise it when single episodes vary a lot."""

@@ -21,7 +21,8 @@ class SquashedGaussianDistributionCfg:
     """Distribution class."""
 
     init_std: float = 1.0
-    """First standard deviation before squashing; 1 spreads actions almost evenly."""
+    """First standard deviation before squashing; 1 spreads actions almost evenly. Lower it for a policy that begins
+    with small motions."""
 
     def validate_config(self) -> None:
         """Check names and bounds.
@@ -51,7 +52,7 @@ class CnnQModelCfg(AugmentedCnnModelCfg):
     """Model class."""
 
     layer_norm: bool = True
-    """Whether a LayerNorm comes before each activation."""
+    """Whether a LayerNorm comes before each activation. Off only to reproduce older results."""
 
 
 @configclass
@@ -69,22 +70,23 @@ class RslRlSacAlgorithmCfg:
     """Frames in the channels of each stacked image group, as ``history_length`` of its term; each is stored once."""
 
     gamma: float = 0.97
-    """Discount of one control step."""
+    """Discount of one control step. Raise it with the length of the task: rewards that lie far ahead count more, and
+    targets vary more."""
 
     learning_rate: float = 3.0e-4
-    """Of actor, critics and temperature."""
+    """Learning rate of actor, critics and temperature. Lower it if ``Loss/value`` grows."""
 
     batch_size: int = 512
-    """Transitions of one gradient step."""
+    """Transitions of one gradient step. Raise it on a GPU that waits between steps."""
 
     updates_per_transition: float = 0.25
     """Gradient steps for each new transition. Lower it when the simulator waits for the learner."""
 
     learning_starts: int = 10_000
-    """Transitions with random actions before the first gradient step."""
+    """Transitions with random actions before the first gradient step. Lower it where ``init_policy`` acts already."""
 
     actor_interval: int = 4
-    """Critic steps for each step of actor and temperature."""
+    """Critic steps for each step of actor and temperature. Lower it for critics that learn fast."""
 
     target_step: float = 0.01
     """Fraction by which the target critics follow in each step. Lower it when values grow without bound."""
@@ -93,13 +95,14 @@ class RslRlSacAlgorithmCfg:
     """First temperature, in units of reward per nat; the only one with ``learn_temperature`` off."""
 
     learn_temperature: bool = True
-    """Whether the temperature holds the entropy at ``target_entropy``."""
+    """Whether the temperature holds the entropy at ``target_entropy``. Turn off for the fixed one of the ARCGym
+    paper."""
 
     target_entropy: float | None = None
-    """Entropy to hold [nat]; None is minus the size of the action."""
+    """Entropy to hold [nat]; None is minus the size of the action. Raise it for a policy that explores longer."""
 
     max_grad_norm: float = 10.0
-    """Gradient clipping by norm."""
+    """Largest norm of a gradient; larger ones are scaled down. Lower it if the loss jumps."""
 
     num_steps: int = 1
     """Steps whose rewards a target adds up before it bootstraps. 3 spreads rewards faster, and is off-policy: the steps
@@ -135,7 +138,8 @@ class RslRlSacRunnerCfg(RslRlOnPolicyRunnerCfg):
     """Runner class."""
 
     num_steps_per_env: int = 8
-    """Control steps of each world between two visits to the learner; also the iterations that logs count."""
+    """Control steps of each world between two visits to the learner; also the iterations that logs count. Raise it
+    with few worlds."""
 
     actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(
         hidden_dims=[256],
@@ -164,7 +168,7 @@ class RslRlDistributionalSacAlgorithmCfg(RslRlSacAlgorithmCfg):
     """Algorithm class."""
 
     num_atoms: int = 101
-    """Atoms of the distribution of the return."""
+    """Atoms of the distribution of the return. Raise it with a wider ``value_range``."""
 
     value_range: list[float] = [-25.0, 25.0]
     """First and last atom, in units of discounted return; untrained critics answer its middle. Widen it when
