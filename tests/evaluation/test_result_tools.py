@@ -13,7 +13,8 @@ from paper_results import RUN, TASKS, changed, result
 from result_folders import write_result_folder
 
 from arcgym.cli.main import main
-from arcgym.evaluation.check import AGENTS_OWN, OWN_UP_TO, problems
+from arcgym.evaluation.agent_fields import AGENT_LIMITS, AGENTS_OWN
+from arcgym.evaluation.check import problems
 from arcgym.evaluation.compare import compare, notes
 from arcgym.evaluation.merge import merge
 from arcgym.evaluation.result_folder import ResultFolder
@@ -272,10 +273,10 @@ def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
 
     fields = to_plain(load_cfg_from_registry("ARC-Sigmoid-Magnetic", "env_cfg_entry_point"))
     assert {name.partition(".")[0] for name in AGENTS_OWN} - {"actions"} <= set(fields)
-    assert fields["actions"]["tip"]["linear_scale"] == OWN_UP_TO["actions.tip.forward_velocity"]
-    assert fields["actions"]["tip"]["linear_scale"] == OWN_UP_TO["actions.tip.back_off_velocity"]
+    assert fields["actions"]["tip"]["linear_scale"] == AGENT_LIMITS["actions.tip.forward_velocity"]
+    assert fields["actions"]["tip"]["linear_scale"] == AGENT_LIMITS["actions.tip.back_off_velocity"]
     most = PullExpert.VARIED["roll"][1], PushExpert.VARIED["twist"][1]
-    assert most == (OWN_UP_TO["actions.tip.roll_amplitude"], OWN_UP_TO["actions.base.roll_amplitude"])
+    assert most == (AGENT_LIMITS["actions.tip.roll_amplitude"], AGENT_LIMITS["actions.base.roll_amplitude"])
     for robot, action in (
         ("Magnetic", "tip.linear_scale"),
         ("Capsule", "capsule.linear_scale"),
@@ -283,7 +284,7 @@ def test_every_field_of_a_task_but_the_agents_is_guarded() -> None:
     ):
         actions = to_plain(load_cfg_from_registry(f"ARC-Sigmoid-{robot}", "env_cfg_entry_point"))["actions"]
         term, scale = action.split(".")
-        assert actions[term][scale] == OWN_UP_TO[f"actions.{action}"]
+        assert actions[term][scale] == AGENT_LIMITS[f"actions.{action}"]
     assert {"gas", "clinical", "sim", "scene", "events", "terminations", "metrics"} <= set(fields) - set(AGENTS_OWN)
 
 

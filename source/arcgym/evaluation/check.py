@@ -4,70 +4,30 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from arcgym.evaluation.agent_fields import CONTACT_ROOM, is_agents
 from arcgym.evaluation.result_folder import (
     CHANGED,
     COMMIT,
     DROPPED,
     HASH,
-    TEXTS,
     Row,
     read_run,
     read_trial_rows,
 )
+from arcgym.evaluation.row_checks import row_problems
 from arcgym.evaluation.suites import Suite, read_suites, split_task
 from arcgym.evaluation.task_settings import SCOPE_LENGTH
-from arcgym.evaluation.trials import COLUMNS, Conditions, read_conditions
+from arcgym.evaluation.trials import Conditions, read_conditions
 from arcgym.utils.untrained import UNTRAINED
 
-AGENTS_OWN = (
-    *("observations", "extra_observations", "reward", "rewards", "costs", "curriculum", "viewer"),
-    *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs"),
-    *("actions.tip.roll_period", "actions.base.roll_period"),
-    *("actions.tip.back_off_after", "actions.tip.back_off_time"),
-)
-"""Fields of the environment, with all below them, that are the agent's: all others make a task what it is."""
-
-ROOM = ("sim.contact.capacity", "sim.contact.patch_capacity")
-"""Fields of the environment that give contacts room, and change nothing where they had enough."""
-
-OWN_UP_TO = {
-    "actions.tip.forward_velocity": 0.045,
-    "actions.capsule.forward_velocity": 0.05,
-    "actions.base.insertion_velocity": 0.05,
-    "actions.tip.roll_amplitude": 18.0,
-    "actions.base.roll_amplitude": 9.0,
-    "actions.tip.back_off_velocity": 0.045,
-    "actions.tip.linear_scale": 0.045,
-    "actions.capsule.linear_scale": 0.05,
-    "actions.base.insertion_scale": 0.05,
-}
-"""Fields that are the agent's up to a value. A constant velocity: the largest that actions command [m/s]. A smaller
-scale of velocities than the task's: a policy that is slow might have been so by smaller actions [m/s]. A roll to and
-fro: the largest amplitude that scripted experts draw, who are not the task's either (``roll`` of
-:class:`arcgym.experts.PullExpert` for a tip, ``twist`` of :class:`arcgym.experts.PushExpert` for a base) [rad/s]. Going
-back where a tether no longer comes on: the largest velocity that actions command [m/s]."""
-
-VELOCITIES = tuple(path for path in OWN_UP_TO if path.endswith((".forward_velocity", ".insertion_velocity")))
-"""Those of a constant velocity, which tables name."""
-
-BACK_OFFS = tuple(path for path in OWN_UP_TO if path.endswith(".back_off_velocity"))
-"""Those of going back where a tether no longer comes on, which tables name."""
-
-ROLLS = tuple(path for path in OWN_UP_TO if path.endswith(".roll_amplitude"))
-"""Those of a roll to and fro, which tables name."""
-
-SCALES = tuple(path for path in OWN_UP_TO if path.endswith("_scale"))
-"""Those of the velocities that actions command, which tables name as well."""
-
 SWITCH = "enabled"
-"""Field of an effect's configuration that says whether there is the effect at all."""
+"""Field of an effect's configuration that switches the effect on."""
 
 SEEDS = 3
 """Training seeds that are asked for where a condition file has groups."""
@@ -77,15 +37,6 @@ KEPT_UNSEEN = ("population", "ct")
 
 KEPT_FROM_ITS_POLICIES = ("cross_colon",)
 """Suites whose patients the policies evaluated in them must not have been trained on."""
-
-SHARES = ("s_c", "coverage")
-"""Columns from 0 to 1, beside those that end in ``_rate``."""
-
-POSITIVE = ("force", "impulse", "time", "seconds", "strain", "tension", "stretch", "friction", "stiffness", "length")
-"""Words in the names of columns that cannot be negative."""
-
-BASIC = ("task", "agent", *COLUMNS, "success", "end", "reward", "seconds")
-"""Columns that every row must have."""
 
 
 def problems(path: Path, whole: bool = True) -> list[str]:
@@ -106,7 +57,7 @@ def problems(path: Path, whole: bool = True) -> list[str]:
     if suite is None:
         return [f"suite is '{run.get('suite')}', expected one of {', '.join(suites)}"]
     conditions = suite.conditions_of(run.get("conditions_sha256"))
-    found = [*_run_problems(run, conditions, suite), *_row_problems(rows, conditions), *_other_tasks(rows, suite)]
+    found = [*_run_problems(run, conditions, suite), *row_problems(rows, conditions), *_other_tasks(rows, suite)]
     outdated = [*_outdated(conditions, suite), *(line for task in _tasks(rows) for line in other_length(run, task))]
     unfit = [*outdated, *_unfit_to_compete(run, rows, conditions), *_silent(run, rows)]
     return found + [*unfit, *_missing_trials(rows, conditions, suite)] * whole
@@ -178,7 +129,7 @@ def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool
     from arcgym.utils.registry import load_cfg_from_registry
 
     path, value = _path_and_value(override)
-    if path in ROOM:
+    if path in CONTACT_ROOM:
         return True
     for task in tasks:
         found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
@@ -239,16 +190,6 @@ def _tasks(rows: list[Row]) -> list[str]:
     return sorted({row["task"] for row in rows if "task" in row})
 
 
-def is_agents(path: str, used: Any) -> bool:
-    """Return whether a field of the environment, by its path, is the agent's to choose, with the value used.
-
-    So is the room for contacts.
-    """
-    if path in OWN_UP_TO:
-        return used is None or (isinstance(used, int | float) and abs(used) <= OWN_UP_TO[path])
-    return path in ROOM or any(path == own or path.startswith(f"{own}.") for own in AGENTS_OWN)
-
-
 def _seen_in_training(run: dict[str, Any], suite: str) -> list[str]:
     """Return a problem where a policy was trained on patients that are for testing."""
     suites = read_suites()
@@ -269,61 +210,6 @@ def _patients(trained_on: Sequence[Any]) -> list[str]:
         else:
             found.append("/".join(Path(text).parts[-2:]))
     return found
-
-
-def _row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
-    if not rows:
-        return ["trials.csv has no row"]
-    lacking = [name for name in BASIC if name not in rows[0]]
-    if lacking:
-        return [f"trials.csv lacks the columns {', '.join(lacking)}"]
-    trials = {trial.trial: trial for trial in conditions.trials}
-    found, seen = [], set()
-    for row in rows:
-        label = f"trial {row['trial']} of {row['task']}"
-        trial = trials.get(row["trial"])
-        if (row["task"], row["trial"]) in seen:
-            found.append(f"{label} is there twice")
-        seen.add((row["task"], row["trial"]))
-        if trial is None or (row["patient"], row["seed"], row["group"]) != (trial.patient, trial.seed, trial.group):
-            found.append(f"{label} has another patient, seed or group than the condition file")
-        if row["success"] not in (0, 1) or (row["success"] == 1) != (row["end"] == "success"):
-            found.append(f"{label} says success {row['success']} and end '{row['end']}'")
-        if row.get("progress") is not None and not 0.0 <= row["progress"] <= 1.0:
-            found.append(f"{label} has a progress of {row['progress']}, expected 0 to 1")
-        if row["success"] == 1 and row.get("progress", 1.0) < _least_progress(row["task"]):
-            found.append(f"{label} succeeded with a progress of {row['progress']}")
-        found += [f"{label} has {name} = {value}, {why}" for name, value, why in _impossible(row)]
-    return found
-
-
-def _least_progress(task: str) -> float:
-    """Return the least progress with which a task succeeds.
-
-    The cecum is reached halfway from its valve to its end: at 0.975 of the way in the shortest colon (``ct_2``, 1.19 m)
-    and at 0.977 or more in the patients of the split ``test``.
-    """
-    return 0.97 if "-Cecum-" in task else 0.999
-
-
-def _impossible(row: Row) -> Iterator[tuple[str, float | str, str]]:
-    """Yield the columns of a row whose value cannot be, with why."""
-    for name, value in row.items():
-        if not isinstance(value, float):
-            if isinstance(value, str) and name not in TEXTS:
-                yield name, value, "expected a number"
-            continue
-        if not math.isfinite(value):
-            if row["end"] != "non_finite":  # an episode whose state broke may say so
-                yield name, value, "expected a finite number"
-        elif (name in SHARES or name.endswith("_rate")) and not -1e-6 <= value <= 1.0 + 1e-6:
-            yield name, value, "expected 0 to 1"
-        elif value < -1e-6 and any(word in name for word in POSITIVE):
-            yield name, value, "expected no negative number"
-        elif name.startswith("mean_") and value > (most := row.get(f"max_{name[5:]}", math.inf)) * (1 + 1e-5):
-            yield name, value, f"above the largest, {most}"
-        elif name.startswith("max_") and value > (peak := row.get(f"peak_{name[4:]}", math.inf)) * (1 + 1e-5) + 1e-6:
-            yield name, value, f"above the peak, {peak}"
 
 
 def _other_tasks(rows: list[Row], suite: Suite) -> list[str]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from arcgym.evaluation.check import is_agents
+from arcgym.evaluation.agent_fields import is_agents
 from arcgym.evaluation.result_folder import read_run, read_trial_rows
 from arcgym.evaluation.statistics import Interval, paired_difference, training_runs
 from arcgym.evaluation.summary import KEY_METRICS

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from arcgym.evaluation.check import BACK_OFFS, ROLLS, SCALES, VELOCITIES, other_length, problems
+from arcgym.evaluation.agent_fields import BACK_OFFS, ROLLS, SCALES, VELOCITIES
+from arcgym.evaluation.check import other_length, problems
 from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
 from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP, marks

@@ -13,10 +13,10 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from arcgym.evaluation.baselines import FIGURES
-from arcgym.evaluation.check import BASIC
 from arcgym.evaluation.result_folder import HASH, PACKED_FILE, RUN_FILE, TRIALS_FILE, Row
 from arcgym.evaluation.results import Result
 from arcgym.evaluation.results_page import METRICS
+from arcgym.evaluation.row_checks import BASIC
 from arcgym.utils.errors import UsageError
 
 COLUMNS = tuple(dict.fromkeys((*BASIC, *METRICS, *FIGURES, "centered_rate")))

@@ -110,14 +110,20 @@ class SurfaceRenderer:
         rays = fisheye_rays(width, height, optics.field_of_view, samples)
         self.rays = wp.array(rays, dtype=wp.vec3, device=device)
         self.rgb = wp.zeros((*self.shape, 3), dtype=wp.uint8, device=device)
+        """Pictures, shape (N, H, W, 3), uint8."""
         self.depth = wp.full(self.shape, optics.far, dtype=float, device=device)
+        """Distance along each pixel's ray [m], shape (N, H, W)."""
         self.radiance = wp.zeros(self.shape, dtype=wp.vec3, device=device)
+        """Linear radiance before exposure, in arbitrary units, shape (N, H, W), vec3."""
         self._faces = wp.zeros((*self.shape, samples), dtype=int, device=device)
         self._places = wp.zeros((*self.shape, samples), dtype=wp.vec3, device=device)
         self._sides = wp.zeros((surface.num_envs, int(PROBES)), dtype=int, device=device)
         self.covered = wp.zeros(surface.num_envs, dtype=wp.bool, device=device)
+        """Worlds whose lens is covered, shape (N,)."""
         self.gain = wp.zeros(surface.num_envs, dtype=float, device=device)
+        """Gain of the last picture; 0 in worlds that were reset since, shape (N,)."""
         self.drawn_from = wp.zeros(surface.num_envs, dtype=wp.transform, device=device)
+        """Pose of the camera in each world's last picture, shape (N,), transform."""
         self._drawn_before = False
         self._casting, self._developing = Pace(), Pace()
         self._brightness = wp.zeros(self.shape[:2], dtype=float, device=device)

@@ -43,13 +43,14 @@ class ContactCfg:
     damping: float = 0.0
     """Normal damping while approaching [N s/m]. Raise it if a light capsule rattles on the wall."""
     deep_damping: float = 300.0
-    """Added to it in contacts deeper than ``hardening``, in full at twice that depth [N s/m]: a tip that is pushed hard
-    into soft tissue does not flutter through it, and light contacts stay as they are. Of 0, 80, 300 and 1000 in a soak,
-    300 is the least with which no link went outside the lumen (docs/clinical.md, what pierces)."""
+    """Added to ``damping`` in contacts deeper than ``hardening``, in full at twice that depth [N s/m]: a tip that is
+    pushed hard into soft tissue does not flutter through it, and light contacts stay as they are. Of 0, 80, 300 and
+    1000 in a soak, 300 is the least with which no link went outside the lumen (docs/clinical.md, a flutter). Lower it
+    only to compare."""
     step_damping: float = 1.0
     """Share kept of what the implicit step adds to the normal damping of a link's contact that is faster than 20 mm/s:
     ``dt`` times its stiffness, 4 N s/m. With 0.5 slips come and go more as with smaller steps (docs/physics.md, known
-    limits); with less a limp shaft does not stay finite. Published forces are with 1."""
+    limits); with less a limp shaft does not stay finite. Keep 1 to compare with published forces."""
     friction: float = 0.1
     """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
@@ -77,8 +78,8 @@ class ContactCfg:
     """Rings on either side of a link's own, 13 cm at rest in a colon of the usual length, whose faces hold it off from
     outside, too: a link that was pushed into the wall there is pushed back, and so is the wall of a hairpin's other
     limb where it has come through the link's own. Faces farther along the colon touch a link from the lumen alone, so
-    that a loop beside the tube is not taken for its wall. Raise it where rings lie much nearer together than 1 cm;
-    with 3, the default once, the other limb came through to a link's axis."""
+    that a loop beside the tube is not taken for its wall. Raise it where rings lie much nearer together than 1 cm.
+    With 3, the other limb of a hairpin came through to a link's axis."""
     capacity: int = 40
     """Contacts kept a link, on average over the links of a world, which share them. A link that a gathered wall lies
     around has more than 50, a link outside the anus none; 126 links in all of ``ct_2`` gathered on the shaft had 4067
@@ -86,8 +87,9 @@ class ContactCfg:
     (``Simulation.dropped_contacts``), and the environment warns of them when it closes: raise it then. A scope that
     loses them is flung through the wall."""
     patch_capacity: int = 32
-    """Patches of six faces looked at near a link, on average over the links of a world, which share them. The links
-    above had 2848 altogether; raise it with ``capacity``, and where a wall has far smaller faces."""
+    """Patches of six faces looked at near a link, on average over the links of a world, which share them. 126
+    links in all of ``ct_2`` gathered on the shaft had 2848 altogether, 23 a link. Raise it with ``capacity``, and where
+    a wall has far smaller faces."""
 
     def validate_config(self) -> None:
         """Check bounds.

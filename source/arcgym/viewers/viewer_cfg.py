@@ -51,7 +51,7 @@ class OutsideViewCfg:
     far_alpha: float = 0.97
     """Opacity of the wall that is seen through the lumen, 0..1."""
     ghost_alpha: float = 0.42
-    """The same where the scope lies behind it, 0..1."""
+    """Opacity of the far wall where the scope lies behind it, 0..1."""
     scope_share: float = 0.4
     """Smallest share of the scope in the picture, 0..1, however many loops of the colon lie before it."""
     edge_threshold: float = 0.06

@@ -103,7 +103,10 @@ class TerminationsCfg:
 
 @configclass
 class EventsCfg:
-    """Where an episode starts and what differs from world to world."""
+    """Where an episode starts and what differs from world to world.
+
+    Events of a mode run in this order. What each draws, and in which unit, is in its function's docstring.
+    """
 
     patient: EventTerm | None = EventTerm(func=mdp.randomize_patient, mode="reset")
     """First: what follows belongs to the world's patient. Annotated, as fields with a type come before the others."""
@@ -120,7 +123,10 @@ class EventsCfg:
 
 @configclass
 class CostsCfg:
-    """What a constrained policy keeps low; plain PPO ignores it."""
+    """What a constrained policy keeps low; plain PPO ignores it.
+
+    Each is 1 while something is wrong and 0 else, so that a cost of an episode is in seconds.
+    """
 
     tip_force = CostTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "unsafe"})
     view_blocked = CostTerm(func=mdp.view_blocked)
@@ -133,7 +139,12 @@ class CostsCfg:
 
 @configclass
 class MetricsCfg:
-    """What an episode is judged by."""
+    """What an episode is judged by.
+
+    Unit and meaning of each are in its function's docstring and in docs/metrics.md. ``s_c`` and ``s_o`` are the paper's
+    measures of how well the lumen is centered and how open it lies; ``red_out_rate`` is the share of steps in which the
+    view is blocked.
+    """
 
     success = MetricsTerm(func=mdp.success, reduce="max")
     patient_index = MetricsTerm(func=mdp.patient_index, reduce="last", log=False)

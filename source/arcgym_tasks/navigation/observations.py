@@ -24,7 +24,7 @@ class ObservationsCfg:
 
     @configclass
     class CriticCfg(ObsGroup):
-        """Privileged state for the value function, used in training only."""
+        """Privileged state for the value function, in training only; shapes and units are in the terms' docstrings."""
 
         lumen_direction = ObsTerm(func=mdp.tip_lumen_direction)
         centerline = ObsTerm(func=mdp.centerline_ahead)

@@ -35,9 +35,10 @@ CONTROL_STEP = 0.1
 END = ("sigmoid", 0.05)
 """Segment of the colon, and the way beyond its end at which an insertion ends [m]: its last bend is behind the tip."""
 FAR_END = ("splenic", 0.0)
-"""The same of insertions that go on. Figures of the whole way have names with ``far_``; no row judges them."""
+"""Segment and way beyond its end [m] at which the insertions end that go on. Their figures have names with ``far_``;
+no row judges them."""
 FAR = "far_"
-"""Begin of their names."""
+"""How the names of these figures begin."""
 MARGIN = 0.1
 """Length of colon beyond an insertion's end that moves [m]; the rest would only cost time."""
 FINE_SWEEPS = 2

@@ -81,12 +81,17 @@ class ContactSearch:
         self.law = self._law(cfg)
         self.law.wall_radius += surface_offset
         self.moduli = wp.zeros(num_envs, dtype=wp.vec3, device=device)
+        """Elastic moduli of each world's wall, from which contacts take their softness, shape (N,), vec3."""
         self.friction = wp.full(num_envs, cfg.friction, dtype=float, device=device)
+        """Coulomb coefficient of each world, shape (N,)."""
         self.centers = wp.zeros((num_envs, self.ring_count), dtype=wp.vec3, device=device)
+        """Centers of the deformed rings [m], shape (N, R), vec3."""
         self._all_worlds = wp.ones(num_envs, dtype=wp.bool, device=device)
         self.ring = wp.full((num_envs, self.link_count), -1, dtype=int, device=device)
+        """Ring that each link lies in, -1 before the first search, shape (N, L)."""
         self._ring_before = wp.clone(self.ring)
         self.ring_distance = wp.zeros((num_envs, self.link_count), dtype=float, device=device)
+        """Distance of each link from its ring's center [m], ``FAR`` outside the anus, shape (N, L)."""
         self.bounds = lumen_kernels.Bounds()
         patches, worlds = len(topology.patch_start) - 1, num_envs if wp.get_device(device).is_cuda else 0
         self.bounds.ring = wp.zeros((self.ring_count, num_envs), dtype=wp.vec4, device=device)
