@@ -130,7 +130,7 @@ def test_a_rigid_colon_does_not_move(tiny: TinySim) -> None:
 
 
 def test_a_solid_takes_no_thickness(tiny: TinySim) -> None:
-    with pytest.raises(ValueError, match="wall_thickness is for wall_model='shell'"):
+    with pytest.raises(ValueError, match="ColonCfg.wall_thickness is 0.001 m, expected none with wall_model='solid'"):
         Colon(tiny.colon_cfg(wall_model="solid", wall_thickness=0.001))
 
 
@@ -153,12 +153,12 @@ def test_zero_sets_a_segment_free(tiny: TinySim) -> None:
 
 
 def test_an_unknown_segment_is_named(tiny: TinySim) -> None:
-    with pytest.raises(ValueError, match=r"names \['sigmiod'\]; the segments are \['rectum', 'sigmoid'"):
+    with pytest.raises(ValueError, match=r"ColonCfg.anchor_stiffness names 'sigmiod'. Did you mean 'sigmoid'"):
         Colon(tiny.colon_cfg(anchor_stiffness={"sigmiod": 1.0}))
 
 
 def test_an_unknown_material_is_named(tiny: TinySim) -> None:
-    with pytest.raises(ValueError, match=r"no tissue preset 'rubber'; choose from \['clinical', 'in_situ'"):
+    with pytest.raises(ValueError, match=r"ColonCfg.material is 'rubber'. Available: clinical, in_situ"):
         Colon(tiny.colon_cfg(material="rubber"))
 
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Imports point one way, down the table of rooms in architecture.md."""
+"""Imports point one way, down the table of packages in architecture.md."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "architecture.md").read_text()
-ROOMS = re.findall(r"^\| `(arcgym\.\w+)` \|", PAGE, re.MULTILINE)
+PACKAGES = re.findall(r"^\| `(arcgym\.\w+)` \|", PAGE, re.MULTILINE)
 ALLOWED = {("arcgym.benchmarks.fidelity.checks.commands", "arcgym_tasks")}
 """Benchmarks of tasks load their configurations, as the page says."""
 
@@ -37,7 +37,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
             yield from imports(node)
 
 
-def room(name: str) -> str:
+def package(name: str) -> str:
     return ".".join(name.split(".")[:2])
 
 
@@ -48,16 +48,16 @@ def test_imports_are_found_at_any_depth_but_for_type_checking() -> None:
 
 def test_table_names_every_room() -> None:
     folders = {f"arcgym.{path.parent.name}" for path in (ROOT / "source" / "arcgym").glob("*/__init__.py")}
-    assert set(ROOMS) == folders and len(ROOMS) == len(folders)
+    assert set(PACKAGES) == folders and len(PACKAGES) == len(folders)
 
 
-@pytest.mark.parametrize("here", ROOMS)
+@pytest.mark.parametrize("here", PACKAGES)
 def test_room_imports_no_room_below_it(here: str) -> None:
-    below = ROOMS[ROOMS.index(here) + 1 :]
-    files = [(name, path) for name, path in modules() if room(name) == here]
+    below = PACKAGES[PACKAGES.index(here) + 1 :]
+    files = [(name, path) for name, path in modules() if package(name) == here]
     assert files
     wrong = [
-        (name, used) for name, path in files for used in imports(ast.parse(path.read_text())) if room(used) in below
+        (name, used) for name, path in files for used in imports(ast.parse(path.read_text())) if package(used) in below
     ]
     assert wrong == []
 

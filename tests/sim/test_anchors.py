@@ -69,7 +69,7 @@ def test_anchors_are_configured_by_name(tiny_sim: TinySim, name: str, scale: flo
 
 
 def test_unknown_anchors_are_named(tiny_sim: TinySim) -> None:
-    with pytest.raises(ValueError, match=r"no 'loose' anchors; choose from \['sparse', 'default', 'dense'\]"):
+    with pytest.raises(TypeError, match=r"'ColonCfg.anchors' .* got str 'loose'. Available: default, dense, sparse"):
         Colon(tiny_sim.colon_cfg(anchors="loose"))
 
 

@@ -27,6 +27,7 @@ from arcgym.assets.patient_checks import check_patients
 from arcgym.assets.patient_files import find_stages
 from arcgym.assets.shell_loading import add_shell
 from arcgym.assets.usd_loading import add_colon_usd
+from arcgym.utils.configclass import validate
 from arcgym.utils.string import did_you_mean
 
 if TYPE_CHECKING:
@@ -45,20 +46,14 @@ class Colon:
 
         Raises:
             StageError: If a stage cannot be used.
-            ValueError: If material, anchors or kind of wall are unknown, a segment has no such name, no stages are
-                found, or patients do not have the same grid.
+            TypeError: If a value of the configuration has another type than its field, or is none of its names.
+            ValueError: If a value of the configuration cannot be used, no stages are found, or patients do not have the
+                same grid.
         """
+        validate(cfg, "ColonCfg")
         self.cfg = cfg
         self.tissue = tissue_preset(cfg.material)
         self.anchor_scale = anchor_scale(cfg.anchors)
-        for field in ("anchor_stiffness", "anchor_slack"):
-            unknown = sorted(set(getattr(cfg, field)) - set(SEGMENTS))
-            if unknown:
-                raise ValueError(f"ColonCfg.{field} names {unknown}; the segments are {list(SEGMENTS)}.")
-        if cfg.wall_model not in ("shell", "solid"):
-            raise ValueError(f"ColonCfg.wall_model is {cfg.wall_model!r}; choose 'shell' or 'solid'.")
-        if cfg.wall_model == "solid" and cfg.wall_thickness is not None:
-            raise ValueError("ColonCfg.wall_thickness is for wall_model='shell'; a solid is as thick as its stage.")
         shell = cfg.wall_model == "shell"
         chosen = (cfg.wall_thickness, self.tissue.thickness if shell else None)
         thickness = next((value for value in chosen if value is not None), None)

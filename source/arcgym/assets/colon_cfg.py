@@ -88,6 +88,9 @@ class ColonCfg:
         require_positive(self, "density", unit="kg/m^3")
         require_non_negative(self, "anchor_stiffness", unit="N/m^2")
         require_non_negative(self, "anchor_slack", unit="m")
+        if self.wall_model == "solid" and self.wall_thickness is not None:
+            text = f"is {self.wall_thickness:g} m, expected none with wall_model='solid': it is as thick as its stage."
+            raise FieldError(self, "wall_thickness", text)
         if self.gas.enabled and self.wall_model != "shell":
             raise FieldError(self, "wall_model", "is 'solid', expected 'shell' with gas.enabled=true: switch one off.")
         if self.wall_law.active and self.wall_model != "shell":

@@ -9,11 +9,14 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from arcgym.cli.arguments import DEFAULT_AGENT, RunArguments, TaskArguments
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
+
+if TYPE_CHECKING:
+    from arcgym.rl.params import RunParams
 
 A = TypeVar("A", bound=RunArguments)
 
@@ -29,7 +32,7 @@ AGENT_FIELDS = (
 )
 """Arguments that are fields of the agent's configuration."""
 
-OWN = ("roll_amplitude", "roll_period", "back_off_velocity", "back_off_after", "back_off_time")
+POLICY_ACTION_FIELDS = ("roll_amplitude", "roll_period", "back_off_velocity", "back_off_after", "back_off_time")
 """Fields of an action term that are a policy's own in every task."""
 
 
@@ -73,10 +76,9 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
     Raises:
         UsageError: The task, an override, the checkpoint or the run's parameters are wrong.
     """
-    from arcgym.rl.params import NOT_RESTORED, differences, read_params, restore
+    from arcgym.rl.params import read_params
     from arcgym.rl.run_folder import find_checkpoint
     from arcgym.utils.coerce import to_plain
-    from arcgym.utils.registry import plain_task
 
     args = with_trained_agent(args)
     _, asked = load_cfgs(args)
@@ -86,35 +88,62 @@ def load_run_cfgs(args: RunArguments, as_registered: Sequence[str] = ()) -> tupl
     if saved is None:
         print(f"params: the registered ones; none of {checkpoint.parent / 'params'} are used")
     else:
-        try:
-            restore(agent_cfg, saved.agent, "agent")
-        except UsageError as error:
-            if saved.agent_key in (None, agent_key(args.agent)):
-                raise
-            trained = f"{checkpoint.parent} was trained with {saved.agent_key}; leave --agent out, or name that."
-            raise UsageError(f"--agent is '{args.agent}', but {trained}") from error
-        task, trained = plain_task(args.task), plain_task(saved.task)
-        if task == trained:
-            plain, _ = _registered(task, args.agent)
-            kept = [*differences(to_plain(plain), to_plain(env_cfg)), *as_registered]
-            restore(env_cfg, saved.env, "env", keep=kept)
-            print(f"params: {saved.folder}")
-        else:
-            restore(env_cfg, _further_inputs(saved.env, agent_cfg) | _own_fields(saved.env, env_cfg), "env")
-            own = "as registered, but for what is the policy's own"
-            print(f"params: agent of {saved.folder}; it was trained in {trained}, and {task} is {own}")
+        _restore_agent(agent_cfg, saved, args, checkpoint)
+        print(_restore_env(env_cfg, agent_cfg, saved, args, as_registered))
     before = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
     _write(args, env_cfg, agent_cfg)
-    after = {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)}
+    _print_changes(before, {"env": to_plain(env_cfg), "agent": to_plain(agent_cfg)})
+    _print_other_settings(args, env_cfg)
+    return env_cfg, agent_cfg, checkpoint
+
+
+def _restore_agent(agent_cfg: Any, saved: RunParams, args: RunArguments, checkpoint: Path) -> None:
+    """Write a run's agent into ``agent_cfg``.
+
+    Raises:
+        UsageError: The agent asked for is not the one that the run was trained with.
+    """
+    from arcgym.rl.params import restore
+
+    try:
+        restore(agent_cfg, saved.agent, "agent")
+    except UsageError as error:
+        if saved.agent_key in (None, agent_key(args.agent)):
+            raise
+        trained = f"{checkpoint.parent} was trained with {saved.agent_key}; leave --agent out, or name that."
+        raise UsageError(f"--agent is '{args.agent}', but {trained}") from error
+
+
+def _restore_env(
+    env_cfg: Any, agent_cfg: Any, saved: RunParams, args: RunArguments, as_registered: Sequence[str]
+) -> str:
+    """Write a run's environment into ``env_cfg``, or of another task what is the policy's own; return what was done."""
+    from arcgym.rl.params import differences, restore
+    from arcgym.utils.coerce import to_plain
+    from arcgym.utils.registry import plain_task
+
+    task, trained = plain_task(args.task), plain_task(saved.task)
+    if task == trained:
+        plain, _ = _registered(task, args.agent)
+        kept = [*differences(to_plain(plain), to_plain(env_cfg)), *as_registered]
+        restore(env_cfg, saved.env, "env", keep=kept)
+        return f"params: {saved.folder}"
+    restore(env_cfg, _further_inputs(saved.env, agent_cfg) | _own_fields(saved.env, env_cfg), "env")
+    own = "as registered, but for what is the policy's own"
+    return f"params: agent of {saved.folder}; it was trained in {trained}, and {task} is {own}"
+
+
+def _print_changes(before: dict[str, Any], after: dict[str, Any]) -> None:
+    """Print what the command line changes in a run's configurations."""
+    from arcgym.rl.params import NOT_RESTORED, differences
+
     passing = {f"{kind}.{path}" for kind, paths in NOT_RESTORED.items() for path in paths}
     for path, (old, new) in differences(before, after).items():
         if path not in passing:
             print(f"changed: {path}: {old} -> {new}")
-    _tell_settings(args, env_cfg)
-    return env_cfg, agent_cfg, checkpoint
 
 
-def _tell_settings(args: RunArguments, env_cfg: Any) -> None:
+def _print_other_settings(args: RunArguments, env_cfg: Any) -> None:
     """Print where scope or patience of a run are not those of the task now, unless an override gives them."""
     from arcgym.evaluation.task_settings import PATIENCE, SCOPE_LENGTH
 
@@ -148,7 +177,8 @@ def _own_fields(env: dict[str, Any], env_cfg: Any) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, saved in (env.get("actions") or {}).items():
         term = getattr(getattr(env_cfg, "actions", None), name, None)
-        own = {field: saved[field] for field in OWN if saved and field in saved and hasattr(term, field)}
+        fields = [field for field in POLICY_ACTION_FIELDS if saved and field in saved and hasattr(term, field)]
+        own = {field: saved[field] for field in fields}
         found |= {name: own} if own else {}
     return {"actions": found} if found else {}
 

@@ -37,7 +37,7 @@ class EnvMemory:
         settings = dict(env.sim.world_settings())
         self._settings = [(value, value.clone()) for value in settings.values()]
         self._sensors = [
-            (sensor, sensor._since_update, [(value, value.clone()) for value in sensor.memory().values()])
+            (sensor, sensor.time_since_update, [(value, value.clone()) for value in sensor.memory().values()])
             for sensor in env.scene.sensors.values()
         ]
         self._random = torch.get_rng_state()
@@ -70,7 +70,7 @@ class EnvMemory:
         env.sim.write_state(self._worlds)
         env.sim.forward()
         for sensor, since_update, pairs in self._sensors:
-            sensor._since_update = since_update
+            sensor.time_since_update = since_update
             for value, content in pairs:
                 value.copy_(content)
             if hasattr(sensor.data, "frame"):

@@ -39,7 +39,7 @@ class RslRlVecEnvWrapper(VecEnv):
         self.device = self.unwrapped.device
         self.max_episode_length = self.unwrapped.max_episode_length
         self.num_actions = self.unwrapped.action_manager.total_action_dim
-        self._obs = self._pack(env.reset()[0])
+        self._obs = self.pack(env.reset()[0])
 
     @property
     def unwrapped(self) -> Any:
@@ -67,7 +67,7 @@ class RslRlVecEnvWrapper(VecEnv):
     def reset(self, seed: int | None = None) -> tuple[TensorDict, dict]:
         """Reset every world, after setting the seed if one is given, and return observations and extras."""
         obs, extras = self.env.reset(seed=seed)
-        self._obs = self._pack(obs)
+        self._obs = self.pack(obs)
         return self._obs, extras
 
     def step(self, actions: torch.Tensor) -> tuple[TensorDict, torch.Tensor, torch.Tensor, dict]:
@@ -80,7 +80,7 @@ class RslRlVecEnvWrapper(VecEnv):
         if self.clip_actions is not None:
             actions = actions.clamp(-self.clip_actions, self.clip_actions)
         obs, rewards, terminated, truncated, extras = self.env.step(actions)
-        self._obs = self._pack(obs)
+        self._obs = self.pack(obs)
         extras = {key: value for key, value in extras.items() if key != "time_outs"}
         if not self.unwrapped.cfg.is_finite_horizon:
             extras["time_outs"] = truncated
@@ -94,7 +94,12 @@ class RslRlVecEnvWrapper(VecEnv):
         """Close the environment."""
         self.env.close()
 
-    def _pack(self, obs: dict[str, torch.Tensor]) -> TensorDict:
+    def pack(self, obs: dict[str, torch.Tensor]) -> TensorDict:
+        """Return an environment's observation groups, each of shape (N, ...), as rsl_rl's models read them.
+
+        Raises:
+            TypeError: If a group is not one tensor.
+        """
         nested = [name for name, value in obs.items() if not isinstance(value, torch.Tensor)]
         if nested:
             raise TypeError(

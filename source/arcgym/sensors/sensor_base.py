@@ -20,7 +20,8 @@ class SensorBase(ABC):
     def __init__(self, cfg: SensorBaseCfg) -> None:
         """Keep the configuration; nothing is allocated before :meth:`initialize`."""
         self.cfg = cfg
-        self._since_update = 0.0
+        self.time_since_update = 0.0
+        """Simulated time since the last reading [s]."""
 
     @property
     @abstractmethod
@@ -49,7 +50,7 @@ class SensorBase(ABC):
 
     def advance(self, dt: float) -> None:
         """Let `dt` seconds pass and takes a reading of all worlds when the update period is over."""
-        self._since_update += dt
-        if self._since_update >= self.cfg.update_period - 1.0e-9:
-            self._since_update = 0.0
+        self.time_since_update += dt
+        if self.time_since_update >= self.cfg.update_period - 1.0e-9:
+            self.time_since_update = 0.0
             self.update()

@@ -194,17 +194,20 @@ class Session:
             future.set_exception(error)
 
     def _may_step(self) -> bool:
+        """Return whether the world goes on now."""
         if self.env is None:
             return False
-        if self._single:
-            return True
+        return self._single or self._update_state() == "running"
+
+    def _update_state(self) -> str:
+        """Tell and return whether the world is paused, waiting for a page or running; a hand that is gone lets go."""
         waits = self.needs_page and not self.hand.is_alive
         state = "paused" if self._paused else "waiting" if waits else "running"
         if self.status.state not in (state, "ended") or (self.status.state == "ended" and state == "running"):
             self._say(state=state)
         if waits:
             self.hand.release()
-        return not (self._paused or waits)
+        return state
 
     @one_thread()
     @torch.inference_mode(False)
@@ -227,7 +230,7 @@ class Session:
         """Return what the policy chosen last does in all worlds, and nothing where there is none."""
         if self._policy is None or (self.status.driver == HAND and self.env.num_envs == 1):
             return torch.zeros(self.env.num_envs, self.env.action_manager.total_action_dim, device=self.env.device)
-        return self._policy(self._wrapped._pack(self.env.obs_buf)).clone()
+        return self._policy(self._wrapped.pack(self.env.obs_buf)).clone()
 
     def _end(self) -> None:
         """Stop where the episode ends; one may go on nevertheless."""

@@ -30,16 +30,15 @@ LIGHTS: dict[str, tuple[float, float, float]] = {"dim": (0.5, 0.25, 0.1), "blown
 DELAYS: dict[str, tuple[int, int, int]] = {"delay": (1, 2, 4)}
 """Age of the policy's pictures [control steps of 0.1 s]."""
 
-SOFTER: dict[str, tuple[float, float, float]] = {"soft": (0.5, 0.25, 0.1)}
-"""Factors on Young's modulus of the wall."""
+BODIES: dict[str, tuple[float, float, float]] = {
+    "soft": (0.5, 0.25, 0.1),
+    "sticky": (2.0, 3.0, 5.0),
+    "collapsed": (0.9, 0.8, 0.7),
+}
+"""``soft``: factors on Young's modulus of the wall. ``sticky``: factors on the friction between scope and wall.
+``collapsed``: factors on the width of the lumen, as with less gas, in patients of the population, who are made anew."""
 
-STICKIER: dict[str, tuple[float, float, float]] = {"sticky": (2.0, 3.0, 5.0)}
-"""Factors on the friction between scope and wall."""
-
-COLLAPSED: dict[str, tuple[float, float, float]] = {"collapsed": (0.9, 0.8, 0.7)}
-"""Factors on the width of the lumen: less gas. Patients of the population alone, who are made anew for it."""
-
-KINDS: dict[str, tuple[Any, Any, Any]] = {**PICTURES, **LIGHTS, **DELAYS, **SOFTER, **STICKIER, **COLLAPSED}
+KINDS: dict[str, tuple[Any, Any, Any]] = {**PICTURES, **LIGHTS, **DELAYS, **BODIES}
 """Amounts of the three strengths by kind. All of them are our choices."""
 
 VARIANTS = tuple(f"{kind}_{strength}" for kind in KINDS for strength in (1, 2, 3))
@@ -68,11 +67,11 @@ def make_harder(cfg: Any, variant: str) -> None:
         rgb.delay_min_lag = rgb.delay_max_lag = amount
     elif kind in LIGHTS:
         _multiply(cfg, "light", mdp.randomize_light, "gain", amount, 1.0)
-    elif kind in SOFTER:
+    elif kind == "soft":
         _multiply(cfg, "stiffness", mdp.randomize_tissue_stiffness, "scale", amount, 1.0)
-    elif kind in STICKIER:
+    elif kind == "sticky":
         _multiply(cfg, "friction", mdp.randomize_friction, "friction", amount, cfg.sim.contact.friction)
-    else:
+    elif kind == "collapsed":
         cfg.scene.colon.usd_path = _narrower(cfg.scene.colon.usd_path, amount)
 
 

@@ -84,30 +84,48 @@ def insert(plan: Plan, stages: Sequence[Path], out: Path, tell: Callable[[str], 
         raise TypeError(f"The drive has a {type(expert).__name__}, expected one with a Diary.")
     for index, patient in enumerate(scene.colon.patients):
         resume(drive, expert, index, _paused(plan, patient.name, out))
-    began, ended = time.monotonic(), set[int]()
+    drive.run("cecum", _Reporter(plan, scene, expert, out, tell), settled=False)
 
-    def keep(patients: Sequence[int]) -> None:
-        last = [expert.entry(drive.foremost[patient]) for patient in patients]
-        for patient, steps in zip(patients, expert.histories(last) if patients else [], strict=True):
-            _write(plan, drive, patient, steps, out)
 
-    def report(drive: Drive) -> None:
-        for patient, route in enumerate(drive.routes):
-            if route.running and time.monotonic() > plan.deadline:
-                route.problem, route.held_by = OUT_OF_TIME, what_holds(scene, drive.foremost[patient])
-                pause(drive, expert, patient, _paused(plan, scene.colon.patients[patient].name, out))
-        fresh = [k for k, route in enumerate(drive.routes) if not route.running and k not in ended]
-        ended.update(fresh)
+class _Reporter:
+    """Writes insertions as they go on and end, and tells of them; called in every control step of a drive."""
+
+    def __init__(self, plan: Plan, scene: InteractiveScene, expert: Diary, out: Path, tell: Callable[[str], None]):
+        self._plan, self._scene, self._expert, self._out, self._tell = plan, scene, expert, out, tell
+        self._began, self._ended = time.monotonic(), set[int]()
+
+    def __call__(self, drive: Drive) -> None:
+        self._stop_late(drive)
+        fresh = [k for k, route in enumerate(drive.routes) if not route.running and k not in self._ended]
+        self._ended.update(fresh)
         count = round(drive.time / CONTROL_STEP)
-        keep([k for k in range(len(drive.routes)) if k in fresh or (k not in ended and count % KEPT_EVERY == 0)])
+        under_way = [k for k in range(len(drive.routes)) if k not in self._ended] if count % KEPT_EVERY == 0 else []
+        self._keep(drive, sorted([*fresh, *under_way]))
         for k in fresh:
-            name, route = scene.colon.patients[k].name, drive.routes[k]
-            tell(f"{plan.name}, {name}: {route.arc:.2f} m, {route.failure or 'arrived'}")
+            route = drive.routes[k]
+            self._tell(f"{self._plan.name}, {self._name(k)}: {route.arc:.2f} m, {route.failure or 'arrived'}")
         if count % 100 == 0:
+            spent = time.monotonic() - self._began
             arcs = " ".join(f"{route.arc:.2f}" for route in drive.routes)
-            tell(f"{plan.name}, {drive.time:.0f} s simulated in {time.monotonic() - began:.0f} s, tips at [m] {arcs}")
+            self._tell(f"{self._plan.name}, {drive.time:.0f} s simulated in {spent:.0f} s, tips at [m] {arcs}")
 
-    drive.run("cecum", report, settled=False)
+    def _stop_late(self, drive: Drive) -> None:
+        """Give up the insertions under way, to go on with another time, once the deadline is over."""
+        if time.monotonic() <= self._plan.deadline:
+            return
+        for patient, route in enumerate(drive.routes):
+            if route.running:
+                route.problem, route.held_by = OUT_OF_TIME, what_holds(self._scene, drive.foremost[patient])
+                pause(drive, self._expert, patient, _paused(self._plan, self._name(patient), self._out))
+
+    def _keep(self, drive: Drive, patients: Sequence[int]) -> None:
+        """Write the insertions of some patients as far as they are."""
+        last = [self._expert.entry(drive.foremost[patient]) for patient in patients]
+        for patient, steps in zip(patients, self._expert.histories(last) if patients else [], strict=True):
+            _write(self._plan, drive, patient, steps, self._out)
+
+    def _name(self, patient: int) -> str:
+        return self._scene.colon.patients[patient].name
 
 
 def build(plan: Plan, stages: Sequence[Path]) -> InteractiveScene:
