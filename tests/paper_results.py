@@ -14,7 +14,9 @@ from arcgym.evaluation.trials import read_conditions
 CONDITIONS = read_conditions(read_suites()["paper"].conditions_path)
 RUN = {
     "agent": "checkpoint",
+    "checkpoint": ["a", "b", "c"],
     "checkpoint_sha256": ["abc", "def", "fed"],
+    "trained_on": ["colon_1/colon.usda"],
     "suite": "paper",
     "conditions_sha256": CONDITIONS.sha256,
     "overrides": [],
@@ -37,7 +39,14 @@ def result(
     folder = ResultFolder(path, run)
     for task in TASKS:
         for trial in CONDITIONS.trials[trials]:
-            row = {"task": task, "agent": "a", **vars(trial), "success": 1, "end": "success", "reward": 1.0}
+            row = {
+                "task": task,
+                "agent": "abc"[trial.group],
+                **vars(trial),
+                "success": 1,
+                "end": "success",
+                "reward": 1.0,
+            }
             row |= {"seconds": seconds + trial.trial, "progress": 1.0, "centered_rate": 1.0, "p95_tip_force": 0.0}
             row |= {"mean_tip_force": 0.0, "max_tip_force": 0.0, "peak_tip_force": 0.0}
             row |= every or {}

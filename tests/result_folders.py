@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ def write_result_folder(
     suite: str = "paper",
     every: int = 1,
     conditions_name: str | None = None,
+    agents: Sequence[str] = ("/far/away/cell/run_1/model_3.pt",),
     **run: Any,
 ) -> Path:
     """Write a result folder whose first trials succeed, those of the suite's condition file or of an earlier one."""
@@ -48,5 +50,5 @@ def write_result_folder(
         success = len(out.rows) < successes
         end = {"success": int(success), "end": "success" if success else "stuck", "progress": 1.0 if success else 0.5}
         figures = {"reward": 1.0 / 3.0, "seconds": 2.0, "s_c": 0.5, "centered_rate": 0.5, "tip_time_above_unsafe": 0.25}
-        out.add({"task": task, "agent": "/far/away/cell/run_1/model_3.pt", **vars(trial), **end, **figures})
+        out.add({"task": task, "agent": agents[trial.group % len(agents)], **vars(trial), **end, **figures})
     return path

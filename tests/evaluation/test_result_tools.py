@@ -97,7 +97,70 @@ def test_a_checkpoint_has_one_name_wherever_it_lies(tmp_path: Path) -> None:
     rows = merge([first, second], tmp_path / "all").rows
     assert len(rows) == 120 and {row["agent"] for row in rows} == {"/a/2.pt"}
     assert ResultFolder(first, theirs).names == {f"/b/{k}.pt": f"/a/{k}.pt" for k in (1, 2, 3)}
-    assert problems(tmp_path / "all") == [f"names the checkpoint /a/{k}.pt, which ran no trial" for k in (1, 3)]
+    found = problems(tmp_path / "all")
+    assert found[4:] == [f"names the checkpoint /a/{k}.pt, which ran no trial" for k in (1, 3)]
+    assert all("has 1 checkpoint(s), expected 3 training seeds" in line for line in found[:4])
+
+
+def test_one_checkpoint_a_task_is_one_training_seed(tmp_path: Path) -> None:
+    """Four tasks with a policy each are four checkpoints, and one seed of each task."""
+    conditions = read_conditions(read_suites()["paper"].conditions_path)
+    own = dict(zip(TASKS, "abcd", strict=True))
+    run = {**RUN, "checkpoint": list(own.values()), "checkpoint_sha256": ["1", "2", "3", "4"]}
+    folder = ResultFolder(tmp_path / "all", run)
+    for task in TASKS:
+        for trial in conditions.trials:
+            row = {"task": task, "agent": own[task], **vars(trial), "success": 1, "end": "success"}
+            folder.add({**row, "reward": 1.0, "seconds": 2.0, "progress": 1.0})
+    text = "has 1 checkpoint(s), expected 3 training seeds: paper_v1 has groups"
+    assert problems(folder.path) == [f"{task} {text}" for task in sorted(TASKS)]
+
+
+@pytest.mark.parametrize(
+    ("trained_on", "why"),
+    [
+        ("population:20000", "population:20000, kept unseen"),
+        ("population:020000*0.9", "population:20000, kept unseen"),
+        (
+            "/home/me/.cache/arcgym/population/generator_4_160x14/patient_20000/colon.usda",
+            "population:20000, kept unseen",
+        ),
+        (
+            ["colon_1/colon.usda", "unknown: /far/start.pt"],
+            "does not say on which patients the policy was trained: unknown",
+        ),
+        (None, "does not say on which patients the policy was trained: None"),
+        ("population:train", None),
+    ],
+)
+def test_patients_of_the_training_are_known_and_none_of_the_test(
+    tmp_path: Path, trained_on: Any, why: str | None
+) -> None:
+    found = problems(result(tmp_path / "a", run={**RUN, "trained_on": [trained_on]}))
+    assert (found == []) if why is None else (len(found) == 1 and why in found[0])
+
+
+def test_a_number_may_be_written_as_a_power_of_ten(tmp_path: Path) -> None:
+    for value in ("0.01", "1e-2", "1.0e-2"):
+        run = {**RUN, "overrides": [f"env.actions.tip.linear_scale={value}"]}
+        assert problems(result(tmp_path / value, run=run)) == []
+
+
+def test_settings_of_an_effect_that_the_suite_switches_on_are_the_suites(tmp_path: Path) -> None:
+    """``env.clinical=[all]`` switches sheets on: how long they are changes the task, which it does not without."""
+    for suite, refused in (("population_clinical", True), ("population", False)):
+        task = read_suites()[suite].tasks("Magnetic")[0]
+        changes = {task: {"scene.colon.mesentery.fullness": [1.0, 2.0]}}
+        found = problems(ResultFolder(tmp_path / suite, {**RUN, "suite": suite, "changes": changes}).path)
+        assert any("mesentery.fullness = 2.0" in line for line in found) == refused
+
+
+def test_a_progress_that_is_no_number_is_told(tmp_path: Path) -> None:
+    found = problems(result(tmp_path / "a", progress="x", max_tip_force="y"))
+    assert [line.partition(" has ")[2] for line in found] == [
+        "progress = x, expected a number",
+        "max_tip_force = y, expected a number",
+    ]
 
 
 def test_two_results_of_one_trial_are_refused(tmp_path: Path) -> None:
@@ -330,7 +393,8 @@ def test_trials_of_an_earlier_version_cannot_be_run(tmp_path: Path, capsys: pyte
 
 def test_trials_of_an_earlier_version_cannot_be_handed_in(tmp_path: Path) -> None:
     of: dict[str, Any] = {"task": "ARC-LeftColon-Magnetic", "suite": "population"}
-    of |= {"checkpoint_sha256": ["a", "b", "c"], "changes": {of["task"]: {}}}
+    of |= {"checkpoint": ["a", "b", "c"], "checkpoint_sha256": ["1", "2", "3"], "agents": ["a", "b", "c"]}
+    of |= {"changes": {of["task"]: {}}}
     of |= {"inputs": {of["task"]: {"sees": ["policy"], "simulator_depth": False}}}
     old = write_result_folder(tmp_path / "old", 3, **of, conditions_name="population_v2")
     message = "trials are of population_v2, an earlier version of population_v4: evaluate again"

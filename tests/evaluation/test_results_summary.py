@@ -128,7 +128,8 @@ def test_other_metrics_have_tables_of_their_own(tmp_path: Path) -> None:
 
 def test_more_training_seeds_are_shown_in_place_of_one(tmp_path: Path) -> None:
     write_result_folder(tmp_path / "all" / "one", 30)
-    write_result_folder(tmp_path / "all" / "three", 3, checkpoint_sha256=["a", "b", "c"])
+    three = {"checkpoint": ["a", "b", "c"], "checkpoint_sha256": ["1", "2", "3"]}
+    write_result_folder(tmp_path / "all" / "three", 3, agents=three["checkpoint"], **three)
     assert "| Magnetic | PPO, shipped reward | 10 (3–26), 3 seeds | – | – | – |" in page([tmp_path / "all"], tmp_path)
 
 

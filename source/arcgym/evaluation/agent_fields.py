@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 AGENTS_OWN = (
-    *("observations", "extra_observations", "reward", "rewards", "costs", "curriculum", "viewer"),
+    *("observations", "extra_observations", "reward", "rewards", "costs", "viewer"),
     *("is_finite_horizon", "scale_rewards_by_dt", "compute_final_obs"),
     *("actions.tip.roll_period", "actions.base.roll_period"),
     *("actions.tip.back_off_after", "actions.tip.back_off_time"),

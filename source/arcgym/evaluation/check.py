@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,12 +12,15 @@ from typing import Any
 import yaml
 
 from arcgym.evaluation.agent_fields import CONTACT_ROOM, is_agents
+from arcgym.evaluation.resolved_cfg import resolved
 from arcgym.evaluation.result_folder import (
     CHANGED,
     COMMIT,
     DROPPED,
     HASH,
+    UNKNOWN,
     Row,
+    checkpoints_of,
     read_run,
     read_trial_rows,
 )
@@ -82,7 +86,7 @@ def _run_problems(run: dict[str, Any], conditions: Conditions, suite: Suite) -> 
     for task, changes in run.get("changes", {}).items():
         allowed = dict(map(_path_and_value, suite.overrides_of(task)))
         for path, (registered, used) in changes.items():
-            own = is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed})
+            own = is_agents(path, used) or _is_of_nothing(task, path, {*changes, *allowed}, suite)
             if not own and _text(used) != allowed.get(path, "").lower():
                 found.append(f"{task} was run with {path} = {used}, which changes the task ({registered})")
     return found
@@ -102,7 +106,16 @@ def _path_and_value(override: str) -> tuple[str, str]:
 def _is_agents_own(override: str) -> bool:
     """Return whether an override gives a field that is the agent's to choose."""
     path, value = _path_and_value(override)
-    return is_agents(path, yaml.safe_load(value))
+    return is_agents(path, _plain(value))
+
+
+def _plain(value: str) -> Any:
+    """Return the value of an override, in which ``1e-2`` is a number, too."""
+    found = yaml.safe_load(value)
+    try:
+        return float(found) if isinstance(found, str) else found
+    except ValueError:
+        return found
 
 
 def _outdated(conditions: Conditions, suite: Suite) -> list[str]:
@@ -136,22 +149,25 @@ def _is_as_registered(override: str, tasks: Sequence[str], suite: Suite) -> bool
         for name in path.split("."):
             found = found.get(name, "") if isinstance(found, dict) else getattr(found, name, "")
         of_suite = dict(map(_path_and_value, suite.overrides_of(task)))
-        if path in of_suite or (str(found).lower() != value.lower() and found != yaml.safe_load(value)):
+        if path in of_suite or (str(found).lower() != value.lower() and found != _plain(value)):
             return False
     return bool(tasks)
 
 
-def _is_of_nothing(task: str, path: str, changed: set[str]) -> bool:
-    """Return whether a field is one of an effect that is off in the registered task, and that nothing switches on.
+def _is_of_nothing(task: str, path: str, changed: set[str], suite: Suite) -> bool:
+    """Return whether a field is one of an effect that is off in the suite's task, and that nothing switches on.
 
     Policies bring along the settings that such effects had when they were trained.
     """
     effect, _, name = path.rpartition(".")
     if name == SWITCH or f"{effect}.{SWITCH}" in changed:
         return False
+    from arcgym.utils.hydra import apply_overrides
     from arcgym.utils.registry import load_cfg_from_registry
 
     found = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
+    apply_overrides({"env": found}, suite.overrides_of(task))
+    found = resolved(found)
     for part in effect.split(".") if effect else ():
         found = getattr(found, part, None)
     return getattr(found, SWITCH, None) is False
@@ -161,10 +177,12 @@ def _unfit_to_compete(run: dict[str, Any], rows: list[Row], conditions: Conditio
     """Return a problem for too few training seeds, rules that know more than the policy, and code that nobody has."""
     commit = str(run.get("versions", {}).get(COMMIT, ""))
     found = [f"was run by code that is not that of its commit: {commit}"] if commit.endswith(CHANGED) else []
-    checkpoints, wanted = len(set(run.get("checkpoint_sha256", []))), min(conditions.groups, SEEDS)
-    if run.get("agent") == "checkpoint" and 0 < checkpoints < wanted:
-        found.append(f"has {checkpoints} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups")
-    ran = {str(row.get("agent")) for row in rows}
+    wanted, ran = min(conditions.groups, SEEDS), {str(row.get("agent")) for row in rows}
+    for task in _tasks(rows) if run.get("agent") == "checkpoint" else []:
+        seeds = len(checkpoints_of(run, [row for row in rows if row.get("task") == task]))
+        if seeds < wanted:
+            text = f"{task} has {seeds} checkpoint(s), expected {wanted} training seeds: {conditions.name} has groups"
+            found.append(text)
     named = zip(run.get("checkpoint", []), run.get("checkpoint_sha256", []), strict=False)
     idle = [path for path, digest in named if path not in ran and digest[:HASH] not in ran]
     found += [f"names the checkpoint {path}, which ran no trial" for path in idle]
@@ -177,13 +195,22 @@ def _unfit_to_compete(run: dict[str, Any], rows: list[Row], conditions: Conditio
 def _silent(run: dict[str, Any], rows: list[Row]) -> list[str]:
     """Return a problem for each task of which a checkpoint's run does not say how it was run and what was seen."""
     asked = {"changes": "with what settings it was run", "inputs": "what its policy sees"}
-    tasks = _tasks(rows) if run.get("agent") == "checkpoint" else []
-    return [
+    if run.get("agent") != "checkpoint":
+        return []
+    found = [
         f"{task}: run.json does not say {what}, '{name}' is missing"
         for name, what in asked.items()
-        for task in tasks
+        for task in _tasks(rows)
         if task not in run.get(name, {})
     ]
+    return found + _unknown_training(run)
+
+
+def _unknown_training(run: dict[str, Any]) -> list[str]:
+    """Return a problem for each checkpoint of which nothing says on which patients it was trained."""
+    trained = [names if isinstance(names, list) else [names] for names in run.get("trained_on") or [None]]
+    texts = [str(name) for names in trained for name in names if name is None or str(name).startswith(UNKNOWN)]
+    return [f"run.json does not say on which patients the policy was trained: {text}" for text in dict.fromkeys(texts)]
 
 
 def _tasks(rows: list[Row]) -> list[str]:
@@ -206,10 +233,17 @@ def _patients(trained_on: Sequence[Any]) -> list[str]:
     for text in texts:
         population, colon, members = text.partition(":")
         if colon and "/" not in population:
-            found += [f"{population}:{member.partition('*')[0]}" for member in members.split(",")]
+            found += [f"{population}:{_number(member)}" for member in members.split(",")]
         else:
-            found.append("/".join(Path(text).parts[-2:]))
+            stored = re.fullmatch(r"patient_(\d+)", Path(text).parent.name)  # a patient of the population in the cache
+            found.append(f"population:{int(stored[1])}" if stored else "/".join(Path(text).parts[-2:]))
     return found
+
+
+def _number(member: str) -> str:
+    """Return a patient of a population without its gas: ``20000`` for ``020000*0.9``, and a split as it is."""
+    name = member.partition("*")[0].strip()
+    return str(int(name)) if name.isdigit() else name
 
 
 def _other_tasks(rows: list[Row], suite: Suite) -> list[str]:

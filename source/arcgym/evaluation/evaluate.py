@@ -107,8 +107,11 @@ def _run_batch(
                 folder.add({"task": task, "agent": folder.names.get(agent, agent), **row})
                 show(len(folder.rows) - started)
 
-            run_trials(env, make_policy, trials, keep, patients)
-            folder.note_dropped(task, folder.dropped(task) + int(env.unwrapped.sim.dropped_contacts.sum()))
+            before = folder.dropped(task)
+            try:
+                run_trials(env, make_policy, trials, keep, patients)
+            finally:  # also of an evaluation that is stopped: its rows stay
+                folder.note_dropped(task, before + int(env.unwrapped.sim.dropped_contacts.sum()))
 
 
 @contextmanager
@@ -127,7 +130,7 @@ def opened(
     env_cfg, agent_cfg = cfgs
     _hold_patients(env_cfg, patients_of(trials))
     env_cfg.scene.num_envs = min(options.most(options.num_envs, WORLDS), len(trials))
-    env_cfg.recorders = None
+    env_cfg.recorders = env_cfg.curriculum = None
     place(env_cfg, agent_cfg, options.device)
     env = make_env(split_task(task)[0], env_cfg, agent_cfg)
     try:

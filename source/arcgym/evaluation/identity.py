@@ -15,6 +15,8 @@ import torch
 from arcgym.assets import ColonCfg
 from arcgym.envs.provenance import versions
 from arcgym.evaluation.options import EvaluationOptions
+from arcgym.evaluation.resolved_cfg import resolved
+from arcgym.evaluation.result_folder import UNKNOWN
 from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trials import Conditions
 from arcgym.rl.checkpoint import file_sha256, read_checkpoint
@@ -31,12 +33,17 @@ SET_HERE = (
     "seed",
     "log_dir",
     "recorders",
+    "curriculum",
     "sim.device",
     "scene.num_envs",
     "scene.colon.usd_path",
     "scene.colon.num_patients",
 )
-"""Fields that an evaluation sets itself."""
+"""Fields that an evaluation sets itself, with all below them."""
+
+
+BEGUN_FROM = ("init_policy", "teacher_checkpoint")
+"""Fields of an agent that name a checkpoint from which it learns."""
 
 
 def run_record(tasks: Sequence[str], conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
@@ -85,7 +92,7 @@ def trained_on(checkpoint: Path) -> Any:
     """Return the patients that a checkpoint was trained on; None where nothing beside it says so.
 
     The parameters of its run name them, or else the command that started it; those of a shipped policy do not, but its
-    description does.
+    description does. A policy or teacher that the run began with brings its own, or ``unknown: PATH``.
     """
     about = checkpoint.with_name(ABOUT)
     if about.is_file():
@@ -93,8 +100,19 @@ def trained_on(checkpoint: Path) -> Any:
     saved = read_params(checkpoint.parent)
     if saved is None:
         return None
-    colon = saved.env.get("scene", {}).get("colon", {})
-    return colon.get("usd_path") or _patients_in(saved.command)
+    own = saved.env.get("scene", {}).get("colon", {}).get("usd_path") or _patients_in(saved.command)
+    before = [Path(saved.agent[name]) for name in BEGUN_FROM if saved.agent.get(name)]
+    return own if own is None or not before else _joined(own, *map(_trained_before, before))
+
+
+def _trained_before(checkpoint: Path) -> Any:
+    """Return the patients of a checkpoint that a run began from."""
+    return (trained_on(checkpoint) if checkpoint.is_file() else None) or f"{UNKNOWN} {checkpoint}"
+
+
+def _joined(*names: Any) -> list[str]:
+    """Return the names of several settings of ``usd_path``, each once."""
+    return list(dict.fromkeys(name for one in names for name in ([one] if isinstance(one, str) else one)))
 
 
 def _patients_in(command: Sequence[str]) -> Any:
@@ -124,11 +142,9 @@ def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
     """
     registered = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
     found = differences(to_plain(registered), to_plain(env_cfg))
-    return {
-        path: list(values)
-        for path, values in found.items()
-        if path not in SET_HERE and not (_is_off(path, registered) and _is_off(path, env_cfg))
-    }
+    run = [resolved(cfg) for cfg in (registered, env_cfg)]
+    kept = [path for path in found if not any(path == own or path.startswith(f"{own}.") for own in SET_HERE)]
+    return {path: list(found[path]) for path in kept if not all(_is_off(path, cfg) for cfg in run)}
 
 
 def _is_off(path: str, cfg: Any) -> bool:

@@ -116,7 +116,10 @@ def submissions(folder: Path) -> tuple[list[Path], dict[Path, list[str]]]:
 
 def _entry_problems(folder: Path) -> list[str]:
     """Return what is wrong with what a submission says of itself, none or one line."""
-    agent = read_run(folder).get("agent")
+    try:
+        agent = read_run(folder).get("agent")
+    except UsageError:
+        return []  # said by the check
     if agent != "checkpoint":
         return [f"is of the agent '{agent}', which is a baseline: an entry has checkpoints"]
     try:

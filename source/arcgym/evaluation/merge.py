@@ -43,8 +43,8 @@ def merge(parts: Sequence[Path], out: Path) -> ResultFolder:
                     f"{part} has another result of trial {key[1]} of {key[0]} than the folders before: trials of "
                     "different devices differ in the last digits, run each trial on one."
                 )
-    for task, contacts in dropped.items():
-        folder.note_dropped(task, contacts)
+    for task, contacts in dropped.items():  # the folder may have the count of these parts, or of trials before them
+        folder.note_dropped(task, max(contacts, folder.dropped(task)))
     return folder
 
 

@@ -11,7 +11,7 @@ import csv
 import gzip
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -46,6 +46,9 @@ TEXTS = ("task", "agent", "patient", "end")
 
 HASH = 12
 """Digits of a checkpoint's hash that stand for it in the rows of small copies."""
+
+UNKNOWN = "unknown:"
+"""How an entry of ``trained_on`` begins whose patients are not known."""
 
 DROPPED = "dropped_contacts"
 """Entry of ``run.json``: contacts that found no room by task, where there were any."""
@@ -92,16 +95,12 @@ class ResultFolder:
 
     def note_changes(self, task: str, changes: dict[str, list[Any]]) -> None:
         """Write down which fields of a task are not as registered: registered and used value by path."""
-        run = read_run(self.path)
-        run.setdefault("changes", {})[task] = changes
-        _write_run(self.path / RUN_FILE, run)
+        self._note("changes", task, changes)
 
     def note_setting(self, setting: TaskSetting, task: str, value: float | None) -> None:
         """Write down the value that a setting of a task had; None is not written."""
-        run = read_run(self.path)
         if value is not None:
-            run.setdefault(setting.entry, {})[task] = value
-            _write_run(self.path / RUN_FILE, run)
+            self._note(setting.entry, task, value)
 
     def note_dropped(self, task: str, contacts: int) -> None:
         """Write down how many contacts of a task found no room, which makes its forces wrong; 0 is not written."""
@@ -116,8 +115,22 @@ class ResultFolder:
 
     def note_inputs(self, task: str, inputs: dict[str, Any]) -> None:
         """Write down what a trained agent sees in a task, see :func:`arcgym.evaluation.agents.inputs_of`."""
+        self._note("inputs", task, inputs)
+
+    def _note(self, entry: str, task: str, value: Any) -> None:
+        """Write down how a task is run.
+
+        Raises:
+            UsageError: If trials of the task were run otherwise.
+        """
         run = read_run(self.path)
-        run.setdefault("inputs", {})[task] = inputs
+        before = run.get(entry, {}).get(task)
+        if task in run.get(entry, {}) and before != value and self.done(task):
+            raise UsageError(
+                f"{self.path} has trials of {task} that were run otherwise: '{entry}' was {before} and is {value}. "
+                "Choose another folder, or bring the parameters beside the checkpoint back."
+            )
+        run.setdefault(entry, {})[task] = value
         _write_run(self.path / RUN_FILE, run)
 
     def add(self, row: Row) -> None:
@@ -188,6 +201,13 @@ def read_trial_rows(path: Path) -> list[Row]:
         return []
     with file.open(newline="") if file.is_file() else gzip.open(packed, "rt", newline="") as text:
         return [_row(row, f"Line {line} of {file}") for line, row in enumerate(csv.DictReader(text), start=2)]
+
+
+def checkpoints_of(run: dict[str, Any], rows: Sequence[Row]) -> list[str]:
+    """Return the SHA-256 of the checkpoints of a run that ran some of its trials, each once."""
+    ran = {str(row.get("agent")) for row in rows}
+    named = zip(run.get("checkpoint", []), run.get("checkpoint_sha256", []), strict=False)
+    return list(dict.fromkeys(digest for path, digest in named if path in ran or digest[:HASH] in ran))
 
 
 def read_run(path: Path) -> dict[str, Any]:

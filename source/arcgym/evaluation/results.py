@@ -11,9 +11,19 @@ from typing import Any
 
 from arcgym.evaluation.agent_fields import BACK_OFFS, ROLLS, SCALES, VELOCITIES
 from arcgym.evaluation.check import other_length, problems
-from arcgym.evaluation.result_folder import CHANGED, CODE, COMMIT, Row, read_run, read_trial_rows, result_folders
+from arcgym.evaluation.result_folder import (
+    CHANGED,
+    CODE,
+    COMMIT,
+    Row,
+    checkpoints_of,
+    read_run,
+    read_trial_rows,
+    result_folders,
+)
 from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP, marks
+from arcgym.utils.errors import UsageError
 
 LARGEST_SHARE = 10
 """Shares of a suite's trials that are shown: all of them to each tenth one."""
@@ -95,8 +105,8 @@ class Result:
 
     @property
     def checkpoints(self) -> list[str]:
-        """SHA-256 of the checkpoints that ran these trials, each once."""
-        return list(dict.fromkeys(self.run.get("checkpoint_sha256", [])))
+        """SHA-256 of the checkpoints that ran these trials, each once: those of another task of the run are not."""
+        return checkpoints_of(self.run, self.rows)
 
     @property
     def commit(self) -> str:
@@ -180,8 +190,12 @@ def find_results(folders: Sequence[Path]) -> tuple[list[Result], dict[Path, list
     found: list[Result] = []
     left_out: dict[Path, list[str]] = {}
     for path in sorted(dict.fromkeys(path for folder in folders for path in result_folders(folder))):
-        run, rows = read_run(path), read_trial_rows(path)
-        wrong = [*_unknown(run), *problems(path, whole=False)]
+        try:
+            run, rows = read_run(path), read_trial_rows(path)
+            wrong = [*_unknown(run), *problems(path, whole=False)]
+        except UsageError as error:
+            left_out[path] = [str(error)]
+            continue
         for task in [] if wrong else sorted({row["task"] for row in rows}):
             result = Result(path, task, run, [row for row in rows if row["task"] == task])
             if other := [*other_length(run, task), *_not_whole(result)]:

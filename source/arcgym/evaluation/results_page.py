@@ -233,9 +233,17 @@ def _mean(rows: Sequence[Row], name: str) -> str:
     return f"{sum(row[name] for row in rows) / len(rows):.2f}" if name in rows[0] else ""
 
 
+def _one_each(results: Sequence[Result]) -> list[Result]:
+    """Return one result of each task, method and set of checkpoints: the same trials again are no further ones."""
+    groups: dict[tuple[Any, ...], list[Result]] = {}
+    for one in results:
+        groups.setdefault((one.task, one.method, *one.checkpoints), []).append(one)
+    return [chosen for own in groups.values() if (chosen := best(own))]
+
+
 def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of the robustness variants, a table an agent, and the command where there is none."""
-    own = _newest(results)
+    own = _one_each(_newest(results))
     rows = [{**row, "agent": f"{row['agent']}{added_mark(one.run, one.task)}"} for one in own for row in one.rows]
     text = "\n".join(table.to_markdown() for table in strengths_tables(rows))
     return own, text, [] if any(one.is_current for one in own) else [section["command"]]
@@ -244,7 +252,7 @@ def _robustness(section: dict[str, Any], results: Sequence[Result]) -> tuple[lis
 def _paper(section: dict[str, Any], results: Sequence[Result]) -> tuple[list[Result], str, list[str]]:
     """Return the results of one of the paper's studies of a fixed policy, a table a method."""
     parts = []
-    results = _newest(results)
+    results = _one_each(_newest(results))
     for method in sorted({one.method for one in results}):
         rows = [row for one in results if one.method == method for row in one.rows]
         parts.append(f"`{method}`. {paper_table(rows, section['suite'])}")

@@ -39,12 +39,19 @@ def row_problems(rows: list[Row], conditions: Conditions) -> list[str]:
             found.append(f"{label} has another patient, seed or group than the condition file")
         if row["success"] not in (0, 1) or (row["success"] == 1) != (row["end"] == "success"):
             found.append(f"{label} says success {row['success']} and end '{row['end']}'")
-        if row.get("progress") is not None and not 0.0 <= row["progress"] <= 1.0:
-            found.append(f"{label} has a progress of {row['progress']}, expected 0 to 1")
-        if row["success"] == 1 and row.get("progress", 1.0) < _least_progress(row["task"]):
-            found.append(f"{label} succeeded with a progress of {row['progress']}")
+        progress = _number(row, "progress", 1.0)
+        if not 0.0 <= progress <= 1.0:
+            found.append(f"{label} has a progress of {progress}, expected 0 to 1")
+        if row["success"] == 1 and progress < _least_progress(row["task"]):
+            found.append(f"{label} succeeded with a progress of {progress}")
         found += [f"{label} has {name} = {value}, {why}" for name, value, why in _impossible(row)]
     return found
+
+
+def _number(row: Row, name: str, otherwise: float) -> float:
+    """Return a column of a row; where it is missing or no number, which is told elsewhere, another value."""
+    value = row.get(name)
+    return value if isinstance(value, int | float) else otherwise
 
 
 def _least_progress(task: str) -> float:
@@ -70,7 +77,9 @@ def _impossible(row: Row) -> Iterator[tuple[str, float | str, str]]:
             yield name, value, "expected 0 to 1"
         elif value < -1e-6 and any(word in name for word in POSITIVE):
             yield name, value, "expected no negative number"
-        elif name.startswith("mean_") and value > (most := row.get(f"max_{name[5:]}", math.inf)) * (1 + 1e-5):
+        elif name.startswith("mean_") and value > (most := _number(row, f"max_{name[5:]}", math.inf)) * (1 + 1e-5):
             yield name, value, f"above the largest, {most}"
-        elif name.startswith("max_") and value > (peak := row.get(f"peak_{name[4:]}", math.inf)) * (1 + 1e-5) + 1e-6:
+        elif (
+            name.startswith("max_") and value > (peak := _number(row, f"peak_{name[4:]}", math.inf)) * (1 + 1e-5) + 1e-6
+        ):
             yield name, value, f"above the peak, {peak}"

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from arcgym.evaluation.merge import merge
 from arcgym.evaluation.result_folder import (
+    DROPPED,
     PARTS,
     RUN_FILE,
     TRIALS_FILE,
@@ -120,7 +121,9 @@ def _hand_down(out: Path, folder: Path, numbers: set[int]) -> None:
     """Give a share the rows of its trials that the whole has already."""
     if not (out / RUN_FILE).is_file():
         return
-    part = ResultFolder(folder, read_run(out))
+    run = read_run(out)
+    run.pop(DROPPED, None)  # the whole has them already
+    part = ResultFolder(folder, run)
     known = {(row["task"], row["trial"]) for row in part.rows}
     for row in read_trial_rows(out):
         if row["trial"] in numbers and (row["task"], row["trial"]) not in known:

@@ -12,11 +12,14 @@ from typing import Any
 from arcgym.managers.scene_entity_cfg import SceneEntityCfg
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ManagerTermBaseCfg
+from arcgym.utils.coerce import from_dict
 from arcgym.utils.string import resolve_callable
 
 
 def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) -> dict[str, Any]:
     """Return the terms of a configuration class or dict by name, leaving out those that are None.
+
+    A term may be a dict of its fields.
 
     Args:
         cfg: Configuration instance, dict, or None for no terms.
@@ -30,6 +33,9 @@ def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) 
     entries = {} if cfg is None else cfg if isinstance(cfg, dict) else vars(cfg)
     terms = {name: term for name, term in entries.items() if term is not None and name not in skip}
     for name, term in terms.items():
+        if isinstance(term, dict) and "func" in term:  # as parameters of a run give a term that the task does not have
+            terms[name] = term = kind()
+            from_dict(term, dict(entries[name]), name)
         if not isinstance(term, kind):
             given = f"the class {term.__name__}" if isinstance(term, type) else f"of type {type(term).__name__}"
             raise TypeError(f"Term '{name}' of {owner} is {given}, expected an instance of {kind.__name__}.")

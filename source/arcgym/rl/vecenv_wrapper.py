@@ -75,7 +75,8 @@ class RslRlVecEnvWrapper(VecEnv):
 
         Returns:
             Observations, rewards (N,), dones (N,) int64, and extras. ``extras["time_outs"]``, which makes rsl_rl add
-            the value of the state after a truncation, is left out when the task's horizon is finite.
+            the value of the state after a truncation, is false in a world that also terminated, and is left out when
+            the task's horizon is finite.
         """
         if self.clip_actions is not None:
             actions = actions.clamp(-self.clip_actions, self.clip_actions)
@@ -83,7 +84,7 @@ class RslRlVecEnvWrapper(VecEnv):
         self._obs = self.pack(obs)
         extras = {key: value for key, value in extras.items() if key != "time_outs"}
         if not self.unwrapped.cfg.is_finite_horizon:
-            extras["time_outs"] = truncated
+            extras["time_outs"] = truncated & ~terminated
         return self._obs, rewards.clone(), (terminated | truncated).long(), extras
 
     def seed(self, seed: int) -> int:

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 from arcgym.envs import mdp
-from arcgym.managers import EventTermCfg
+from arcgym.managers import EventTermCfg, ObservationTermCfg
+from arcgym.utils.string import resolve_callable
 
 NONE = "none"
 """The task as it is."""
@@ -28,7 +29,7 @@ LIGHTS: dict[str, tuple[float, float, float]] = {"dim": (0.5, 0.25, 0.1), "blown
 """Factors on the brightness that the exposure aims at."""
 
 DELAYS: dict[str, tuple[int, int, int]] = {"delay": (1, 2, 4)}
-"""Age of the policy's pictures [control steps of 0.1 s]."""
+"""Age of the policy's pictures, at least [control steps of 0.1 s]."""
 
 BODIES: dict[str, tuple[float, float, float]] = {
     "soft": (0.5, 0.25, 0.1),
@@ -60,11 +61,11 @@ def make_harder(cfg: Any, variant: str) -> None:
     kind, _, strength = variant.rpartition("_")
     amount = KINDS[kind][int(strength) - 1]
     if kind in PICTURES:
-        rgb = _policy_picture(cfg, variant)
-        rgb.func, rgb.params = mdp.impaired_rgb, {**rgb.params, "kind": kind, "amount": amount}
+        for rgb in _policy_pictures(cfg, variant):
+            rgb.func, rgb.params = mdp.impaired_rgb, {**rgb.params, "kind": kind, "amount": amount}
     elif kind in DELAYS:
-        rgb = _policy_picture(cfg, variant)
-        rgb.delay_min_lag = rgb.delay_max_lag = amount
+        for rgb in _policy_pictures(cfg, variant):
+            rgb.delay_min_lag, rgb.delay_max_lag = max(rgb.delay_min_lag, amount), max(rgb.delay_max_lag, amount)
     elif kind in LIGHTS:
         _multiply(cfg, "light", mdp.randomize_light, "gain", amount, 1.0)
     elif kind == "soft":
@@ -75,13 +76,20 @@ def make_harder(cfg: Any, variant: str) -> None:
         cfg.scene.colon.usd_path = _narrower(cfg.scene.colon.usd_path, amount)
 
 
-def _policy_picture(cfg: Any, variant: str) -> Any:
-    rgb = getattr(cfg.observations.policy, "rgb", None)
-    if rgb is None:
+def _policy_pictures(cfg: Any, variant: str) -> list[Any]:
+    """Return the terms of the policy's pictures, those that were added to its group as well."""
+    group = cfg.observations.policy
+    terms = [*vars(group).values(), *group.terms.values()]
+    found = [term for term in terms if isinstance(term, ObservationTermCfg) and _is_picture(term.func)]
+    if not found:
         raise ValueError(
-            f"env.robustness={variant} changes env.observations.policy.rgb, which this task does not have."
+            f"env.robustness={variant} changes the pictures of env.observations.policy, which has none in this task."
         )
-    return rgb
+    return found
+
+
+def _is_picture(func: Any) -> bool:
+    return (resolve_callable(func) if isinstance(func, str) else func) in (mdp.rgb, mdp.impaired_rgb)
 
 
 def _multiply(cfg: Any, name: str, func: Any, param: str, factor: float, neutral: float) -> None:

@@ -96,10 +96,10 @@ class VelocityAction(ActionTerm):
             self._processed[:, self.axes.index("roll")] += self._roll.rate
 
     def _as_actions(self, values: torch.Tensor) -> torch.Tensor:
-        """Return the raw actions, within [-1, 1], of physical values of every axis, shape (N, D)."""
-        if self._roll is not None:
-            values = values.clone()
-            values[:, self.axes.index("roll")] -= self._roll.rate
+        """Return the raw actions, within [-1, 1], of physical values of every axis, shape (N, D).
+
+        The roll to and fro is none of them: it is added to whatever is commanded.
+        """
         return (values[:, self._axes] / self._scale).clamp(-1.0, 1.0)
 
     def resume(self, step: int, env_ids: torch.Tensor | None = None) -> None:
