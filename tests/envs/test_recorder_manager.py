@@ -38,6 +38,7 @@ from arcgym.managers import (
 from arcgym.managers.recorder_files import claim_path, next_path
 from arcgym.managers.recorder_joining import join
 from arcgym.utils import configclass
+from arcgym.utils.errors import TermError, UsageError
 
 
 class PositionRecorder(RecorderTerm):
@@ -186,13 +187,13 @@ def test_terms_that_answer_in_some_steps_only_are_told(recording) -> None:
 
 def test_configuration_mistakes_are_named(cfg) -> None:
     cfg.recorders = {"actions": RecorderTermCfg(class_type=mdp.PreStepActionsRecorder)}
-    with pytest.raises(TypeError, match="type dict, expected a RecorderManagerBaseCfg"):
+    with pytest.raises(TermError, match="type dict, expected a RecorderManagerBaseCfg"):
         ManagerBasedRLEnv(cfg)
     cfg.recorders = RecorderCfg(env_ids=(0, 2))
     with pytest.raises(IndexError, match="from 0 to 1"):
         ManagerBasedRLEnv(cfg)
     cfg.recorders = RecorderCfg(dataset_export_mode="some")
-    with pytest.raises(TypeError, match="dataset_export_mode. expects.*Available: all, none, succeeded_only"):
+    with pytest.raises(UsageError, match="dataset_export_mode. expects.*Available: all, none, succeeded_only"):
         ManagerBasedRLEnv(cfg)
 
 

@@ -36,6 +36,7 @@ def env() -> Any:
         step_dt=0.1,
         max_episode_length_s=2.0,
         value=torch.tensor([1.0, 3.0]),
+        sim=SimpleNamespace(non_finite=torch.zeros(2, dtype=torch.bool)),
         random=WorldRandom(2, "cpu", seed=0),
         host_ids=lambda env_ids: env_ids,
     )

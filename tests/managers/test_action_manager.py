@@ -8,6 +8,7 @@ import torch
 
 from arcgym.managers import ActionManager, ActionTerm, ActionTermCfg
 from arcgym.utils import configclass
+from arcgym.utils.errors import TermError
 
 
 class Scaled(ActionTerm):
@@ -66,5 +67,5 @@ def test_errors_name_what_was_expected(env, manager) -> None:
         manager.process_action(torch.zeros(2, 2))
     with pytest.raises(ValueError, match="no asset 'scope'.*Available: colon, endoscope"):
         ActionManager({"a": ScaledCfg(asset_name="scope")}, env)
-    with pytest.raises(TypeError, match="Term 'a' of ActionManager has class_type .*dict.*expected an ActionTerm"):
+    with pytest.raises(TermError, match="Term 'a' of ActionManager has class_type .*dict.*expected an ActionTerm"):
         ActionManager({"a": ActionTermCfg(class_type=dict, asset_name="colon")}, env)

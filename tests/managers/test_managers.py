@@ -23,6 +23,7 @@ from arcgym.managers import (
     TerminationManager,
     TerminationTermCfg,
 )
+from arcgym.utils.errors import TermError
 
 
 def value(env) -> torch.Tensor:
@@ -48,6 +49,35 @@ class TestSuccess:
         manager = TerminationManager({"low": TerminationTermCfg(func=above, params={"limit": 0.0})}, env)
         manager.compute()
         assert manager.success.tolist() == [False, False]
+
+
+class TestValuesThatAreNoNumbers:
+    def test_a_term_that_begins_with_one_is_refused(self, env) -> None:
+        env.value = torch.tensor([1.0, torch.nan])
+        for manager, kind in (
+            (RewardManager, RewardTermCfg),
+            (CostManager, CostTermCfg),
+            (MetricsManager, MetricsTermCfg),
+        ):
+            with pytest.raises(ValueError, match=rf"Term 'a' of {manager.__name__} returned \[1.0, nan\] at the start"):
+                manager({"a": kind(func=value)}, env)
+
+    def test_later_ones_count_as_zero_and_are_counted_where_the_state_is_finite(self, env) -> None:
+        """Two steps of nan and inf: both worlds' values are broken, and world 1's state is broken as well."""
+        manager = RewardManager(
+            {"a": RewardTermCfg(func=value), "b": RewardTermCfg(func=lambda env: env.value * 0.0 + 1.0)}, env
+        )
+        assert manager.non_finite_terms() == {}
+        for broken in (torch.nan, torch.inf):
+            env.value = torch.tensor([broken, broken])
+            env.sim.non_finite = torch.tensor([False, True])
+            assert manager.compute(1.0).tolist() == [0.0, 0.0]
+        assert manager.non_finite_terms() == {"a": 2, "b": 2}
+
+    def test_an_error_in_a_term_names_the_term(self, env) -> None:
+        with pytest.raises(AttributeError) as caught:
+            RewardManager({"mine": RewardTermCfg(func=lambda env: env.nothing)}, env)
+        assert caught.value.__notes__ == ["in the term 'mine' of RewardManager"]
 
 
 class TestRewards:
@@ -118,11 +148,11 @@ class TestTerminations:
     def test_value_must_stay_bool(self, env) -> None:
         manager = TerminationManager({"a": TerminationTermCfg(func=above, params={"limit": 2.0})}, env)
         manager.set_term_cfg("a", TerminationTermCfg(func=value))
-        with pytest.raises(TypeError, match="Term 'a' of TerminationManager returned torch.float32"):
+        with pytest.raises(TermError, match="Term 'a' of TerminationManager returned torch.float32"):
             manager.compute()
 
     def test_value_must_be_bool(self, env) -> None:
-        with pytest.raises(TypeError, match="returned torch.float32, expected torch.bool"):
+        with pytest.raises(TermError, match="returned torch.float32, expected torch.bool"):
             TerminationManager({"a": TerminationTermCfg(func=value)}, env)
 
 
@@ -223,7 +253,7 @@ class TestEvents:
             self.manager(env, mode="resets")
         with pytest.raises(ValueError, match="interval_range_s must be given"):
             self.manager(env, mode="interval")
-        with pytest.raises(TypeError, match=r"must take \(env, env_ids, ...\)"):
+        with pytest.raises(TermError, match=r"must take \(env, env_ids, ...\)"):
             EventManager({"a": EventTermCfg(func=value, mode="reset")}, env)
 
 

@@ -18,6 +18,7 @@ from arcgym.managers import (
 )
 from arcgym.managers.buffers import DelayBuffer
 from arcgym.utils import configclass
+from arcgym.utils.errors import TermError
 
 
 def column(env) -> torch.Tensor:
@@ -144,7 +145,7 @@ def test_looking_leaves_no_trace(env) -> None:
 
 
 def test_images_take_no_noise(env) -> None:
-    with pytest.raises(TypeError, match="returned torch.uint8: noise and scale need floating point"):
+    with pytest.raises(TermError, match="returned torch.uint8: noise and scale need floating point"):
         manager_of(env, a=ObservationTermCfg(func=image, scale=0.5))
 
 

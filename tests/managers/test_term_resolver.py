@@ -7,6 +7,7 @@ import pytest
 import torch
 
 from arcgym.managers import ManagerTermBase, RewardManager, RewardTermCfg, SceneEntityCfg, TerminationTermCfg
+from arcgym.utils.errors import TermError
 
 
 def scaled(env, factor, offset=0.0):
@@ -34,12 +35,12 @@ class Counting(ManagerTermBase):
 
 def test_missing_parameter_is_named(env) -> None:
     message = r"Term 'a' of RewardManager expects parameters \['factor'\] and optionally \['offset'\], got \['offset'\]"
-    with pytest.raises(TypeError, match=message):
+    with pytest.raises(TermError, match=message):
         RewardManager({"a": RewardTermCfg(func=scaled, params={"offset": 1.0})}, env)
 
 
 def test_unknown_parameter_is_named(env) -> None:
-    with pytest.raises(TypeError, match=r"got \['factor', 'bias'\]"):
+    with pytest.raises(TermError, match=r"got \['factor', 'bias'\]"):
         RewardManager({"a": RewardTermCfg(func=scaled, params={"factor": 1.0, "bias": 1.0})}, env)
 
 
@@ -55,7 +56,7 @@ def test_wrong_text_names_the_term(env) -> None:
 
 def test_wrong_kind_of_term_is_named(env) -> None:
     with pytest.raises(
-        TypeError, match="Term 'a' of RewardManager is of type TerminationTermCfg, expected .*RewardTermCfg"
+        TermError, match="Term 'a' of RewardManager is of type TerminationTermCfg, expected .*RewardTermCfg"
     ):
         RewardManager({"a": TerminationTermCfg(func=scaled)}, env)
 
@@ -66,7 +67,7 @@ def test_wrong_shape_names_got_and_expected(env) -> None:
 
 
 def test_class_must_be_a_term(env) -> None:
-    with pytest.raises(TypeError, match="the class dict, which does not derive from ManagerTermBase"):
+    with pytest.raises(TermError, match="the class dict, which does not derive from ManagerTermBase"):
         RewardManager({"a": RewardTermCfg(func=dict)}, env)
 
 

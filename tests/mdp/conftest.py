@@ -158,7 +158,7 @@ class FakeEnv:
         self.episode_length_buf = torch.zeros(num_envs, dtype=torch.long)
         self.cfg = SimpleNamespace(segment="sigmoid", lumen="paper")
         self.random = WorldRandom(num_envs, "cpu", seed=0)
-        self.sim = SimpleNamespace(written_states=0)
+        self.sim = SimpleNamespace(written_states=0, non_finite=torch.zeros(num_envs, dtype=torch.bool))
         self.scene = {
             "endoscope": FakeEndoscope(num_envs, num_links),
             "colon": FakeColon(num_envs),

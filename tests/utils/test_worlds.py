@@ -7,7 +7,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from arcgym.utils.worlds import fill_worlds, finite_rows
+from arcgym.utils.worlds import fill_worlds
 
 
 @pytest.mark.parametrize("dtype", [torch.float32, torch.int32, torch.long, torch.bool])
@@ -34,10 +34,3 @@ def test_worlds_along_another_dimension() -> None:
     values = torch.zeros(2, 3)
     fill_worlds(values, torch.tensor([1]), -torch.inf, dim=1)
     assert values.tolist() == [[0.0, -torch.inf, 0.0]] * 2
-
-
-def test_rows_are_finite_and_own_their_memory() -> None:
-    first, second = torch.tensor([1.0, torch.nan]), torch.tensor([True, False])
-    rows = finite_rows([first, second])
-    first[0] = 5.0
-    assert rows.dtype == torch.float32 and rows.tolist() == [[1.0, 0.0], [1.0, 0.0]]

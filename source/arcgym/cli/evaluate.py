@@ -18,6 +18,8 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -61,6 +63,18 @@ class EvaluateArguments:
     """Texts ``env.path=value``."""
 
 
+@contextmanager
+def _one_line_of_stages() -> Iterator[None]:
+    """Turn the error of a stage that cannot be used, such as one that is not there, into a mistake of the caller."""
+    from arcgym.anatomy import StageError
+    from arcgym.utils.errors import UsageError
+
+    try:
+        yield
+    except StageError as error:
+        raise UsageError(str(error)) from error
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_fields(parser, EvaluateArguments)
@@ -76,6 +90,7 @@ def run(namespace: argparse.Namespace) -> None:
     agents = tuple(args.agent.split(","))
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))
     _check_tasks(tasks)
+    _note_other_tasks(tasks, suite, args)
     conditions = read_conditions(Path(args.conditions) if args.conditions else suite.conditions_path)
     refuse_earlier(conditions)
 
@@ -89,7 +104,7 @@ def run(namespace: argparse.Namespace) -> None:
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
         return load_trial_cfgs(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
-    with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"):
+    with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"), _one_line_of_stages():
         if min(args.processes, len(conditions.trials)) > 1:
             folder = _evaluate_in_processes(args, conditions, len(tasks))
         else:
@@ -177,6 +192,15 @@ def _check_tasks(tasks: list[str]) -> None:
     known = {name: None for name in list_tasks(prefix="")}
     for task in tasks:
         _choose(split_task(task)[0], known, "task")
+
+
+def _note_other_tasks(tasks: list[str], suite: Any, args: EvaluateArguments) -> None:
+    """Say which tasks are not the suite's: they run on its trials, and cannot be published as its results."""
+    others = [task for task in tasks if task not in suite.tasks(task.partition(":")[0].rpartition("-")[2])]
+    if others and not args.conditions:
+        print(
+            f"note: {', '.join(others)} is no task of the suite {args.suite or USUAL_SUITE}: results check refuses it"
+        )
 
 
 def load_trial_cfgs(task: str, checkpoint: Path | None, overrides: tuple[str, ...]) -> tuple[Any, Any]:

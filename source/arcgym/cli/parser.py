@@ -76,6 +76,8 @@ class CommandParser(argparse.ArgumentParser):
         if text.startswith("-"):
             return f"unknown flag '{text}'. {did_you_mean(text.partition('=')[0], flags)}"
         hint = " An override is written env.path=value or agent.path=value." if self.takes_overrides else ""
+        if self.takes_overrides and text[0] in "~+":
+            hint = f" Hydra's ~ and + are not there: {text.lstrip('~+').partition('=')[0]}=null takes a term away."
         return f"unexpected argument '{text}'.{hint}"
 
 

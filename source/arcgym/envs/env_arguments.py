@@ -12,7 +12,8 @@ import torch
 import warp as wp
 
 from arcgym.utils import warp_setup  # noqa: F401
-from arcgym.utils.configclass import is_config
+from arcgym.utils.configclass import is_config, validate
+from arcgym.utils.errors import UsageError
 from arcgym.utils.registry import CFG_SUFFIX, load_cfg
 from arcgym.utils.string import did_you_mean
 
@@ -40,6 +41,18 @@ def refuse_unknown(arguments: Collection[str]) -> None:
     for name in arguments:
         if not name.endswith(CFG_SUFFIX):
             raise ArgumentError(f"The environment has no argument '{name}'. {did_you_mean(name, ARGUMENTS)}")
+
+
+def check_cfg(cfg: Any) -> None:
+    """Check a configuration before anything is built of it.
+
+    Raises:
+        ValueError: A field is missing, wrong or unknown.
+    """
+    try:
+        validate(cfg)
+    except TypeError as error:  # gymnasium.make would add the whole configuration
+        raise UsageError(str(error)) from error
 
 
 def choose_cfg(cfg: Any, entry_point: str | None, *, num_envs: int | None, device: str | None, seed: int | None) -> Any:

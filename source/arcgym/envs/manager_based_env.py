@@ -13,13 +13,19 @@ import numpy as np
 import torch
 from gymnasium.vector import AutoresetMode, VectorEnv
 
-from arcgym.envs.env_arguments import check_device, check_render_mode, choose_cfg, refuse_unknown, worlds_to_reset
+from arcgym.envs.env_arguments import (
+    check_cfg,
+    check_device,
+    check_render_mode,
+    choose_cfg,
+    refuse_unknown,
+    worlds_to_reset,
+)
 from arcgym.envs.manager_based_env_cfg import ManagerBasedEnvCfg
 from arcgym.envs.provenance import episode_facts, provenance
 from arcgym.envs.spaces import batched, observation_space
 from arcgym.managers import ActionManager, EventManager, ObservationManager, RecorderManager
 from arcgym.managers.observation_manager import Observation
-from arcgym.utils.configclass import validate
 from arcgym.utils.garbage import paused_collection
 from arcgym.utils.progress import report
 from arcgym.utils.seed import set_seed
@@ -71,12 +77,13 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
 
         Raises:
             TypeError: If there is no configuration, or an argument is unknown, with the nearest one.
-            ValueError: If fields of the configuration are missing or wrong, or there is no such render mode.
+            UsageError: If fields of the configuration are missing, wrong or unknown, or a term does not fit.
+            ValueError: If there is no such render mode, or a term gives something else than a number a world.
         """
         refuse_unknown(cfg_entry_points)
         check_render_mode(render_mode, self.metadata["render_modes"])
         cfg = choose_cfg(cfg, env_cfg_entry_point, num_envs=num_envs, device=device, seed=seed)
-        validate(cfg)
+        check_cfg(cfg)
         cfg.resolve()
         check_device(cfg.sim.device)
         self.cfg = cfg
@@ -265,7 +272,7 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
     def close_extras(self, **kwargs: Any) -> None:
         """Write the episodes being recorded and let go of the view; called once, by :meth:`close`.
 
-        Warns if contacts found no room.
+        Warns if contacts found no room, and of terms that gave what is no number.
 
         The simulation is freed with the environment. A GPU ends what it was given first: a process that leaves in the
         middle of a kernel may take others with it that share the GPU by MPS.
@@ -277,6 +284,10 @@ class ManagerBasedEnv(VectorEnv, gym.Env):  # type: ignore[misc]
         shortage = self.sim.contact.shortage()
         if shortage is not None:
             logger.warning(shortage)
+        for manager in self._managers():
+            for name, count in manager.non_finite_terms().items():
+                text = "%d values of the term '%s' of %s were not finite and counted as zero"
+                logger.warning(text, count, name, type(manager).__name__)
 
     def _init_buffers(self) -> None:
         """Make what terms may read while the managers are built."""

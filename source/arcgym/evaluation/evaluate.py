@@ -50,14 +50,25 @@ def evaluate(
     with alone_in(out):
         gather(out)
         folder = ResultFolder(out, run)
-        for task in tasks:
-            done = folder.done(task)
-            trials = options.share.trials(conditions.trials)
-            left = [trial for trial in trials if trial.trial not in done]
-            print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
-            for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
-                _run_batch(task, agent, batch, load_cfgs, options, folder)
+        try:
+            for task in tasks:
+                _run_task(task, conditions, load_cfgs, options, folder)
+        finally:
+            if not folder.rows:  # a start that fails leaves nothing that the next one has to fit
+                folder.clear()
     return folder
+
+
+def _run_task(
+    task: str, conditions: Conditions, load_cfgs: LoadCfgs, options: EvaluationOptions, folder: ResultFolder
+) -> None:
+    """Run the trials of a task that have no row yet."""
+    done = folder.done(task)
+    trials = options.share.trials(conditions.trials)
+    left = [trial for trial in trials if trial.trial not in done]
+    print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
+    for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
+        _run_batch(task, agent, batch, load_cfgs, options, folder)
 
 
 def _check_all(tasks: Sequence[str], load_cfgs: LoadCfgs, options: EvaluationOptions) -> None:

@@ -89,6 +89,12 @@ class ResultFolder:
         if not self.rows:  # a head alone: the first row brings its own
             (path / TRIALS_FILE).unlink(missing_ok=True)
 
+    def clear(self) -> None:
+        """Take what says how it was run away; for a folder without rows."""
+        (self.path / RUN_FILE).unlink(missing_ok=True)
+        if not any(self.path.iterdir()):
+            self.path.rmdir()
+
     def done(self, task: str) -> set[int]:
         """Return the numbers of the trials of a task that have a row."""
         return {row["trial"] for row in self.rows if row["task"] == task}

@@ -12,6 +12,7 @@ import torch
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ActionTermCfg
+from arcgym.utils.errors import TermError
 from arcgym.utils.string import did_you_mean, resolve_callable
 from arcgym.utils.worlds import fill_worlds
 
@@ -155,7 +156,7 @@ class ActionManager(ManagerBase):
         if isinstance(term.class_type, str):
             term.class_type = resolve_callable(term.class_type)
         if not (isinstance(term.class_type, type) and issubclass(term.class_type, ActionTerm)):
-            raise TypeError(f"Term '{name}' of ActionManager has class_type {term.class_type}, expected an ActionTerm.")
+            raise TermError(f"Term '{name}' of ActionManager has class_type {term.class_type}, expected an ActionTerm.")
 
     def _prepare_terms(self) -> dict[str, Any]:
         return {name: cfg.class_type(cfg, self._env) for name, cfg in super()._prepare_terms().items()}

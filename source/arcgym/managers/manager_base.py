@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import torch
@@ -12,7 +13,9 @@ import torch
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ManagerTermBaseCfg
 from arcgym.managers.term_resolver import collect_terms, resolve_term
+from arcgym.utils.errors import TermError
 from arcgym.utils.string import did_you_mean, resolve_matching_names
+from arcgym.utils.worlds import finite
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -41,11 +44,12 @@ class ManagerBase:
             env: Environment the manager belongs to.
 
         Raises:
-            TypeError: If a member is not a term of this manager, or a signature does not fit its parameters.
+            TermError: If a member is not a term of this manager, or a signature does not fit its parameters.
             ValueError: If a name does not exist.
         """
         self.cfg = copy.deepcopy(cfg)
         self._env = env
+        self._non_finite: torch.Tensor | None = None
         self._terms = self._prepare_terms()
 
     def __str__(self) -> str:
@@ -113,24 +117,52 @@ class ManagerBase:
 
     def _evaluate(self, name: str) -> torch.Tensor:
         term = self._terms[name]
-        return term.func(self._env, **term.params)
+        try:
+            return term.func(self._env, **term.params)
+        except Exception as error:
+            error.add_note(f"in the term '{name}' of {type(self).__name__}")
+            raise
+
+    def non_finite_terms(self) -> dict[str, int]:
+        """Return how many values of a term were not finite in worlds whose state was; terms without any are left out.
+
+        They counted as zero: a wrong term gives a wrong sum. Waits for the device.
+        """
+        if self._non_finite is None:
+            return {}
+        return {name: count for name, count in zip(self._value_names, self._non_finite.tolist(), strict=True) if count}
+
+    def _finite_rows(self, values: Sequence[torch.Tensor]) -> torch.Tensor:
+        """Return the values of the terms, shape (N,) each, as rows (T, N); what is not finite is zero, and counted."""
+        rows = torch.stack([value.float() for value in values])
+        kept = finite(rows)
+        broken = ((rows != kept) & ~self._env.sim.non_finite).sum(dim=1)
+        self._non_finite = broken if self._non_finite is None else self._non_finite + broken
+        return kept
+
+    @property
+    def _value_names(self) -> list[str]:
+        """Names of the terms in the order of :meth:`_finite_rows`."""
+        return list(self._terms)
 
     def _check_values(self, dtype: torch.dtype | None = None) -> None:
         """Evaluate every term once to check shape and type, then let them forget it.
 
         Raises:
-            TypeError: If a value is no tensor or of another dtype.
-            ValueError: If a value does not hold one entry a world.
+            TermError: If a value is no tensor or of another dtype.
+            ValueError: If a value does not hold one entry a world, or one that is not finite.
         """
         for name in self._terms:
             value = self._evaluate(name)
             label = f"Term '{name}' of {type(self).__name__}"
             if not isinstance(value, torch.Tensor):
-                raise TypeError(f"{label} returned {type(value).__name__}, expected a tensor.")
+                raise TermError(f"{label} returned {type(value).__name__}, expected a tensor.")
             if value.shape != (self.num_envs,):
                 raise ValueError(f"{label} returned shape {tuple(value.shape)}, expected ({self.num_envs},).")
+            if not bool(torch.isfinite(value).all()):
+                raise ValueError(f"{label} returned {value.tolist()[:4]} at the start, expected finite numbers.")
             if dtype is not None and value.dtype != dtype:
-                raise TypeError(f"{label} returned {value.dtype}, expected {dtype}.")
+                raise TermError(f"{label} returned {value.dtype}, expected {dtype}.")
         ManagerBase.reset(self)
 
     def _columns(self) -> list[str]:

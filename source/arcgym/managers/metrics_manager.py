@@ -11,7 +11,7 @@ import torch
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.term_cfg import MetricsTermCfg
 from arcgym.utils.string import did_you_mean
-from arcgym.utils.worlds import fill_worlds, finite_rows
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -51,20 +51,24 @@ class MetricsManager(ManagerBase):
         return {name: self._finished[self._order.index(name)] for name in self._terms}
 
     def compute(self) -> None:
-        """Take the values of this control step in; one that is not finite counts as zero."""
+        """Take the values of this control step in; one that is not finite counts as zero, and is counted."""
         if not self._terms:
             return
         self._sort_rows()
         is_first = self._num_steps == 0
         self._num_steps += 1
         by_name = {name: self._evaluate(name) for name in self._terms}
-        values = finite_rows([by_name[name] for name in self._order])
+        values = self._finite_rows([by_name[name] for name in self._order])
         self._step_values = dict(zip(self._order, values, strict=True))
         last, largest, added = self._rows_of("last"), self._rows_of("max"), self._rows_of("sum", "mean")
         self._values[last] = values[last]
         past = self._values[largest]
         self._values[largest] = torch.where(is_first, values[largest], torch.maximum(past, values[largest]))
         self._values[added] += values[added]
+
+    @property
+    def _value_names(self) -> list[str]:
+        return self._order
 
     def get_value(self, name: str) -> torch.Tensor:
         """Return a term reduced over the episode so far, shape (N,)."""

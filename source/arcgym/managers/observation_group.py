@@ -12,6 +12,7 @@ import torch
 from arcgym.managers.buffers import DelayBuffer, FrameBuffer, Store
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ObservationGroupCfg, ObservationTermCfg
+from arcgym.utils.errors import TermError
 from arcgym.utils.worlds import finite
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class ObservationPipeline:
             env: Environment it observes.
 
         Raises:
-            TypeError: If the value is no tensor, or integers meet noise or scale.
+            TermError: If the value is no tensor, or integers meet noise or scale.
             ValueError: If the value's first dimension is not the worlds.
         """
         self.cfg = cfg
@@ -111,14 +112,14 @@ class ObservationPipeline:
 
     def _check(self, value: torch.Tensor) -> None:
         if not isinstance(value, torch.Tensor):
-            raise TypeError(f"{self._label} returned {type(value).__name__}, expected a tensor.")
+            raise TermError(f"{self._label} returned {type(value).__name__}, expected a tensor.")
         if value.dim() < 2 or value.shape[0] != self._env.num_envs:
             raise ValueError(
                 f"{self._label} returned shape {tuple(value.shape)}, expected ({self._env.num_envs}, ...) "
                 "with at least one dimension after the worlds."
             )
         if not value.is_floating_point() and (self._noise is not None or self._scale is not None):
-            raise TypeError(f"{self._label} returned {value.dtype}: noise and scale need floating point values.")
+            raise TermError(f"{self._label} returned {value.dtype}: noise and scale need floating point values.")
 
     def _finite(self, value: torch.Tensor) -> torch.Tensor:
         """Apply the group's policy to values that are not finite, in new memory."""

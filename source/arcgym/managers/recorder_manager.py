@@ -21,6 +21,7 @@ from arcgym.managers.recorder_files import claim_path
 from arcgym.managers.recorder_term import RecorderTerm
 from arcgym.managers.recorder_writer import EpisodeWriter, allow_files
 from arcgym.managers.term_resolver import collect_terms
+from arcgym.utils.errors import TermError
 from arcgym.utils.string import resolve_callable
 
 if TYPE_CHECKING:
@@ -42,12 +43,12 @@ class RecorderManager(ManagerBase):
         """Construct the terms.
 
         Raises:
-            TypeError: If ``cfg`` is no recorder configuration or a member is not a recorder term.
+            TermError: If ``cfg`` is no recorder configuration or a member is not a recorder term.
             IndexError: If a world to record does not exist.
             ValueError: If so many files cannot be open at a time.
         """
         if cfg is not None and not isinstance(cfg, RecorderManagerBaseCfg):
-            raise TypeError(f"recorders is of type {type(cfg).__name__}, expected a RecorderManagerBaseCfg or None.")
+            raise TermError(f"recorders is of type {type(cfg).__name__}, expected a RecorderManagerBaseCfg or None.")
         super().__init__(cfg, env)
         self._settings = cfg or RecorderManagerBaseCfg(dataset_export_mode="none")
         chosen = self._settings.env_ids
@@ -157,7 +158,7 @@ class RecorderManager(ManagerBase):
     def _construct(self, name: str, cfg: RecorderTermCfg) -> RecorderTerm:
         kind = resolve_callable(cfg.class_type) if isinstance(cfg.class_type, str) else cfg.class_type
         if not (isinstance(kind, type) and issubclass(kind, RecorderTerm)):
-            raise TypeError(f"Term '{name}' of RecorderManager has class_type {kind}, expected a RecorderTerm.")
+            raise TermError(f"Term '{name}' of RecorderManager has class_type {kind}, expected a RecorderTerm.")
         return kind(cfg, self._env)
 
     def _record_step(self, ask: Callable[[RecorderTerm], tuple[str | None, Any]]) -> None:

@@ -13,7 +13,8 @@ from arcgym.managers.scene_entity_cfg import SceneEntityCfg
 from arcgym.managers.term_base import ManagerTermBase
 from arcgym.managers.term_cfg import ManagerTermBaseCfg
 from arcgym.utils.coerce import from_dict
-from arcgym.utils.string import resolve_callable
+from arcgym.utils.errors import TermError
+from arcgym.utils.string import did_you_mean, resolve_callable
 
 
 def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) -> dict[str, Any]:
@@ -28,7 +29,7 @@ def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) 
         skip: Members that are not terms.
 
     Raises:
-        TypeError: If a member is something else, naming owner, term, what it is and what was expected.
+        TermError: If a member is something else, naming owner, term, what it is and what was expected.
     """
     entries = {} if cfg is None else cfg if isinstance(cfg, dict) else vars(cfg)
     terms = {name: term for name, term in entries.items() if term is not None and name not in skip}
@@ -38,7 +39,7 @@ def collect_terms(cfg: Any, kind: type, owner: str, skip: Collection[str] = ()) 
             from_dict(term, dict(entries[name]), name)
         if not isinstance(term, kind):
             given = f"the class {term.__name__}" if isinstance(term, type) else f"of type {type(term).__name__}"
-            raise TypeError(f"Term '{name}' of {owner} is {given}, expected an instance of {kind.__name__}.")
+            raise TermError(f"Term '{name}' of {owner} is {given}, expected an instance of {kind.__name__}.")
     return terms
 
 
@@ -53,7 +54,7 @@ def resolve_term(cfg: ManagerTermBaseCfg, env: Any, name: str, owner: str, leadi
         leading: Positional arguments that precede the parameters, e.g. ``("env",)``.
 
     Raises:
-        TypeError: If the function is not callable or its signature does not fit the parameters.
+        TermError: If the function is not callable or its signature does not fit the parameters.
         ValueError: If a name does not exist.
     """
     label = f"Term '{name}' of {owner}"
@@ -62,9 +63,9 @@ def resolve_term(cfg: ManagerTermBaseCfg, env: Any, name: str, owner: str, leadi
     func: Any = cfg.func
     is_class = isinstance(func, type)
     if is_class and not issubclass(func, ManagerTermBase):
-        raise TypeError(f"{label} is the class {func.__name__}, which does not derive from ManagerTermBase.")
+        raise TermError(f"{label} is the class {func.__name__}, which does not derive from ManagerTermBase.")
     if not callable(func):
-        raise TypeError(f"{label} has a func of type {type(func).__name__}, expected a callable.")
+        raise TermError(f"{label} has a func of type {type(func).__name__}, expected a callable.")
     signature = inspect.signature(func.__call__ if is_class else func)
     arguments = (("self",) if is_class else ()) + leading
     _check_signature(signature, arguments, cfg.params, label)
@@ -86,14 +87,16 @@ def _check_signature(signature: inspect.Signature, arguments: tuple[str, ...], p
     kinds = {parameter.kind for parameter in parameters}
     is_open = inspect.Parameter.VAR_POSITIONAL in kinds
     if len(parameters) < len(arguments) and not is_open:
-        raise TypeError(f"{label} must take ({', '.join(arguments)}, ...), but its signature is {signature}.")
+        raise TermError(f"{label} must take ({', '.join(arguments)}, ...), but its signature is {signature}.")
     named = [p for p in parameters[len(arguments) :] if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
     required = [parameter.name for parameter in named if parameter.default is parameter.empty]
     optional = [parameter.name for parameter in named if parameter.default is not parameter.empty]
     absent = [name for name in required if name not in params]
     unknown = [name for name in params if name not in required + optional]
     if absent or (unknown and inspect.Parameter.VAR_KEYWORD not in kinds):
-        raise TypeError(f"{label} expects parameters {required} and optionally {optional}, got {list(params)}.")
+        asked = f"parameters {required}" + (f" and optionally {optional}" if optional else "")
+        hint = f" {did_you_mean(unknown[0], required + optional)}" if unknown and required + optional else ""
+        raise TermError(f"{label} expects {asked}, got {list(params)}.{hint}")
 
 
 def _resolve_entities(signature: inspect.Signature, params: dict[str, Any], env: Any, label: str) -> None:

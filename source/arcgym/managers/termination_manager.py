@@ -11,6 +11,7 @@ import torch
 from arcgym.managers.manager_base import ManagerBase
 from arcgym.managers.sensor_use import may_read_sensors
 from arcgym.managers.term_cfg import TerminationTermCfg
+from arcgym.utils.errors import TermError
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -82,7 +83,7 @@ class TerminationManager(ManagerBase):
     def _check_bool(self, values: dict[str, torch.Tensor]) -> None:
         for name, value in values.items():
             if value.dtype != torch.bool:
-                raise TypeError(f"Term '{name}' of TerminationManager returned {value.dtype}, expected torch.bool.")
+                raise TermError(f"Term '{name}' of TerminationManager returned {value.dtype}, expected torch.bool.")
 
     def _sorted_names(self) -> list[str]:
         """Names of the terms, those that are no time-outs first: the rows of the flags."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import torch
 
 from arcgym.managers.manager_base import ManagerBase
-from arcgym.utils.worlds import fill_worlds, finite_rows
+from arcgym.utils.worlds import fill_worlds
 
 if TYPE_CHECKING:
     from arcgym.envs import ManagerBasedEnv
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 class WeightedSumManager(ManagerBase):
     """Adds ``weight * value * dt`` over its terms.
 
-    A value that is not finite counts as zero: the world it comes from is being reset.
+    A value that is not finite counts as zero: a world whose state is not finite is being reset. Those of other worlds
+    are counted, see :meth:`ManagerBase.non_finite_terms`.
     """
 
     log_name: ClassVar[str]
@@ -64,7 +65,7 @@ class WeightedSumManager(ManagerBase):
             return torch.zeros(self.num_envs, device=self.device)
         self._dt = dt
         values = [self._evaluate(name) if term.weight else self._zero for name, term in self._terms.items()]
-        self._values = finite_rows(values) * self._scale(dt)
+        self._values = self._finite_rows(values) * self._scale(dt)
         self._sums += self._values
         return reduce(torch.add, self._values.unbind())  # in the order of the terms, whatever the number of worlds
 

@@ -31,7 +31,7 @@ def read_checkpoint(path: str | Path, device: str = "cpu") -> dict[str, Any]:
     try:
         contents = torch.load(path, weights_only=True, map_location=device)
     except Exception as error:
-        reason = str(error).splitlines()[0] if str(error) else type(error).__name__
+        reason = str(error).partition(". ")[0].splitlines()[0] if str(error) else type(error).__name__
         raise UsageError(
             f"{path} cannot be loaded as weights; it is damaged, or holds objects that would run code: {reason}"
         ) from error

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import re
 import statistics
 from collections.abc import Callable
 from pathlib import Path
@@ -133,8 +134,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         try:
             self.alg.load(contents, load_cfg, strict)
         except (KeyError, RuntimeError, ValueError) as error:
-            reason = error.args[0] if error.args else error
-            raise UsageError(f"{path} does not fit the agent's configuration: {reason}") from error
+            raise UsageError(f"{path} {_misfit(error, self.env)}") from error
         infos = contents["infos"] or {}
         self.completed_iterations = int(infos.get("completed_iterations", 0))
         self.current_learning_iteration = self.completed_iterations
@@ -237,3 +237,18 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             if self.last_checkpoint != best:
                 self.best_reward = previous
         return self.best_reward
+
+
+def _misfit(error: Exception, env: Any) -> str:
+    """Return why a checkpoint cannot be loaded in one line: the first array of another size, or the error's words."""
+    reason = str(error.args[0] if error.args else error)
+    sizes = r"size mismatch for (\S+): .*?torch.Size\(\[(.*?)\]\).*?torch.Size\(\[(.*?)\]\)"
+    found = re.search(sizes, reason, re.DOTALL)
+    if found is None:
+        return f"does not fit the agent's configuration: {' '.join(reason.split())}"
+    name, saved, own = found.groups()
+    task = getattr(env.unwrapped.spec, "id", "this task")
+    return (
+        f"does not fit the agent's configuration: {name} has the size [{saved}], expected [{own}] in {task}. "
+        "Is it of a robot with other actions, of other observations or of another network?"
+    )

@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar, dataclass_transform
 
 from arcgym.utils.coerce import check_declared, field_types, from_dict, is_config, is_missing, to_plain
-from arcgym.utils.string import did_you_mean
+from arcgym.utils.string import did_you_mean, nearest
 from arcgym.utils.validation import FieldError
 
 __all__ = ["MISSING", "configclass", "copy", "from_dict", "is_config", "replace", "to_dict", "validate"]
@@ -95,9 +95,10 @@ def to_dict(cfg: Any) -> dict[str, Any]:
 def validate(cfg: Any, name: str = "") -> None:
     """Check a configuration and everything inside it, before anything is built from it.
 
-    Nothing may be missing, numbers must not be NaN and must have the type of their field, and texts of ``Literal``
-    fields be among its names. Then the ``validate_config(self)`` of every nested configuration that has one runs; see
-    :mod:`arcgym.utils.validation` for bounds. ``__post_init__`` checks nothing: overrides are written after it.
+    Nothing may be missing, numbers must not be NaN and must have the type of their field, texts of ``Literal`` fields
+    be among its names, and no attribute may be set that is no field. Then the ``validate_config(self)`` of every nested
+    configuration that has one runs; see :mod:`arcgym.utils.validation` for bounds. ``__post_init__`` checks nothing:
+    overrides are written after it.
 
     Args:
         cfg: Configuration.
@@ -116,11 +117,30 @@ def validate(cfg: Any, name: str = "") -> None:
             raise ValueError(f"{path} is nan, expected a number.")
     nested = [(path, value) for path, value in entries if is_config(value)]
     for path, value in nested:
+        _refuse_unknown_names(value, path)
         check_declared(value, path)
     for path, value in reversed(nested):  # the inner ones first: cross-checks may rely on them
         check = getattr(value, "validate_config", None)
         if check is not None:
             _run_check(check, path, is_root=path == name)
+
+
+def _refuse_unknown_names(cfg: Any, path: str) -> None:
+    """Check that nobody has set an attribute that is no field, as ``cfg.widht = 20`` does.
+
+    A configuration may be given further members, such as a term or a sensor; ``None`` takes one of these away, and is
+    refused where a field has nearly that name.
+
+    Raises:
+        ValueError: With the nearest field.
+    """
+    names = [field.name for field in dataclasses.fields(cfg)]
+    for name, value in vars(cfg).items():
+        if name in names or name.startswith("_") or is_config(value):
+            continue
+        if value is None and not nearest(name, names):
+            continue
+        raise ValueError(f"{path or type(cfg).__name__} has no field '{name}'. {did_you_mean(name, names)}")
 
 
 def _run_check(check: Callable[[], None], path: str, is_root: bool) -> None:

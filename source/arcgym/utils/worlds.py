@@ -45,14 +45,6 @@ def replace_worlds(old: dict[str, Any], new: dict[str, Any], env_ids: torch.Tens
     }
 
 
-def finite_rows(values: Sequence[torch.Tensor]) -> torch.Tensor:
-    """Put the values of T terms, shape (N,) each, into rows of new memory, float32, shape (T, N).
-
-    What is not finite becomes zero.
-    """
-    return finite(torch.stack([value.float() for value in values]))
-
-
 def finite(values: torch.Tensor) -> torch.Tensor:
     """Return a copy in which what is not finite is zero."""
     return torch.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)

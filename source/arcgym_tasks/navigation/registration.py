@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from arcgym.utils.registry import register_task
-from arcgym.utils.string import resolve_callable
+from arcgym.utils.string import did_you_mean, resolve_callable
 from arcgym_tasks.navigation.agents import AGENTS
 from arcgym_tasks.navigation.segments import JOURNEYS, TIME_LIMIT_S, ConfigClass
 
@@ -71,9 +71,13 @@ def register_robot(
         Names of the tasks.
 
     Raises:
-        ValueError: If a task is registered already.
+        ValueError: If a task is registered already, or a segment has no time limit.
     """
     tasks = []
+    for name in segments:
+        if name not in TIME_LIMIT_S:
+            hint = did_you_mean(name, TIME_LIMIT_S)
+            raise ValueError(f"register_robot('{robot}', …) names the segment '{name}'. {hint}")
     ways = {**{name.capitalize(): {"segment": name} for name in segments}, **journeys}
     for name, fields in ways.items():
         tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **fields)

@@ -134,7 +134,8 @@ class _Reader:
             raise self.error(path, name, f"a {type(asset).__name__}, expected a texture", mend)
         found = Path(asset.resolvedPath or self.path.parent / asset.path)
         if not found.is_file():
-            raise self.error(path, name, f"texture {asset.path} does not exist", "Put the image beside the stage")
+            mend = "Put the image there, or its path into the attribute; shipped colons share that of colon_1"
+            raise self.error(path, name, f"texture {found} does not exist", mend)
         return found
 
 
