@@ -390,3 +390,8 @@ def test_events_begin_with_the_patient() -> None:
     """What follows belongs to the world's patient, and evaluations of several patients put theirs there."""
     cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
     assert next(iter(vars(cfg.events))) == "patient"
+
+
+def test_a_segment_that_is_misspelt_is_refused_when_it_is_registered() -> None:
+    with pytest.raises(ValueError, match="names the segment 'rectm'. Did you mean 'rectum'"):
+        register_robot("Nowhere", "my_package:Cfg", segments=("rectm",), journeys={})

@@ -71,17 +71,25 @@ def register_robot(
         Names of the tasks.
 
     Raises:
-        ValueError: If a task is registered already, or a segment has no time limit.
+        ValueError: If a task is registered already, or there is no such segment.
     """
     tasks = []
-    for name in segments:
-        if name not in TIME_LIMIT_S:
-            hint = did_you_mean(name, TIME_LIMIT_S)
-            raise ValueError(f"register_robot('{robot}', …) names the segment '{name}'. {hint}")
+    _check_segments(robot, segments)
     ways = {**{name.capitalize(): {"segment": name} for name in segments}, **journeys}
     for name, fields in ways.items():
         tasks += register_navigation_task(f"ARC-{name}-{robot}", env_cfg, agents=agents, **fields)
     return tasks
+
+
+def _check_segments(robot: str, names: Sequence[str]) -> None:
+    """Raise if there is no such segment."""
+    for name in names:
+        if name not in TIME_LIMIT_S:
+            from arcgym.anatomy.segments import SEGMENTS  # brings USD, which a list of tasks can do without
+
+            if name not in SEGMENTS:
+                hint = did_you_mean(name, dict.fromkeys((*SEGMENTS, *TIME_LIMIT_S)))
+                raise ValueError(f"register_robot('{robot}', …) names the segment '{name}'. {hint}")
 
 
 def register_navigation_task(
