@@ -6,7 +6,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from arcgym.assets.shell_geometry import ShellGeometry, fold_gradients
+from arcgym.assets.shell_geometry import ShellGeometry
+
+
+def fold_gradients(points: np.ndarray, hinges: np.ndarray) -> np.ndarray:
+    """Return the derivative of each hinge's angle with respect to its vertices [rad/m], shape (H, 4, 3)."""
+    x0, x1, x2, x3 = (points[hinges[:, k]].astype(np.float64) for k in range(4))
+    edge = x3 - x2
+    squared = (edge**2).sum(1, keepdims=True)
+    n0, n1 = np.cross(x2 - x0, x3 - x0), np.cross(x3 - x1, x2 - x1)
+    g0 = -np.sqrt(squared) * n0 / (n0**2).sum(1, keepdims=True)
+    g1 = -np.sqrt(squared) * n1 / (n1**2).sum(1, keepdims=True)
+    t0, t1 = ((x0 - x2) * edge).sum(1, keepdims=True) / squared, ((x1 - x2) * edge).sum(1, keepdims=True) / squared
+    return np.stack([g0, g1, (t0 - 1.0) * g0 + (t1 - 1.0) * g1, -t0 * g0 - t1 * g1], axis=1)
 
 
 def stretching_stiffness(points: np.ndarray, geometry: ShellGeometry) -> tuple[np.ndarray, np.ndarray]:

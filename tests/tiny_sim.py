@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import warp as wp
 from tiny import write_tiny_colon
 from tiny_scope import write_tiny_scope
 
@@ -22,6 +24,11 @@ SCOPES = {"capsule": CAPSULE_CFG, "magnetic": MAGNETIC_CFG, "proximal": PROXIMAL
 def steps(sim: Simulation, seconds: float) -> int:
     """Physics steps in ``seconds``, however long one is."""
     return round(seconds / sim.physics_dt)
+
+
+def own_patients(count: int, device: str) -> wp.array:
+    """Return the index of patients for one world each, 0 to ``count`` - 1, shape (count,), int32."""
+    return wp.array(np.arange(count, dtype=np.int32), dtype=int, device=device)
 
 
 class TinySim:

@@ -10,6 +10,7 @@ import scipy.linalg
 import torch
 import warp as wp
 from small_strain import stretching_stiffness, tet_stiffness
+from static_force import static_force
 from tiny_sim import TinySim
 
 from arcgym.assets.shell_geometry import shell_geometry
@@ -70,7 +71,7 @@ def basis(sim: Simulation) -> np.ndarray:
 def elastic_force(sim: Simulation, points: np.ndarray) -> np.ndarray:
     """Force of the elements, shape (3 V,)."""
     x = wp.array(points[:, None].astype(np.float32), dtype=wp.vec3, device="cpu")
-    return sim.wall.static_force(x, sim.contact, sim.state.body_q).numpy()[:, 0].astype(float).ravel()
+    return static_force(sim, x).numpy()[:, 0].astype(float).ravel()
 
 
 @pytest.mark.parametrize("kind", ["shell", "solid"])

@@ -11,11 +11,10 @@ import pytest
 import torch
 import warp as wp
 from hairpin import COLON, HairpinSim, hairpin, of_rings, step_wall
-from tiny_sim import steps
+from tiny_sim import own_patients, steps
 
 from arcgym.sim import ContactCfg, LoopFrictionCfg, Simulation, WallSolverCfg
 from arcgym.sim.contact.self_contact import SelfContact
-from arcgym.sim.patient_arrays import own_patients
 from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.sim.wall.surroundings_kernels import measure_surroundings
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from static_force import static_force
 from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
@@ -92,7 +93,7 @@ def test_a_capsule_touches_a_fold_that_the_wall_does_not_have(folded: TinySim, s
 
 def test_what_the_fold_does_to_the_capsule_it_does_to_the_wall(sim: Simulation) -> None:
     place(sim, x=0.0095)
-    on_wall = sim.wall.static_force(sim.nodal_pos, sim.contact, sim.state.body_q).numpy()[:, 0]
+    on_wall = static_force(sim).numpy()[:, 0]
     np.testing.assert_allclose(on_wall.sum(axis=0), -force_on_capsule(sim), rtol=1e-3, atol=1e-4)
     pressed = np.flatnonzero(np.linalg.norm(on_wall, axis=1) > 1e-2)
     assert set(sim.colon.wall.ring[pressed]) <= {7, 8, 9}  # the fold stands on ring 8, at 0.1 m

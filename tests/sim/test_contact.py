@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 import torch
+from static_force import static_force
 from tiny_sim import TinySim, steps
 
 from arcgym.assets import TipPullCfg
@@ -48,7 +49,7 @@ def wall_force(sim: Simulation, link_velocity: tuple = (0.0, 0.0, 0.0)) -> np.nd
 
 def force_on_wall(sim: Simulation) -> np.ndarray:
     """Force on each wall vertex at rest [N], shape (V, 3): contact alone, friction left out."""
-    return sim.wall.static_force(sim.nodal_pos, sim.contact, sim.state.body_q).numpy()[:, 0]
+    return static_force(sim).numpy()[:, 0]
 
 
 def count(sim: Simulation) -> int:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from static_force import static_force
 from tiny_scope import tiny_scope_spec
 from tiny_sim import TinySim
 
@@ -92,7 +93,7 @@ def force_on_wall(sim: Simulation, with_contact: bool) -> np.ndarray:
     """Force on each vertex that moves [N], shape (V, 3)."""
     if not with_contact:
         sim.contact.records.vertex_head.fill_(-1)
-    return sim.wall.static_force(sim.nodal_pos, sim.contact, sim.state.body_q).numpy()[:, 0]
+    return static_force(sim).numpy()[:, 0]
 
 
 @pytest.fixture(scope="module")

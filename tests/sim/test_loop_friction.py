@@ -9,11 +9,11 @@ import pytest
 import torch
 import warp as wp
 from hairpin import COLON, LOWER, UPPER, HairpinSim, draw_together, of_rings, step_wall, two_tubes
+from tiny_sim import own_patients
 
 from arcgym.sim import LoopFrictionCfg, Simulation, WallSolverCfg
 from arcgym.sim.contact.loop_friction import LoopFriction
 from arcgym.sim.contact.self_contact import SelfContact
-from arcgym.sim.patient_arrays import own_patients
 from arcgym.sim.wall.surroundings import Surroundings
 from arcgym.utils.configclass import validate
 

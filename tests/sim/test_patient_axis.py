@@ -149,7 +149,7 @@ def test_each_patient_has_start_states_of_its_own(tiny: TinySim, paths: list[str
 
 def test_a_patient_that_does_not_exist_is_refused(tiny: TinySim, paths: list[str]) -> None:
     sim = tiny("capsule", colon={"usd_path": paths})
-    with pytest.raises(IndexError, match=r"Patients \[2\]: there are 2"):
+    with pytest.raises(IndexError, match=r"patient is \[2\], expected indices from 0 to 1"):
         sim.colon.write_patient_to_sim(torch.tensor([2]))
 
 

@@ -9,10 +9,10 @@ import pytest
 import torch
 import warp as wp
 from hairpin import COLON, LOWER, UPPER, HairpinSim, draw_together, of_rings, step_wall, two_tubes
+from tiny_sim import own_patients
 
 from arcgym.sim import Simulation, WallSolverCfg
 from arcgym.sim.contact.self_contact import SelfContact
-from arcgym.sim.patient_arrays import own_patients
 
 
 @pytest.fixture(scope="module")

@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 import warp as wp
-from small_strain import bending_stiffness, stretching_stiffness
+from small_strain import bending_stiffness, fold_gradients, stretching_stiffness
+from static_force import static_force
 from tiny import tiny_colon_stage
 from tiny_sim import TinySim
 
 from arcgym.anatomy.meshing.wall import tube_triangles
 from arcgym.anatomy.shell import mid_surface, wall_thickness
 from arcgym.assets.materials import shell_moduli
-from arcgym.assets.shell_geometry import fold_angles, fold_gradients, polygon_factor, shell_geometry
+from arcgym.assets.shell_geometry import fold_angles, polygon_factor, shell_geometry
 from arcgym.sim import Simulation
 
 SQUARE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
@@ -138,7 +139,7 @@ def sim(tiny_sim: TinySim) -> Simulation:
 def elastic_force(sim: Simulation, points: np.ndarray) -> np.ndarray:
     """Force of the wall's elements at ``points`` [N], shape (V, 3), without anchors and inertia."""
     x = wp.array(points[:, None].astype(np.float32), dtype=wp.vec3, device="cpu")
-    out = sim.wall.static_force(x, sim.contact, sim.state.body_q)
+    out = static_force(sim, x)
     nodes = sim.wall.nodes
     anchors = nodes.anchors.stiffness.numpy() * (points - nodes.anchors.rest.numpy()[:, 0])
     return out.numpy()[:, 0] + anchors

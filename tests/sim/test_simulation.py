@@ -222,5 +222,5 @@ def test_impossible_settings_are_refused(changes: dict, message: str) -> None:
 
 
 def test_no_worlds_are_refused(narrow: TinySim) -> None:
-    with pytest.raises(ValueError, match="num_envs is 0; at least one"):
+    with pytest.raises(ValueError, match="num_envs is 0, expected 1 or more worlds"):
         build(narrow, num_envs=0)

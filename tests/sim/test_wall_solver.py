@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import torch
+from static_force import static_force
 from tiny_sim import TinySim
 
 from arcgym.sim import ContactCfg, Simulation, WallSolverCfg
@@ -26,7 +27,7 @@ def step_wall(sim: Simulation, steps: int) -> None:
 
 def force_on_wall(sim: Simulation) -> np.ndarray:
     """Elastic, anchor and contact force on each vertex that moves [N], shape (V, 3)."""
-    return sim.wall.static_force(sim.nodal_pos, sim.contact, sim.state.body_q).numpy()[:, 0]
+    return static_force(sim).numpy()[:, 0]
 
 
 def held(sim: Simulation) -> np.ndarray:

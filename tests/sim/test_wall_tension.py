@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 import warp as wp
+from static_force import static_force
 from tiny import TINY_SEGMENTS
 from tiny_sim import TinySim
 
@@ -42,7 +43,7 @@ def filled(tube: TinySim, colon: dict[str, Any], **gas: Any) -> Simulation:
 def forces(sim: Simulation, x: np.ndarray) -> np.ndarray:
     """Return the force on each vertex at rest at ``x`` [N], both of shape (V, 3)."""
     at = wp.array(x[:, None].astype(np.float32), dtype=wp.vec3, device=sim.device)
-    return sim.wall.static_force(at, sim.contact, sim.state.body_q).numpy()[:, 0].astype(float)
+    return static_force(sim, at).numpy()[:, 0].astype(float)
 
 
 def around(sim: Simulation) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -70,7 +70,8 @@ class ColonCfg:
     mesentery: MesenteryCfg = MesenteryCfg()
     """Sheets that some segments hang on, in place of their anchors; off by default."""
     mobile_until: float | None = None
-    """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves all."""
+    """Arc length [m] beyond which the wall is held still. Saves time where the scope never goes; ``None`` moves
+    all, 0 none."""
 
     def validate_config(self) -> None:
         """Check names and bounds.
@@ -82,7 +83,8 @@ class ColonCfg:
 
         require(self, "material", TISSUE_PRESETS)
         require_at_least(self, 1, "num_patients")
-        require_positive(self, "wall_thickness", "mobile_until", unit="m")
+        require_positive(self, "wall_thickness", unit="m")
+        require_non_negative(self, "mobile_until", unit="m")
         require_positive(self, "youngs_modulus", unit="Pa")
         require(self, "poissons_ratio", Range(0.0, 0.5, below=True))
         require_positive(self, "density", unit="kg/m^3")

@@ -180,7 +180,10 @@ class _Reader:
         """Refuse a stage that is not in metres with Z up: rescaling would need masses, inertias and drives too."""
         meters, up = UsdGeom.GetStageMetersPerUnit(self.usd), UsdGeom.GetStageUpAxis(self.usd)
         if not math.isclose(meters, 1.0):
-            raise self._error("", "metersPerUnit", f"is {meters:g}", "Export the stage in metres (metersPerUnit 1).")
+            found = (
+                f"is {meters:g}" if UsdGeom.StageHasAuthoredMetersPerUnit(self.usd) else "is not set, which means 0.01"
+            )
+            raise self._error("", "metersPerUnit", found, "Export the stage in metres (metersPerUnit 1).")
         if up != UsdGeom.Tokens.z:
             raise self._error("", "upAxis", f"is {up}", "Export the stage with Z up.")
 

@@ -30,8 +30,3 @@ def patient_array(values: Sequence[np.ndarray], dtype: Any, device: str) -> wp.a
     inner = getattr(dtype, "_shape_", ())
     stacked = np.stack([np.asarray(value) for value in values], axis=values[0].ndim - len(inner))
     return wp.array(np.ascontiguousarray(stacked), dtype=dtype, device=device)
-
-
-def own_patients(count: int, device: str) -> wp.array:
-    """Return the index of patients for one world each, 0 to ``count`` - 1, shape (count,), int32."""
-    return wp.array(np.arange(count, dtype=np.int32), dtype=int, device=device)

@@ -103,7 +103,7 @@ def _beside_colon(scene: InteractiveScene, patient: int) -> SnapshotSet | None:
     states = SnapshotSet.load(path)
     problem = states.mismatch(scene.sim, patient)
     if problem:
-        say(f"start states {path} do not fit: {problem}")
+        say(f"start states {path} do not fit: {problem}; those in the cache are taken, or made now")
         return None
     return states
 

@@ -20,6 +20,7 @@ from typing import Any
 
 import gymnasium
 
+from arcgym.utils.errors import UsageError
 from arcgym.utils.garbage import importing
 from arcgym.utils.string import did_you_mean, nearest, resolve_callable
 
@@ -39,6 +40,10 @@ PLAY = "-Play"
 """In the names of tasks that are made for watching: at the end, or before a version, ``My-Task-Play-v0``."""
 
 _loaded: set[str] = set()
+
+
+class TaskPackageError(UsageError, ImportError):
+    """A package that registers tasks cannot be imported."""
 
 
 def plain_task(task: str) -> str:
@@ -87,7 +92,7 @@ def load_task_packages() -> None:
     """Import every package that registers tasks, each once.
 
     Raises:
-        ImportError: If a package cannot be imported, with its name and where it was declared.
+        TaskPackageError: If a package cannot be imported, with its name and where it was declared.
     """
     found = {name: "built in" for name in BUILTIN_PACKAGES}
     for entry in importlib.metadata.entry_points(group=ENTRY_POINT_GROUP):
@@ -98,7 +103,7 @@ def load_task_packages() -> None:
         try:
             importlib.import_module(module)
         except ImportError as error:
-            raise ImportError(f"Cannot import the task package '{module}' ({origin}): {error}") from error
+            raise TaskPackageError(f"Cannot import the task package '{module}' ({origin}): {error}") from error
         _loaded.add(module)
 
 

@@ -75,7 +75,10 @@ class _Reader:
         units = UsdGeom.GetStageMetersPerUnit(self.usd)
         if not np.isclose(units, 1.0):
             mend = "Scale the points to metres and set metersPerUnit = 1"
-            raise StageError(self.path, "/", "metersPerUnit", f"found {units:g}, expected 1", mend)
+            found = (
+                f"found {units:g}" if UsdGeom.StageHasAuthoredMetersPerUnit(self.usd) else "not set, which means 0.01"
+            )
+            raise StageError(self.path, "/", "metersPerUnit", f"{found}, expected 1", mend)
         axis = UsdGeom.GetStageUpAxis(self.usd)
         if axis != UsdGeom.Tokens.z:
             mend = 'Turn the points so that +Z is cranial and set upAxis = "Z"'

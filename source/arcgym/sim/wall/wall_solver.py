@@ -298,33 +298,6 @@ class WallSolver:
             else:
                 move(0, len(color))
 
-    def static_force(self, x: wp.array, contact: ContactSearch, body_q: wp.array) -> wp.array:
-        """Return the force on every mobile vertex at rest [N], shape (V, W), vec3, without friction.
-
-        Args:
-            x: Wall positions [m], shape (V, W), vec3.
-            contact: Contacts at hand.
-            body_q: Link poses, shape (W*L,).
-        """
-        force = wp.zeros_like(x)
-        contacts = self._contacts(contact, x, body_q, body_q)
-        self.self_contact.measure(x)
-        if self.surroundings is not None:
-            self.surroundings.measure(x, self.tissue, self.dt)
-        if self.gas is not None:
-            self.gas.hold(x)
-        self._measure(x)
-        inertial = x
-        if self.weight is not None:
-            inertial = wp.clone(x)
-            self.weight.add(self.nodes, self.tissue, self.dt, inertial)
-        if self.on_gpu:
-            self._pack(contacts, x)
-        self._residual(x, inertial, contacts, force)
-        if self.kept is not None:
-            self.kept.forget_rows()
-        return force
-
     def _measure(self, x: wp.array) -> None:
         """Measure the elements at ``x``: their forces, and their stiffness in the rings' modes."""
         self.elements.measure(x, self.tissue)
