@@ -5,14 +5,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from tiny import write_tiny_colon
 
+from arcgym.cli.evaluate import load_trial_cfgs
 from arcgym.cli.main import main
-from arcgym.evaluation.result_folder import read_run, read_trial_rows
-from arcgym.evaluation.trials import Trial, write_conditions
+from arcgym.evaluation.evaluate import _run_batch
+from arcgym.evaluation.identity import changes_of
+from arcgym.evaluation.options import EvaluationOptions
+from arcgym.evaluation.result_folder import ResultFolder, read_run, read_trial_rows
+from arcgym.evaluation.trials import Trial, read_conditions, write_conditions
 from arcgym.utils.errors import UsageError
+from arcgym.utils.hydra import apply_overrides
+from arcgym.utils.registry import load_cfg_from_registry
 
 
 def evaluate(folder: Path, conditions: Path, *more: str) -> list[dict]:
@@ -211,9 +218,6 @@ def test_what_was_made_easier_is_written_down(tmp_path: Path, conditions: Path) 
 
 def test_fields_of_an_effect_that_is_off_change_no_task() -> None:
     """The default of the abdomen's shape changed, and a policy trained before meets the same task, without abdomen."""
-    from arcgym.evaluation.identity import changes_of
-    from arcgym.utils.registry import load_cfg_from_registry
-
     task = "ARC-LeftColon-Magnetic"
     cfg = load_cfg_from_registry(task, "env_cfg_entry_point")
     usual = cfg.scene.colon.abdomen.squareness
@@ -222,6 +226,54 @@ def test_fields_of_an_effect_that_is_off_change_no_task() -> None:
     cfg.scene.colon.abdomen.enabled = True
     prefix = "scene.colon.abdomen"
     assert changes_of(task, cfg) == {f"{prefix}.enabled": [False, True], f"{prefix}.squareness": [usual, 4.0]}
+
+
+def test_fields_of_an_effect_that_a_switch_switches_on_change_the_task() -> None:
+    """Sheets of another fullness change nothing without sheets, and the task with ``env.clinical=[mesentery]``."""
+    for more, found in (([], []), (["env.clinical=[mesentery]"], ["clinical", "scene.colon.mesentery.fullness"])):
+        cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+        apply_overrides({"env": cfg}, ["env.scene.colon.mesentery.fullness=2.0", *more])
+        assert sorted(changes_of("ARC-LeftColon-Magnetic", cfg)) == found
+
+
+def test_a_start_that_fails_leaves_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "mine.csv"
+    write_conditions(path, [Trial(0, "colon_9", 100)], "A patient that is not there.")
+    with pytest.raises(SystemExit):
+        evaluate(tmp_path / "out", path)
+    error = capsys.readouterr().err
+    assert "colon_9: no such file" in error and len(error.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_evaluation_does_not_go_on_with_other_settings(tmp_path: Path) -> None:
+    folder = ResultFolder(tmp_path / "a", {"agent": "zero", "suite": "paper"})
+    folder.note_changes("A", {"sim.dt": [1.0, 2.0]})
+    folder.note_changes("A", {})  # no trial has run with the first
+    folder.add({"task": "A", "agent": "zero", "trial": 0})
+    folder.note_changes("A", {})
+    with pytest.raises(UsageError, match="trials of A that were run otherwise: 'changes' was {} and is"):
+        folder.note_changes("A", {"sim.dt": [1.0, 2.0]})
+
+
+def test_contacts_without_room_of_an_evaluation_that_was_stopped_are_counted(
+    tmp_path: Path, conditions: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stopped(env: Any, *rest: Any) -> None:
+        env.unwrapped.sim.dropped_contacts[0] = 7
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("arcgym.evaluation.evaluate.run_trials", stopped)
+    folder = ResultFolder(tmp_path / "out", {"agent": "zero", "suite": "paper"})
+    cfg = load_trial_cfgs(
+        "ARC-Rectum-Capsule", None, ("env.start=rest", "env.scene.camera.width=16", "env.sim.device=cpu")
+    )
+    trials = read_conditions(conditions).trials[:1]
+    options = EvaluationOptions(("zero",), "paper", (), 1, 1, "cpu")
+    with pytest.raises(KeyboardInterrupt):
+        _run_batch("ARC-Rectum-Capsule", "zero", trials, lambda task, checkpoint: cfg, options, folder)
+    assert folder.dropped("ARC-Rectum-Capsule") == 7
+    assert cfg[0].curriculum is None  # trials are the same whatever was learnt before
 
 
 def test_the_expert_withdraws_and_sees_mucosa(tmp_path: Path, tiny_colon_path: Path) -> None:

@@ -35,3 +35,17 @@ def test_nothing_beside_it_says_so(tmp_path: Path) -> None:
     assert trained_on(tmp_path / "model_0.pt") is None
     write_params(tmp_path, run={"task": "ARC-Rectum-Capsule"}, env={}, agent={})
     assert trained_on(tmp_path / "model_0.pt") is None
+
+
+def test_those_that_a_run_began_from_are_its_patients_too(tmp_path: Path) -> None:
+    """A second run in colon 1 that went on from one in colon 2, and a third that went on from a file that is gone."""
+    run = {"task": "ARC-Rectum-Capsule"}
+    first, second, third = tmp_path / "first", tmp_path / "second", tmp_path / "third"
+    began = {second: str(first / "model_0.pt"), third: str(tmp_path / "gone.pt")}
+    for folder, colon in ((first, "colon_2/colon.usda"), (second, "colon_1/colon.usda"), (third, "colon_1/colon.usda")):
+        folder.mkdir()
+        agent = {"init_policy": began[folder]} if folder in began else {}
+        write_params(folder, run=run, env={"scene": {"colon": {"usd_path": colon}}}, agent=agent)
+        (folder / "model_0.pt").touch()
+    assert trained_on(second / "model_0.pt") == ["colon_1/colon.usda", "colon_2/colon.usda"]
+    assert trained_on(third / "model_0.pt") == ["colon_1/colon.usda", f"unknown: {tmp_path / 'gone.pt'}"]

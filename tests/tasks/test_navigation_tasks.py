@@ -318,6 +318,24 @@ def test_less_gas_is_given_to_every_patient_that_a_text_names() -> None:
     assert cfg.scene.colon.usd_path == "population:20000*0.8,20001*0.8"
 
 
+def test_pictures_that_were_added_are_spoilt_and_delayed_as_well() -> None:
+    """A picture of now beside the policy's own is late in ``delay_3``; one of 2 s ago stays of 2 s ago."""
+    for variant in ("blur_3", "delay_3"):
+        cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
+        apply_overrides({"env": cfg}, [
+            "env.observations.policy.terms={now: {func: 'arcgym.envs.mdp.observations:rgb'}, "
+            "old: {func: 'arcgym.envs.mdp.observations:rgb', delay_min_lag: 20, delay_max_lag: 20}}"
+        ])  # fmt: skip
+        cfg.robustness = variant
+        cfg.resolve()
+        policy = cfg.observations.policy
+        terms = [policy.rgb, *policy.terms.values()]
+        if variant == "blur_3":
+            assert [term.params["amount"] for term in terms] == [0.04] * 3
+        else:
+            assert [(term.delay_min_lag, term.delay_max_lag) for term in terms] == [(4, 4), (4, 4), (20, 20)]
+
+
 def test_a_variant_that_does_not_exist_or_fit_is_refused() -> None:
     cfg = load_cfg_from_registry("ARC-LeftColon-Magnetic", "env_cfg_entry_point")
     cfg.robustness = "blur_4"
