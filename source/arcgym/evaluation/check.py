@@ -233,14 +233,14 @@ def _patients(trained_on: Sequence[Any]) -> list[str]:
     for text in texts:
         population, colon, members = text.partition(":")
         if colon and "/" not in population:
-            found += [f"{population}:{_number(member)}" for member in members.split(",")]
+            found += [f"{population}:{_patient(member)}" for member in members.split(",")]
         else:
             stored = re.fullmatch(r"patient_(\d+)", Path(text).parent.name)  # a patient of the population in the cache
             found.append(f"population:{int(stored[1])}" if stored else "/".join(Path(text).parts[-2:]))
     return found
 
 
-def _number(member: str) -> str:
+def _patient(member: str) -> str:
     """Return a patient of a population without its gas: ``20000`` for ``020000*0.9``, and a split as it is."""
     name = member.partition("*")[0].strip()
     return str(int(name)) if name.isdigit() else name

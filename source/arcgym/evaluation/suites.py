@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -66,8 +68,9 @@ def split_task(task: str) -> tuple[str, str | None]:
     return name, variant or None
 
 
-def read_suites(path: Path = FOLDER / "suites.yaml") -> dict[str, Suite]:
-    """Return the suites of a file by name."""
+@functools.cache
+def read_suites(path: Path = FOLDER / "suites.yaml") -> Mapping[str, Suite]:
+    """Return the suites of a file by name; each file is read once."""
     return {name: _suite(values) for name, values in yaml.safe_load(path.read_text()).items()}
 
 
