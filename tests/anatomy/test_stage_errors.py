@@ -99,7 +99,13 @@ def test_missing_file_far_from_any_stage_lists_those_that_ship(tmp_path: Path) -
 
 def test_not_a_usd_file(tmp_path: Path) -> None:
     (tmp_path / "colon.usda").write_text("hello")
-    with pytest.raises(StageError, match="not a USD file"):
+    with pytest.raises(StageError, match=r"not a USD file \([^(]* is not a valid usda layer\). Pass"):
+        read_colon(tmp_path / "colon.usda")
+
+
+def test_the_line_of_a_file_that_is_cut_off_is_named(tmp_path: Path) -> None:
+    (tmp_path / "colon.usda").write_text('#usda 1.0\ndef Xform "a" {\n    float x = \n')
+    with pytest.raises(StageError, match=r"not a USD file \(.*colon.usda:3:[^\n]*\). Pass"):
         read_colon(tmp_path / "colon.usda")
 
 

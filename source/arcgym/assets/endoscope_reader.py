@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Gf, Tf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
-from arcgym.anatomy.stage import StageError
+from arcgym.anatomy.stage import StageError, open_stage
 from arcgym.assets.endoscope_spec import (
     CameraSpec,
     DriveSpec,
@@ -125,22 +125,25 @@ def _pairs(hinges: Sequence[Sequence[Usd.Prim]], value: Callable[[Usd.Prim], flo
     return np.array([[value(turn) for turn in hinge] for hinge in hinges]).reshape(-1, 2)
 
 
+def _list_files(folder: Path) -> str:
+    near = ", ".join(sorted(file.name for file in folder.glob("*.usd*"))) or "no USD file"
+    return f"The folder {folder} has {near}."
+
+
 class _Reader:
     """An open stage and the checks of its values."""
 
     def __init__(self, path: Path) -> None:
-        if not path.is_file():
-            near = ", ".join(sorted(file.name for file in path.parent.glob("*.usd*"))) or "no USD file"
-            raise StageError(path, "", "", "no such file", f"The folder {path.parent} has {near}.")
         self.path = path
-        try:
-            self.usd = Usd.Stage.Open(str(path))
-        except Tf.ErrorException as error:
-            raise StageError(path, "", "", f"not a USD file ({error})", "Pass a .usda, .usdc or .usd file.") from error
+        self.usd = open_stage(  # no rescaling: it would need masses, inertias and drives, too
+            path,
+            missing=lambda: _list_files(path.parent),
+            meters="Export the stage in metres (metersPerUnit 1).",
+            up="Export the stage with Z up.",
+        )
 
     def read(self) -> EndoscopeStage:
-        """Check units and layout, then collect the values."""
-        self._check_units()
+        """Check the layout, then collect the values."""
         scope = self._prim(ENDOSCOPE_PATH, UsdPhysics.ArticulationRootAPI)
         links = [prim for prim in self._prim(LINKS_PATH).GetChildren() if prim.HasAPI(UsdPhysics.RigidBodyAPI)]
         if not links:
@@ -175,17 +178,6 @@ class _Reader:
             camera=self._camera(links[-1]),
             lights=self._lights(links[-1]),
         )
-
-    def _check_units(self) -> None:
-        """Refuse a stage that is not in metres with Z up: rescaling would need masses, inertias and drives too."""
-        meters, up = UsdGeom.GetStageMetersPerUnit(self.usd), UsdGeom.GetStageUpAxis(self.usd)
-        if not math.isclose(meters, 1.0):
-            found = (
-                f"is {meters:g}" if UsdGeom.StageHasAuthoredMetersPerUnit(self.usd) else "is not set, which means 0.01"
-            )
-            raise self._error("", "metersPerUnit", found, "Export the stage in metres (metersPerUnit 1).")
-        if up != UsdGeom.Tokens.z:
-            raise self._error("", "upAxis", f"is {up}", "Export the stage with Z up.")
 
     def _check_shapes(self, shapes: Sequence[Usd.Prim], length: np.ndarray, radius: np.ndarray) -> None:
         """Each link must collide as a capsule along Z, as high as its length asks for."""

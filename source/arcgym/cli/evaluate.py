@@ -18,8 +18,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -63,18 +62,6 @@ class EvaluateArguments:
     """Texts ``env.path=value``."""
 
 
-@contextmanager
-def _one_line_of_stages() -> Iterator[None]:
-    """Turn the error of a stage that cannot be used, such as one that is not there, into a mistake of the caller."""
-    from arcgym.anatomy import StageError
-    from arcgym.utils.errors import UsageError
-
-    try:
-        yield
-    except StageError as error:
-        raise UsageError(str(error)) from error
-
-
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_fields(parser, EvaluateArguments)
@@ -104,7 +91,7 @@ def run(namespace: argparse.Namespace) -> None:
     def load(task: str, checkpoint: Path | None) -> tuple[Any, Any]:
         return load_trial_cfgs(split_task(task)[0], checkpoint, (*suite.overrides_of(task), *args.overrides))
 
-    with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"), _one_line_of_stages():
+    with stopped_cleanly(f"{args.out} has the trials that ended, and the same command goes on"):
         if min(args.processes, len(conditions.trials)) > 1:
             folder = _evaluate_in_processes(args, conditions, len(tasks))
         else:
@@ -149,7 +136,7 @@ def _write_reports(folder: ResultFolder) -> None:
     print(f"rows as Parquet: {parquet or 'none, it needs pyarrow (pip install arcgym[study])'}")
 
 
-def _choose(name: str, known: dict[str, Any], kind: str) -> Any:
+def _choose(name: str, known: Mapping[str, Any], kind: str) -> Any:
     from arcgym.utils.errors import UsageError
     from arcgym.utils.string import did_you_mean
 

@@ -24,12 +24,9 @@ def run(args: argparse.Namespace) -> None:
     """Write the picture."""
     if args.out.suffix.lower() not in SUFFIXES:
         raise UsageError(f"cannot write a picture '{args.out}'; expected a name that ends in {', '.join(SUFFIXES)}")
-    from arcgym.anatomy import StageError, read_colon
+    from arcgym.anatomy import read_colon
 
-    try:
-        stage = read_colon(resolve_stage(args.stage))
-    except StageError as error:
-        raise UsageError(str(error)) from error
+    stage = read_colon(resolve_stage(args.stage))
     from arcgym.viewers.colon_page import draw_page
 
     args.out.parent.mkdir(parents=True, exist_ok=True)

@@ -3,7 +3,7 @@
 """Colon stages: data classes, and the functions that write and read them as USD.
 
 In reading order: :mod:`types`, the arrays of a colon; :mod:`layout`, their names in a file; :mod:`writer`;
-:mod:`reader`, which says what is wrong with a file.
+:mod:`opening` and :mod:`reader`, which say what is wrong with a file.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from arcgym.anatomy.stage.layout import (
     VISUAL_PATH,
     WALL_PATH,
 )
+from arcgym.anatomy.stage.opening import open_stage
 from arcgym.anatomy.stage.reader import read_colon
 from arcgym.anatomy.stage.types import (
     Centerline,
@@ -46,6 +47,7 @@ __all__ = [
     "TissueMaterial",
     "VisualMesh",
     "WallMesh",
+    "open_stage",
     "read_colon",
     "write_colon",
 ]

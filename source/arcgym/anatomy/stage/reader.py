@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pxr import Sdf, Tf, Usd, UsdGeom, UsdShade
+from pxr import Sdf, Usd, UsdShade
 
 from arcgym.anatomy.measures import flipped_normal_fraction, tet_volumes, winds_outwards
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage import layout
+from arcgym.anatomy.stage.opening import open_stage
 from arcgym.anatomy.stage.types import (
     Centerline,
     ColonStage,
@@ -63,26 +64,12 @@ class _Reader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        if not path.is_file():
-            raise StageError(path, "", "", "no such file", _list_stages(path))
-        try:
-            self.usd = Usd.Stage.Open(str(path))
-        except Tf.ErrorException as error:
-            raise StageError(path, "", "", f"not a USD file ({error})", "Pass a .usda, .usdc or .usd file") from error
-        self._check_units()
-
-    def _check_units(self) -> None:
-        units = UsdGeom.GetStageMetersPerUnit(self.usd)
-        if not np.isclose(units, 1.0):
-            mend = "Scale the points to metres and set metersPerUnit = 1"
-            found = (
-                f"found {units:g}" if UsdGeom.StageHasAuthoredMetersPerUnit(self.usd) else "not set, which means 0.01"
-            )
-            raise StageError(self.path, "/", "metersPerUnit", f"{found}, expected 1", mend)
-        axis = UsdGeom.GetStageUpAxis(self.usd)
-        if axis != UsdGeom.Tokens.z:
-            mend = 'Turn the points so that +Z is cranial and set upAxis = "Z"'
-            raise StageError(self.path, "/", "upAxis", f"found {axis}, expected Z", mend)
+        self.usd = open_stage(
+            path,
+            missing=lambda: _list_stages(path),
+            meters="Scale the points to metres and set metersPerUnit = 1",
+            up='Turn the points so that +Z is cranial and set upAxis = "Z"',
+        )
 
     def error(self, prim: str, attribute: str, found: str, mend: str = _REMAKE) -> StageError:
         return StageError(self.path, prim, attribute, found, mend)

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from arcgym.anatomy.segments import SEGMENTS, segment_index
+from arcgym.utils.errors import UsageError
 
 TEXTURE_LENGTH = 0.24
 """Length of colon that one repeat of the texture covers [m]."""
 
 
-class StageError(ValueError):
+class StageError(UsageError):
     """A stage file cannot be used; the message names file, prim and attribute, what was found and how to mend it."""
 
     def __init__(self, path: str | Path, prim: str, attribute: str, found: str, mend: str) -> None:
