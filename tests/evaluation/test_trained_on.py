@@ -4,14 +4,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
+import h5py
 import pytest
 
-from arcgym.evaluation.identity import trained_on
+from arcgym.evaluation.trained_on import trained_on
 from arcgym.rl.run_folder import write_params
 
+ON_COLON_1 = {"scene": {"colon": {"usd_path": "colon_1/colon.usda"}}}
 TRAIN = "env.scene.colon.usd_path=[colon_1/colon.usda,population:train]"
 
 
@@ -49,3 +52,33 @@ def test_those_that_a_run_began_from_are_its_patients_too(tmp_path: Path) -> Non
         (folder / "model_0.pt").touch()
     assert trained_on(second / "model_0.pt") == ["colon_1/colon.usda", "colon_2/colon.usda"]
     assert trained_on(third / "model_0.pt") == ["colon_1/colon.usda", f"unknown: {tmp_path / 'gone.pt'}"]
+
+
+def test_those_of_recorded_episodes_are_its_patients_too(tmp_path: Path) -> None:
+    """A clone of episodes in two patients of the population, one of them twice, and one of a folder that is gone."""
+    recorded = tmp_path / "dataset"
+    for number, patient in enumerate(("patient_020000", "patient_020000", "patient_000007")):
+        _record(recorded / f"folder_{number}" / "episode_000000.hdf5", f"cache/{patient}/colon.usda")
+    clone, lost = tmp_path / "clone", tmp_path / "lost"
+    for folder, demonstrations in ((clone, recorded), (lost, tmp_path / "gone")):
+        folder.mkdir()
+        agent = {"algorithm": {"demonstrations": str(demonstrations)}}
+        write_params(folder, run={"task": "ARC-Rectum-Capsule"}, env=ON_COLON_1, agent=agent)
+    stages = ["cache/patient_020000/colon.usda", "cache/patient_000007/colon.usda"]
+    assert trained_on(clone / "model_0.pt") == ["colon_1/colon.usda", *stages]
+    assert trained_on(lost / "model_0.pt") == ["colon_1/colon.usda", f"unknown: {tmp_path / 'gone'}"]
+
+
+def test_an_expert_is_asked_in_the_patients_of_the_run(tmp_path: Path) -> None:
+    agent = {"algorithm": {"demonstrations": "expert"}}
+    write_params(tmp_path, run={"task": "ARC-Rectum-Capsule"}, env=ON_COLON_1, agent=agent)
+    assert trained_on(tmp_path / "model_0.pt") == "colon_1/colon.usda"
+
+
+def _record(path: Path, stage: str) -> None:
+    """Write what a recording says about its patient, and nothing else."""
+    path.parent.mkdir(parents=True)
+    with h5py.File(path, "w", libver="latest") as file:
+        file.attrs["arcgym_recording"] = 1
+        demo = file.create_group("data/demo_0")
+        demo.attrs["provenance"] = json.dumps({"stages": {"colon": {"path": stage}}})

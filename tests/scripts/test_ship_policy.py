@@ -14,7 +14,7 @@ from pathlib import Path
 import torch
 from result_folders import write_result_folder
 
-from arcgym.evaluation.identity import trained_on
+from arcgym.evaluation.trained_on import trained_on
 from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.params import read_params
 from arcgym.rl.run_folder import write_params

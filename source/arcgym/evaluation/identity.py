@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import json
 import platform
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,21 +11,18 @@ from typing import Any
 
 import torch
 
-from arcgym.assets import ColonCfg
 from arcgym.envs.provenance import versions
 from arcgym.evaluation.options import EvaluationOptions
 from arcgym.evaluation.resolved_cfg import resolved
-from arcgym.evaluation.result_folder import UNKNOWN
 from arcgym.evaluation.suites import split_task
+from arcgym.evaluation.trained_on import trained_on
 from arcgym.evaluation.trials import Conditions
 from arcgym.rl.checkpoint import file_sha256, read_checkpoint
 from arcgym.rl.device import choose_device
 from arcgym.rl.params import differences, read_params
-from arcgym.rl.pretrained import ABOUT
 from arcgym.rl.rollout import UNTRAINED_POLICIES
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
-from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import load_cfg_from_registry
 
 SET_HERE = (
@@ -40,10 +36,6 @@ SET_HERE = (
     "scene.colon.num_patients",
 )
 """Fields that an evaluation sets itself, with all below them."""
-
-
-BEGUN_FROM = ("init_policy", "teacher_checkpoint")
-"""Fields of an agent that name a checkpoint from which it learns."""
 
 
 def run_record(tasks: Sequence[str], conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
@@ -86,41 +78,6 @@ def run_record(tasks: Sequence[str], conditions: Conditions, options: Evaluation
         "versions": versions(),
         "machine": f"{platform.processor() or platform.machine()}, {_accelerator(options.device)}",
     }
-
-
-def trained_on(checkpoint: Path) -> Any:
-    """Return the patients that a checkpoint was trained on; None where nothing beside it says so.
-
-    The parameters of its run name them, or else the command that started it; those of a shipped policy do not, but its
-    description does. A policy or teacher that the run began with brings its own, or ``unknown: PATH``.
-    """
-    about = checkpoint.with_name(ABOUT)
-    if about.is_file():
-        return json.loads(about.read_text()).get("trained_on")
-    saved = read_params(checkpoint.parent)
-    if saved is None:
-        return None
-    own = saved.env.get("scene", {}).get("colon", {}).get("usd_path") or _patients_in(saved.command)
-    before = [Path(saved.agent[name]) for name in BEGUN_FROM if saved.agent.get(name)]
-    return own if own is None or not before else _joined(own, *map(_trained_before, before))
-
-
-def _trained_before(checkpoint: Path) -> Any:
-    """Return the patients of a checkpoint that a run began from."""
-    return (trained_on(checkpoint) if checkpoint.is_file() else None) or f"{UNKNOWN} {checkpoint}"
-
-
-def _joined(*names: Any) -> list[str]:
-    """Return the names of several settings of ``usd_path``, each once."""
-    return list(dict.fromkeys(name for one in names for name in ([one] if isinstance(one, str) else one)))
-
-
-def _patients_in(command: Sequence[str]) -> Any:
-    """Return the patients that a command's words give a training; None where they leave it to the task."""
-    colon, scene = ColonCfg(), "env.scene."
-    words = [word.removeprefix(scene) for word in command if word.startswith(f"{scene}colon.usd_path=")]
-    apply_overrides({"colon": colon}, words)
-    return colon.usd_path if words else None
 
 
 def training_of(checkpoint: Path) -> dict[str, Any]:

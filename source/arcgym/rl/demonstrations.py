@@ -5,13 +5,14 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import torch
 from tensordict import TensorDict
 
-from arcgym.managers.recorder_files import Episode, episode_paths
+from arcgym.managers.recorder_files import Episode, episode_paths, open_recording
 from arcgym.utils.errors import UsageError
 
 
@@ -57,8 +58,7 @@ def read_demonstrations(
     Raises:
         UsageError: If there is no episode, or none that succeeded, or one lacks an observation group.
     """
-    folders = [Path(folder), *sorted(path for path in Path(folder).glob("*") if path.is_dir())]
-    paths = [path for place in folders for path in episode_paths(place)]
+    paths = _paths(folder)
     episodes = [episode for path in paths if (episode := Episode.load(path)).info["success"] or not successful_only]
     if not episodes:
         wanted = "successful episodes" if successful_only else "episodes"
@@ -72,6 +72,22 @@ def read_demonstrations(
     }
     actions = joined.pop("actions").float()
     return Demonstrations(TensorDict(joined, batch_size=[len(actions)], device=device), actions, len(episodes))
+
+
+def demonstrated_patients(folder: str | Path) -> list[str]:
+    """Return the stages of the patients in a folder's recorded episodes, each once; none where nothing is recorded."""
+    found: dict[str, None] = {}
+    for path in _paths(folder):
+        with open_recording(path) as file:
+            for demo in file["data"].values():
+                found[json.loads(demo.attrs["provenance"])["stages"]["colon"]["path"]] = None
+    return list(found)
+
+
+def _paths(folder: str | Path) -> list[Path]:
+    """Return the finished episodes in a folder and the folders right below it."""
+    folders = [Path(folder), *sorted(path for path in Path(folder).glob("*") if path.is_dir())]
+    return [path for place in folders for path in episode_paths(place)]
 
 
 def _check(episodes: list[Episode], name: str, folder: str | Path) -> None:
