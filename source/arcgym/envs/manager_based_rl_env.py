@@ -86,7 +86,8 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
         Rewards belong to the state before the reset, observations to the state after it.
 
         Args:
-            action: Action of every world, shape (N, A).
+            action: Action of every world, shape (N, A). A world whose action is NaN ends as one whose state is not
+                finite, ``Episode_Termination/non_finite``, with a reward of zero; the others go on.
 
         Returns:
             Observation of each group; reward, shape (N,); terminated and truncated, bool, shape (N,); and extras with
