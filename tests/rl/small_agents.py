@@ -16,12 +16,20 @@ from arcgym.rl import (
     RslRlOnPolicyRunnerCfg,
     RslRlPpoAlgorithmCfg,
 )
+from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
 
 ENCODER = CnnCfg(output_channels=[8, 8], kernel_size=[4, 3], stride=[2, 2], activation="relu")
 
 
 def actor_cfg() -> RslRlCnnModelCfg:
     return RslRlCnnModelCfg(hidden_dims=[32], cnn_cfg=ENCODER, distribution_cfg=GaussianDistributionCfg(init_std=0.6))
+
+
+def with_memory(**changes) -> RecurrentCnnModelCfg:
+    """The actor of :func:`actor_cfg` with a GRU of four numbers beside its features."""
+    settings = {"skip_connection": True, "rnn_type": "gru", "rnn_hidden_dim": 4, "hidden_dims": [32]}
+    deviation = GaussianDistributionCfg(init_std=0.6)
+    return RecurrentCnnModelCfg(cnn_cfg=ENCODER, distribution_cfg=deviation, **(settings | changes))
 
 
 def runner_cfg(**changes) -> RslRlOnPolicyRunnerCfg:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 import torch
 from pixel_tasks import SteerToDot, mean_reward
-from small_agents import actor_cfg, runner_cfg
+from small_agents import actor_cfg, runner_cfg, with_memory
 
 from arcgym.rl import GaussianDistributionCfg, OnPolicyRunner, RslRlMlpModelCfg
 from arcgym.rl.agent_cfgs.imitation import RslRlDistillationAlgorithmCfg, RslRlDistillationRunnerCfg
@@ -18,7 +18,7 @@ def teacher_cfg() -> RslRlMlpModelCfg:
     return RslRlMlpModelCfg(hidden_dims=[16], distribution_cfg=GaussianDistributionCfg(init_std=0.5))
 
 
-def make_runner(teacher_checkpoint: str = "", num_envs: int = 64) -> DistillationRunner:
+def make_runner(teacher_checkpoint: str = "", num_envs: int = 64, **changes) -> DistillationRunner:
     torch.manual_seed(1)
     cfg = RslRlDistillationRunnerCfg(
         teacher_checkpoint=teacher_checkpoint,
@@ -26,7 +26,7 @@ def make_runner(teacher_checkpoint: str = "", num_envs: int = 64) -> Distillatio
         student=actor_cfg(),
         teacher=teacher_cfg(),
         algorithm=RslRlDistillationAlgorithmCfg(learning_rate=3e-3),
-    )
+    ).replace(**changes)
     return DistillationRunner(SteerToDot(num_envs), cfg.to_dict(), device="cpu")
 
 
@@ -65,6 +65,20 @@ def test_resumed_run_brings_its_teacher(teacher_checkpoint, tmp_path):
     resumed.load(str(tmp_path / "model_0.pt"))
     resumed.learn(1)
     assert resumed.completed_iterations == 2
+
+
+@one_thread()
+@pytest.mark.parametrize("memory", [0, 4])
+def test_a_student_begins_as_another_runs_policy(teacher_checkpoint, tmp_path, memory: int) -> None:
+    """Of a student with a memory the weights that read it begin at nought, so that it acts as that policy does."""
+    first = OnPolicyRunner(SteerToDot(4), runner_cfg().to_dict(), device="cpu")
+    first.save(str(tmp_path / "model_0.pt"))
+    student = with_memory(rnn_hidden_dim=memory) if memory else actor_cfg()
+    runner = make_runner(teacher_checkpoint, 4, student=student, init_policy=str(tmp_path / "model_0.pt"))
+    runner.learn(0)
+    obs = SteerToDot(4).get_observations()
+    torch.testing.assert_close(runner.get_inference_policy()(obs), first.get_inference_policy()(obs))
+    runner.learn(1)
 
 
 def test_teacher_must_be_given():

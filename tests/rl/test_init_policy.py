@@ -7,10 +7,9 @@ from __future__ import annotations
 import pytest
 import torch
 from pixel_tasks import SteerToDot
-from small_agents import ENCODER, runner_cfg
+from small_agents import runner_cfg, with_memory
 
 from arcgym.rl import GaussianDistributionCfg, OnPolicyRunner, RslRlMlpModelCfg
-from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
 from arcgym.rl.pretrained import write_small
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
@@ -19,13 +18,6 @@ from arcgym.utils.threads import one_thread
 def make_runner(seed: int, **changes) -> OnPolicyRunner:
     torch.manual_seed(seed)
     return OnPolicyRunner(SteerToDot(4), runner_cfg(**changes).to_dict(), device="cpu")
-
-
-def with_memory(**changes) -> RecurrentCnnModelCfg:
-    """The actor of :func:`small_agents.actor_cfg` with a GRU of four numbers beside its features."""
-    settings = {"skip_connection": True, "rnn_type": "gru", "rnn_hidden_dim": 4, "hidden_dims": [32]}
-    deviation = GaussianDistributionCfg(init_std=0.6)
-    return RecurrentCnnModelCfg(cnn_cfg=ENCODER, distribution_cfg=deviation, **(settings | changes))
 
 
 def same(first: dict[str, torch.Tensor], second: torch.nn.Module) -> bool:

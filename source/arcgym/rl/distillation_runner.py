@@ -15,8 +15,12 @@ from arcgym.utils.errors import UsageError
 class DistillationRunner(OnPolicyRunner):
     """The on-policy runner around rsl_rl's ``Distillation``: the student acts, the teacher names the better action.
 
-    The teacher is the actor of a PPO checkpoint, ``cfg["teacher_checkpoint"]``; a resumed run brings its own.
+    The teacher is the actor of a PPO checkpoint, ``cfg["teacher_checkpoint"]``; a resumed run brings its own. The
+    student may begin as another run's policy, ``cfg["init_policy"]``.
     """
+
+    policy_name = "student"
+    """Name of the policy among the algorithm's models and in its checkpoints."""
 
     def learn(self, num_learning_iterations: int, init_at_random_ep_len: bool = False) -> None:
         """Load the teacher unless a checkpoint brought it, and learn.
@@ -32,7 +36,7 @@ class DistillationRunner(OnPolicyRunner):
         self, path: str, load_cfg: dict | None = None, strict: bool = True, map_location: str | None = None
     ) -> dict:
         """Load a checkpoint; ``{"actor": True}``, as for playing, means the student."""
-        wanted = {"student": True} if load_cfg == {"actor": True} else load_cfg
+        wanted = {self.policy_name: True} if load_cfg == {"actor": True} else load_cfg
         return super().load(path, wanted, strict, map_location)
 
     def _load_teacher(self, path: str | None) -> None:

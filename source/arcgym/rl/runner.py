@@ -41,6 +41,9 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
     * keeps ``model_best.pt``, the checkpoint with the highest mean episode reward.
     """
 
+    policy_name = "actor"
+    """Name of the policy among the algorithm's models and in its checkpoints."""
+
     def __init__(self, env: VecEnv, train_cfg: dict, log_dir: str | None = None, device: str = "cpu"):
         """Build algorithm and logger; arguments as in rsl_rl."""
         with contextlib.redirect_stdout(io.StringIO()):  # rsl_rl prints every layer
@@ -153,7 +156,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             actor = widened(contents[own], wanted)
             if getattr(policy, "skip_connection", False):
                 actor = with_memory(actor, wanted, policy.rnn_hidden_dim)
-            self.alg.load({**contents, "actor_state_dict": actor}, {"actor": True}, strict=True)
+            self.alg.load({**contents, f"{self.policy_name}_state_dict": actor}, {self.policy_name: True}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
             reason = " ".join(str(error).split())  # torch's has a line for each kind of mismatch
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {reason}") from error

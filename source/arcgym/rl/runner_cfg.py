@@ -337,7 +337,7 @@ class RslRlOnPolicyRunnerCfg:
 
     init_policy: str | None = None
     """Checkpoint whose policy a new run starts from, of behaviour cloning, of a distillation (its student),
-    or of another task; None starts from scratch. One without memory fits a policy with it whose ``skip_connection`` is
+    or of another task; None starts from scratch. A distillation's student starts from it, too. One without memory fits a policy with it whose ``skip_connection`` is
     on."""
 
     critic_first: int = 0
