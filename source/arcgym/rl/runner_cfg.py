@@ -336,9 +336,9 @@ class RslRlOnPolicyRunnerCfg:
     """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
 
     init_policy: str | None = None
-    """Checkpoint whose policy a new run starts from, of behaviour cloning, of a distillation (its student),
-    or of another task; None starts from scratch. A distillation's student starts from it, too. One without memory fits a policy with it whose ``skip_connection`` is
-    on."""
+    """Checkpoint whose policy a new run starts from, of behaviour cloning, of a distillation (its student), or of
+    another task; None starts from scratch. The student of a distillation may start from one, too. A policy without
+    memory fits one with it whose ``skip_connection`` is on."""
 
     critic_first: int = 0
     """Updates at the start of a run with ``init_policy`` in which the critics alone learn. A good policy gets worse
