@@ -8,10 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlMlpModelCfg
-from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
+from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg, RecurrentCnnModelCfg
 from arcgym.rl.agent_cfgs.imitation import (
     RslRlBehaviorCloningAlgorithmCfg,
     RslRlBehaviorCloningRunnerCfg,
+    RslRlDistillationAlgorithmCfg,
     RslRlDistillationRunnerCfg,
 )
 from arcgym.utils.configclass import configclass
@@ -42,6 +43,23 @@ class NavigationDistillationRunnerCfg(RslRlDistillationRunnerCfg):
     teacher: RslRlMlpModelCfg = RslRlMlpModelCfg(
         hidden_dims=[256, 128], obs_normalization=True, distribution_cfg=GaussianDistributionCfg(init_std=0.6)
     )
+
+
+@configclass
+class RecurrentDistillationRunnerCfg(NavigationDistillationRunnerCfg):
+    """The same with a memory beside the features of the images, for what the teacher sees and one moment does not show.
+
+    ``agent.init_policy`` may be a policy without memory. The memory learns over ``gradient_length`` steps.
+    """
+
+    student: RslRlMlpModelCfg = RecurrentCnnModelCfg(
+        hidden_dims=[256],
+        cnn_cfg=CnnCfg(),
+        distribution_cfg=GaussianDistributionCfg(init_std=0.1),
+        rnn_type="gru",
+        skip_connection=True,
+    )
+    algorithm: Any = RslRlDistillationAlgorithmCfg(gradient_length=24)
 
 
 @configclass
