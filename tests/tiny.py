@@ -32,7 +32,7 @@ def tiny_colon_stage(
     """Makes a tube of equally long segments with a visual surface (48 x 24) and a proxy (33 x 16).
 
     Args:
-        length: Length of the centreline [m].
+        length: Length of the centerline [m].
         radius: Radius of the lumen [m].
         rings: Wall rings.
         sectors: Wall vertices around a ring.

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measure what the paper's table of throughput measures: PPO from images with 1 and 5 worlds, for 44 000 transitions.
 
-A control step is 1/120 s (two physics steps of 1/240 s, in the paper as here), an observation five colour
+A control step is 1/120 s (two physics steps of 1/240 s, in the paper as here), an observation five color
 pictures of 84×84 pixels. Prints the control steps per second while collecting and in all, beside the paper's. A run
 that is cut short by ``--transitions`` or ``--minutes`` says so. Run for example::
 

@@ -24,7 +24,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 PANELS = {
     "reward an episode": ("Train/mean_reward", "reward_per_episode"),
-    "centring s_c": ("Episode_Metrics/s_c", "metrics"),
+    "centering s_c": ("Episode_Metrics/s_c", "metrics"),
     "success": ("Episode_Metrics/success", "metrics"),
     "largest shaft force [N]": ("Episode_Metrics/max_shaft_force", "metrics"),
 }

@@ -84,7 +84,7 @@ def features(name: str, stage: ColonStage) -> str:
     sharpest, folds = 1e3 * measured.bend_radius_least, sum(len(row.s) for row in surface.rows)
     return (
         f"{measured.acute_bends} acute bends (least radius {sharpest:.0f} mm), {folds} semilunar folds,"
-        f" {len(surface.valves)} rectal valves, ileocaecal valve and appendix orifice,\n{polyps} polyps,"
+        f" {len(surface.valves)} rectal valves, ileocecal valve and appendix orifice,\n{polyps} polyps,"
         f" {len(sacs)} diverticula, {wide} of them wide enough for a 13 mm tip."
     )
 

@@ -95,7 +95,7 @@ def test_rings_take_the_wide_way_where_the_cut_takes_a_hole() -> None:
     center, radius = ring_centers(rings)
     assert found.all() and (radius > 0.004).all()
     assert (np.diff(angle, axis=1) > 0).all()
-    assert np.linalg.norm(np.diff(rings, axis=0), axis=2).max() < 0.006, "neighbouring rings fit each other"
+    assert np.linalg.norm(np.diff(rings, axis=0), axis=2).max() < 0.006, "neighboring rings fit each other"
 
 
 def test_grid_begins_at_the_verge_and_ends_at_the_pole(tube: tuple[ConformalMap, np.ndarray]) -> None:

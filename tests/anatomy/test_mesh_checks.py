@@ -82,7 +82,7 @@ def test_centerline_beside_the_tube_is_found() -> None:
     stage = tiny_colon_stage()
     beside = replace(stage.centerline, points=stage.centerline.points + np.float32([0.03, 0, 0]))
     names = [check.name for check in failed(inspect_stage(replace(stage, centerline=beside)))]
-    assert names == ["centreline points outside the lumen"]
+    assert names == ["centerline points outside the lumen"]
 
 
 def test_end_ring_that_can_move_is_found() -> None:

@@ -66,7 +66,7 @@ def test_legs_apart_stay_as_they_are() -> None:
 def test_line_outside_of_the_lumen_is_named() -> None:
     line = hairpin(0.020)
     values, low = voxels(line)
-    with pytest.raises(ValueError, match="100 % of the centreline is outside"):
+    with pytest.raises(ValueError, match="100 % of the centerline is outside"):
         voxel_surface(values, low, H, line + [0.0, 0.0, 0.05])
 
 

@@ -69,7 +69,7 @@ def test_camera_sits_on_the_axis_and_looks_forward(sim: Simulation) -> None:
     ("height", "segment"), [(0.030, "rectum"), (0.050, "sigmoid"), (0.110, "descending"), (0.170, "transverse")]
 )
 def test_a_capsule_knows_where_it_is(tiny: TinySim, height: float, segment: str) -> None:
-    # Segments of 40 mm on a centreline of 5 mm steps; the front of the capsule lies 10 mm ahead of its centre.
+    # Segments of 40 mm on a centerline of 5 mm steps; the front of the capsule lies 10 mm ahead of its center.
     sim = tiny("capsule")
     sim.endoscope.data.joint_pos[0, :3] = torch.tensor([0.003, 0.0, height - 0.010])
     sim.contact.ring.fill_(-1)
@@ -84,7 +84,7 @@ def test_tip_velocity_includes_the_turn_of_its_link(tiny: TinySim) -> None:
     sim = tiny("capsule")
     sim.endoscope.data.joint_vel[0] = torch.tensor([0.0, 0.0, 0.02, 0.0, 3.0, 0.0])
     sim.forward()
-    # The front is 10 mm ahead of the centre: 3 rad/s about Y moves it by 30 mm/s along X.
+    # The front is 10 mm ahead of the center: 3 rad/s about Y moves it by 30 mm/s along X.
     expected = torch.tensor([[0.03, 0.0, 0.02]])
     torch.testing.assert_close(sim.endoscope.data.tip_lin_vel_w, expected, atol=1e-6, rtol=0.0)
     torch.testing.assert_close(sim.endoscope.data.tip_ang_vel_w, torch.tensor([[0.0, 3.0, 0.0]]))

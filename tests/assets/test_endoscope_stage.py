@@ -106,7 +106,7 @@ def test_hinges_stand_for_half_of_their_links_but_for_a_driven_base() -> None:
 
 
 def test_twist_of_the_whole_shaft_is_that_of_its_rigidity() -> None:
-    """Every fourth hinge twists; in series they are as compliant as all from the base to the last link's centre."""
+    """Every fourth hinge twists; in series they are as compliant as all from the base to the last link's center."""
     spec = proximal_spec()
     stiffness = spec.twist_stiffness
     twists = np.arange(1, len(stiffness) + 1) % 4 == 0
@@ -159,7 +159,7 @@ def link(usd: Usd.Stage, name: str) -> Usd.Prim:
 
 
 DEFECTS: dict[str, tuple[Callable[[Usd.Stage], object], list[str]]] = {
-    "centimetres": (lambda usd: UsdGeom.SetStageMetersPerUnit(usd, 0.01), ["metersPerUnit", "0.01", "metres"]),
+    "centimeters": (lambda usd: UsdGeom.SetStageMetersPerUnit(usd, 0.01), ["metersPerUnit", "0.01", "meters"]),
     "y_up": (lambda usd: UsdGeom.SetStageUpAxis(usd, "Y"), ["upAxis", "Z up"]),
     "no_articulation": (
         lambda usd: usd.GetDefaultPrim().ClearMetadata("apiSchemas"),

@@ -10,7 +10,7 @@ import pytest
 from arcgym.assets.force_windows import ABUTTING, force_windows
 
 HALF = 0.0125
-"""Distance from the centre of a link of 25 mm to its front [m]: no round end stands out."""
+"""Distance from the center of a link of 25 mm to its front [m]: no round end stands out."""
 
 
 def test_a_link_counts_by_its_part_in_a_window() -> None:

@@ -30,7 +30,7 @@ DT = 1.0 / 960.0
 
 @pytest.fixture(scope="module")
 def world(tmp_path_factory: pytest.TempPathFactory) -> ModelBuilder:
-    """A tiny colon and a tiny proximal scope of 6 links in one builder, coloured."""
+    """A tiny colon and a tiny proximal scope of 6 links in one builder, colored."""
     folder = tmp_path_factory.mktemp("world")
     colon, scope = write_tiny_colon(folder), write_tiny_scope(folder / "scope.usda")
     builder = ModelBuilder(gravity=(0.0, 0.0, 0.0))

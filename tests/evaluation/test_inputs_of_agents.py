@@ -14,7 +14,7 @@ PAST = "{rgb_20:{func:'arcgym.envs.mdp.observations:rgb',delay_min_lag:20,delay_
 """Images of two seconds ago."""
 
 AHEAD = "{ahead:{func:'arcgym.envs.mdp:centerline_ahead'}}"
-"""The centreline, which no endoscope knows."""
+"""The centerline, which no endoscope knows."""
 
 
 @pytest.mark.parametrize(

@@ -115,7 +115,7 @@ def test_an_entry_that_rolls_or_goes_back_says_so_in_the_tasks_where_it_does(tmp
 
 
 def test_a_baseline_is_no_entry(tmp_path: Path) -> None:
-    """The expert sees the centreline, whatever the entry says."""
+    """The expert sees the centerline, whatever the entry says."""
     path = result(tmp_path / "all" / "mine", run={**RUN, "agent": "expert", "checkpoint_sha256": []})
     (path / "entry.yaml").write_text(ENTRY)
     reason = "is of the agent 'expert', which is a baseline: an entry has checkpoints"

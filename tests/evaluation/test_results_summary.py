@@ -120,9 +120,9 @@ def test_the_page_names_the_command_that_made_it(tmp_path: Path) -> None:
 def test_other_metrics_have_tables_of_their_own(tmp_path: Path) -> None:
     """15 of 30 arrive, and the others come half the way: the middle half of the trials is 0.5 and 1 in equal parts."""
     text = page([write_result_folder(tmp_path / "ours", 15)], tmp_path)
-    centred = text.partition("how well the lumen is centred")[2].partition("\n## ")[0]
+    centered = text.partition("how well the lumen is centered")[2].partition("\n## ")[0]
     way = text.partition("share of the way")[2].partition("\n## ")[0]
-    assert "| Magnetic | PPO, shipped reward | 0.50 (0.50–0.50) | – | – | – |" in centred
+    assert "| Magnetic | PPO, shipped reward | 0.50 (0.50–0.50) | – | – | – |" in centered
     assert "| Magnetic | PPO, shipped reward | 0.75 (0.5" in way
 
 

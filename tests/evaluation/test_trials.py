@@ -68,7 +68,7 @@ def test_a_wrong_file_is_refused_in_one_line(tmp_path: Path, text: str, message:
     assert "\n" not in str(refusal.value)
 
 
-def test_a_missing_file_names_its_neighbours(tmp_path: Path) -> None:
+def test_a_missing_file_names_its_neighbors(tmp_path: Path) -> None:
     write_conditions(tmp_path / "two_v1.csv", TRIALS, "")
     with pytest.raises(UsageError, match="two_v1"):
         read_conditions(tmp_path / "two_v2.csv")

@@ -147,7 +147,7 @@ def test_figures_of_an_insertion() -> None:
     assert figures["time_above_5N"] == pytest.approx(0.1) and figures["mean_base_force"] == 4.0
 
 
-def test_a_halt_is_the_longest_time_without_two_millimetres() -> None:
+def test_a_halt_is_the_longest_time_without_two_millimeters() -> None:
     arc = 0.001 * np.array([0.0, 3.0, 3.5, 1.0, 4.0, 4.5, 8.0])
     assert longest_halt(arc) == 4  # from 3 mm, in the second sample, to 4.5 mm in the sixth
 

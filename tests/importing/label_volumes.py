@@ -55,7 +55,7 @@ def write_volume(
     extra_radius: float = 0.010,
     value: int = 1,
 ) -> Path:
-    """Write the tube as labels 0 and 1, voxels of some millimetres.
+    """Write the tube as labels 0 and 1, voxels of some millimeters.
 
     Args:
         path: File to write.

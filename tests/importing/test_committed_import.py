@@ -29,7 +29,7 @@ KINDS = {
     "colon_4": (".obj", "mm", False),
     "colon_5": (".glb", "m", True),
 }
-"""Format, unit, and whether a colon is turned inside out; in millimetres its axes are left, posterior, cranial."""
+"""Format, unit, and whether a colon is turned inside out; in millimeters its axes are left, posterior, cranial."""
 
 pytestmark = pytest.mark.slow
 

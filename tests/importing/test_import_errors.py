@@ -53,7 +53,7 @@ def test_missing_label(tmp_path: Path) -> None:
 
 def test_gray_values_are_no_labels(tmp_path: Path) -> None:
     gray = np.random.default_rng(0).integers(-1000, 2000, (80, 80, 80)).astype(np.int16)
-    refused(volume(tmp_path / "a.mha", gray), "grey values of a CT.*segmentation")
+    refused(volume(tmp_path / "a.mha", gray), "gray values of a CT.*segmentation")
 
 
 def test_ball_is_no_colon(tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Surfaces that are open: where their rims are, and that the centreline begins in the middle of the rim."""
+"""Surfaces that are open: where their rims are, and that the centerline begins in the middle of the rim."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def test_import_is_near_the_truth(case: str, tmp_path: Path) -> None:
     print(f"\n{case}: length {ratio - 1:+.1%}, surface {1e3 * surface:.2f} mm, {worst} {1e3 * away[worst]:.0f} mm")
     assert (
         0.94 < ratio < 1.02
-    )  # the smoothed centreline cuts bends as tight as the lumen; gaps are bridged as they come
+    )  # the smoothed centerline cuts bends as tight as the lumen; gaps are bridged as they come
     assert surface < 0.0015
     assert away[worst] < (0.04 if worst == "cecum_pole" else 0.03), worst
     assert set(cut) <= {piece["kind"] for piece in report["cleaning"]["cut"]}

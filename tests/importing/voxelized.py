@@ -51,13 +51,13 @@ def write_voxelized(stage: ColonStage, path: Path, direction: np.ndarray, edits:
 
 
 def place(stage: ColonStage, s: float | np.ndarray) -> np.ndarray:
-    """Return positions on the centreline [m], shape (..., 3)."""
+    """Return positions on the centerline [m], shape (..., 3)."""
     line = stage.centerline
     return np.stack([np.interp(s, line.arc, line.points[:, k]) for k in range(3)], -1)
 
 
 def gap(s: float, length: float, thread: float = 0.0, fluid: bool = False) -> Edit:
-    """Leave a stretch out, or all but a thread of some radius, or only its posterior half, as unlabelled fluid [m]."""
+    """Leave a stretch out, or all but a thread of some radius, or only its posterior half, as unlabeled fluid [m]."""
 
     def edit(grid: Grid, stage: ColonStage) -> None:
         arc = np.arange(0.0, stage.length, 0.001)
@@ -90,7 +90,7 @@ def rectal_tube(grid: Grid, stage: ColonStage) -> None:
 
 
 def small_bowel(share: float, radius: float = 0.009) -> Edit:
-    """Add a loop from the ileocaecal valve towards the sigmoid; with a share of 1 it joins that, too."""
+    """Add a loop from the ileocecal valve towards the sigmoid; with a share of 1 it joins that, too."""
 
     def edit(grid: Grid, stage: ColonStage) -> None:
         line = _free_way(grid, place(stage, stage.landmarks["ileocecal_valve"]), place(stage, 0.45))

@@ -55,7 +55,7 @@ def test_nothing_of_it_leaves_the_picture_as_it_is(pictures, kind: str) -> None:
 
 
 def test_fluid_fades_by_beer_and_lambert(pictures) -> None:
-    """20 per metre over 5 cm leave exp(-1) of the picture."""
+    """20 per meter over 5 cm leave exp(-1) of the picture."""
     left = math.exp(-1.0)
     expected = [round(100 * left + (1 - left) * murk) for murk in MURK]
     assert spoiled(pictures, "fluid", 20.0)[1, :, 3, 4].tolist() == expected

@@ -42,7 +42,7 @@ def test_centering_is_one_in_the_middle_and_zero_in_the_corner() -> None:
 def test_center_is_mean_of_the_deep_pixels() -> None:
     depth = torch.tensor([[[0.1, 0.1, 0.1], [0.1, 1.0, 0.8], [0.1, 0.1, 0.69]]])
     scores = score_depth(depth, PAPER)
-    # tau = 0.7 m: two pixels, (1, 1) and (1, 2); their mean is half a pixel right of the centre (1, 1).
+    # tau = 0.7 m: two pixels, (1, 1) and (1, 2); their mean is half a pixel right of the center (1, 1).
     torch.testing.assert_close(scores.center, torch.tensor([[1.0, 1.5]]))
     assert scores.s_c.item() == pytest.approx(1.0 - 0.5 / math.sqrt(2.0))
 
@@ -51,7 +51,7 @@ def test_paper_preset_by_hand() -> None:
     depth = torch.full((1, 2, 2), 0.004)
     depth[0, 0] = 0.0125
     scores = score_depth(depth, PAPER)
-    # d_max = 12.5 mm, d_min = 4 mm, the upper two of four pixels are deep, their mean is half a pixel above the centre.
+    # d_max = 12.5 mm, d_min = 4 mm, the upper two of four pixels are deep, their mean is half a pixel above the center.
     assert scores.s_1.item() == pytest.approx((12.5 - 5.0) / 15.0)  # 0.5
     assert scores.s_2.item() == pytest.approx((0.5 - 0.2) / 0.8)  # 0.375
     assert scores.s_3.item() == pytest.approx((8.5 - 4.0) / 8.0)  # 0.5625

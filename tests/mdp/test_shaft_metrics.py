@@ -28,7 +28,7 @@ def test_a_crossing_in_front_is_an_alpha_and_one_behind_a_reverse_alpha(env) -> 
     assert mdp.loop_rate(env, "alpha").tolist() == [True, False]
 
 
-def test_an_n_comes_down_by_four_centimetres_and_rises_again(env) -> None:
+def test_an_n_comes_down_by_four_centimeters_and_rises_again(env) -> None:
     assert kinds(env, zigzag(0.05), zigzag(0.03)) == ["n", "none"]
 
 

@@ -68,7 +68,7 @@ class PixelTask(VecEnv):
 
 
 class SteerToDot(PixelTask):
-    """A dot at an offset from the image centre; actions move it by up to a quarter of the half image a step.
+    """A dot at an offset from the image center; actions move it by up to a quarter of the half image a step.
 
     Reward is one minus the distance. A policy that sees nothing earns less than 0.4 a step, the best one more than 0.8.
     """

@@ -48,14 +48,14 @@ def test_only_passes_with_gradients_are_augmented():
 
 
 def test_color_jitter_stays_within_its_strength_and_is_alike_in_a_stack():
-    """A grey image has no contrast and no saturation: its value is multiplied by 0.8 to 1.2."""
+    """A gray image has no contrast and no saturation: its value is multiplied by 0.8 to 1.2."""
     torch.manual_seed(0)
-    grey = torch.full((300, 6, 2, 2), 100, dtype=torch.uint8)
-    changed = jitter_colors(grey, 0.2)
+    gray = torch.full((300, 6, 2, 2), 100, dtype=torch.uint8)
+    changed = jitter_colors(gray, 0.2)
     assert changed.dtype == torch.uint8
     assert (80, 120) == (int(changed.min()), int(changed.max()))
     assert torch.equal(changed, changed[:, :1, :1, :1].expand_as(changed))
-    assert torch.equal(jitter_colors(grey, 0.0), grey)
+    assert torch.equal(jitter_colors(gray, 0.0), gray)
 
 
 def test_color_jitter_changes_contrast_and_saturation():

@@ -13,7 +13,7 @@ from arcgym.sensors.endoscope_camera import lights_in_camera
 
 
 def test_angle_grows_with_distance_from_the_center():
-    """The centre of pixel (0, 0) of an N x N picture lies at 1 - 1/N of the half diagonal, hence of the half angle."""
+    """The center of pixel (0, 0) of an N x N picture lies at 1 - 1/N of the half diagonal, hence of the half angle."""
     rays = fisheye_rays(10, 10, field_of_view=2.0)
     assert np.arccos(-rays[0, 0, 0, 2]) == pytest.approx(0.9, abs=1.0e-5)
     assert np.linalg.norm(rays, axis=-1) == pytest.approx(1.0, abs=1.0e-6)

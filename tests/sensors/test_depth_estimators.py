@@ -30,7 +30,7 @@ def test_simulator_depth_is_the_cameras():
 
 
 def test_range_alignment_by_hand():
-    """Estimates 0, 5, 10 become inverse depths 10, 55, 100 per metre."""
+    """Estimates 0, 5, 10 become inverse depths 10, 55, 100 per meter."""
     depth = align_to_range(torch.tensor([[[0.0, 5.0, 10.0]]]), near=0.01, far=0.1)
     torch.testing.assert_close(depth, torch.tensor([[[0.1, 1 / 55, 0.01]]]))
 

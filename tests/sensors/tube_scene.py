@@ -77,7 +77,7 @@ def tube_visual(wall: WallMesh, fine: int = 3, sectors: int = 16, radius: float 
 
 
 def write_textures(folder: Path, plain: bool = False) -> tuple[Path, Path]:
-    """Write albedo and detail images of 16 px: noise on pink, or one even colour without relief."""
+    """Write albedo and detail images of 16 px: noise on pink, or one even color without relief."""
     rng = np.random.default_rng(0)
     albedo = np.tile(np.array([217, 120, 100, 255], dtype=np.uint8), (16, 16, 1))
     detail = np.full((16, 16, 4), (128, 128, 128, 255), dtype=np.uint8)

@@ -102,7 +102,7 @@ def test_a_dent_loads_the_hand_by_what_it_takes_to_deepen_it(tube: TinySim) -> N
 
 def test_a_dent_ends_at_twice_the_radius_of_the_hand(tube: TinySim) -> None:
     sim = inside(tube, squareness=2.0, hand_place=(0.0, 0.0), hand_radius=0.02)
-    make_ball(sim, 5.0, (0.0, -4.9785, 0.1))  # nearly a plane, half a millimetre in front of the wall
+    make_ball(sim, 5.0, (0.0, -4.9785, 0.1))  # nearly a plane, half a millimeter in front of the wall
     sim.surroundings.abdomen.hand.dent.fill_(0.005)
     push = np.linalg.norm(forces(sim), axis=1)
     front = np.abs(sim.colon.wall.points - [0.0, 0.021, 0.0])[:, :2].max(axis=1) < 1.0e-4
@@ -138,7 +138,7 @@ def test_it_stops_a_wall_that_falls(tube: TinySim) -> None:
         inner = 0.0 if sim.surroundings is None else sim.surroundings.abdomen.shape.tight.numpy()[0, 1] + 0.002
         sim.step(steps(sim, 0.2))
         front.append(sim.colon.data.nodal_pos_w[0, :, 1].max().item() - inner)
-    # From 21 mm, without an abdomen by gravity for 0.2 s; with one to its front, where 0.3 N/mm^2 a metre bear foam.
+    # From 21 mm, without an abdomen by gravity for 0.2 s; with one to its front, where 0.3 N/mm^2 a meter bear foam.
     assert front[0] > 0.08 and -0.001 < front[1] < 0.002
 
 

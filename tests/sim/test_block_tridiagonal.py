@@ -14,7 +14,7 @@ from arcgym.sim.wall.ring_modes import MODES
 
 
 def random_system(rng: np.random.Generator, rows: int) -> tuple[np.ndarray, np.ndarray]:
-    """Symmetric positive definite matrix of coupled neighbours, shape (M R, M R), and a right-hand side."""
+    """Symmetric positive definite matrix of coupled neighbors, shape (M R, M R), and a right-hand side."""
     matrix = np.zeros((rows, MODES, rows, MODES))
     for r in range(rows):
         block = rng.normal(size=(MODES, MODES))

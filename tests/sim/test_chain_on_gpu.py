@@ -79,7 +79,7 @@ def loaded(solver: SolverArticulatedChain, generator: np.random.Generator) -> tu
 def test_a_warp_solves_a_chain_as_plain_kernels_do(free: bool) -> None:
     """70 links, of which some have no joint, are prepared in three chunks; a third of the drives is at its limit.
 
-    Places of up to a metre round by 6e-8 m. Levers of 10 mm are their differences, and rates follow from levers.
+    Places of up to a meter round by 6e-8 m. Levers of 10 mm are their differences, and rates follow from levers.
     """
     found = []
     for by_warp in (True, False):

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scope of ten links pushed with a bent tip into a soft tube that moves out of its way by more than a millimetre."""
+"""A scope of ten links pushed with a bent tip into a soft tube that moves out of its way by more than a millimeter."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def test_in_plane_coordinates_are_those_of_the_ring_over_its_size() -> None:
     np.testing.assert_allclose(found.plane[ring].mean(axis=0), 0.0, atol=1e-7)
 
 
-def test_neighbours_have_the_same_axes() -> None:
+def test_neighbors_have_the_same_axes() -> None:
     found = modes()
     first = found.plane[WALL.ring == 0]
     for ring in range(1, 17):

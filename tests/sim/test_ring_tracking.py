@@ -9,7 +9,7 @@ import warp as wp
 
 from arcgym.sim.contact.lumen_kernels import track_rings
 
-# Eight rings up, four across and eight down again, a metre apart: the colon bends back on itself.
+# Eight rings up, four across and eight down again, a meter apart: the colon bends back on itself.
 CENTERS = [(0, 0, z) for z in range(8)] + [(x, 0, 7) for x in range(1, 5)] + [(5, 0, 7 - z) for z in range(8)]
 
 

@@ -120,7 +120,7 @@ def test_drive_and_stop_balance() -> None:
 
 
 def test_a_drive_never_exceeds_its_limit() -> None:
-    # 1000 N/m, a metre away, limited to 2 N: 0.1 kg gains 20 m/s^2.
+    # 1000 N/m, a meter away, limited to 2 N: 0.1 kg gains 20 m/s^2.
     slide = turn("Z", 1000.0, 10.0, effort_limit=2.0)
     rig = Rig([], slide=slide)
     rig.control.joint_target_q.fill_(1.0)
@@ -166,7 +166,7 @@ def test_power_of_the_joints_is_the_gain_of_energy_with_three_axes() -> None:
 def test_cantilever_bends_by_the_lever_of_every_hinge() -> None:
     """0.01 N across the end of three links of 0.2 m on hinges of 1 N m/rad: 6, 4 and 2 mrad."""
     rig = Rig([[turn("X", 1.0, 0.3)]] * 3)
-    rig.push(2, force=(0.0, -0.01, 0.0), torque=(0.001, 0.0, 0.0))  # from the centre to the end: 0.1 m
+    rig.push(2, force=(0.0, -0.01, 0.0), torque=(0.001, 0.0, 0.0))  # from the center to the end: 0.1 m
     np.testing.assert_allclose(rig.run(5000), [0.006, 0.004, 0.002], rtol=2e-3)
 
 

@@ -52,7 +52,7 @@ def state(sim: Simulation) -> dict[str, torch.Tensor]:
         "tip": data.tip_pos_w,
         "arc": data.tip_arc_length,
         "force": data.link_force_w,
-        "centres": sim.colon.data.centerline_pos_w,
+        "centers": sim.colon.data.centerline_pos_w,
     }
     return {name: array.clone() for name, array in {**sim.world_arrays(), **read}.items()}
 

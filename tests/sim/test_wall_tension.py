@@ -95,7 +95,7 @@ def test_a_tube_pressed_oval_resists_by_its_tension(tube: TinySim, colon: dict[s
         size = 1.0e-4
         pull = 0.5 * (forces(sim, points - size * mode) - forces(sim, points + size * mode)) / size
         middle = np.abs(sim.colon.wall.ring - 20) < 6
-        work = (pull * mode)[middle].sum()  # pi (n^2 - 1) p a^2 for each metre, 11 rings of 5 mm
+        work = (pull * mode)[middle].sum()  # pi (n^2 - 1) p a^2 for each meter, 11 rings of 5 mm
         stiffness.append(work / (11 * 0.005) / (np.pi * 3.0))
     assert stiffness[1] - stiffness[0] == pytest.approx(ACROSS, rel=0.05)
     bending = stiffness[0]

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""A wall of scattered vertices, as of a mesher: what the solver calls rings are bins along the centreline."""
+"""A wall of scattered vertices, as of a mesher: what the solver calls rings are bins along the centerline."""
 
 from __future__ import annotations
 

@@ -230,7 +230,7 @@ def test_the_first_world_that_arrives_gives_the_state(tiny: TinySim) -> None:
     arcs = scene["endoscope"].data.tip_arc_length
     assert arcs[0] < 0.04 < arcs[1]
     height = drive.states["sigmoid"].arrays["joint_q"][2]
-    assert 0.04 - 0.010 < height < 0.05  # the tip is 10 mm ahead of the capsule's centre
+    assert 0.04 - 0.010 < height < 0.05  # the tip is 10 mm ahead of the capsule's center
 
 
 def test_make_returns_states_and_file(tiny: TinySim, cache: Path) -> None:

@@ -80,7 +80,7 @@ def test_color_table_marks_tip_bending_section_and_force():
     assert len(rest) == 400
     assert rest[-1].min() > 0.7
     assert rest[350].sum() > rest[250].sum()
-    # The window 0.3 m from the tip, 0.1 m from the base: its colour fades out 25 mm to either side.
+    # The window 0.3 m from the tip, 0.1 m from the base: its color fades out 25 mm to either side.
     loaded = scope_color_table(length, 5, np.where(np.isclose(arc, 0.3), 8.0, 0.0), arc)
     assert loaded[110][0] > 3 * rest[110][0]
     np.testing.assert_array_equal(loaded[126:], rest[126:])

@@ -21,7 +21,7 @@ SMALL = ViewerCfg(outside=OutsideViewCfg(width=141, height=128))
 
 
 class FakeCamera:
-    """Gives a picture of one colour per world."""
+    """Gives a picture of one color per world."""
 
     def snapshot_view(self, env_id: int, size: int, samples: int):
         return np.full((size, size, 3), 50 + 100 * env_id, np.uint8), np.ones((size, size))

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Colour of the wall on the tiny tube: radius 20 mm, 17 rings of 8 vertices, 12.5 mm apart, two worlds."""
+"""Color of the wall on the tiny tube: radius 20 mm, 17 rings of 8 vertices, 12.5 mm apart, two worlds."""
 
 from __future__ import annotations
 

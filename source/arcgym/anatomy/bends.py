@@ -23,11 +23,11 @@ _SMOOTHING = 0.005
 def turning(points: np.ndarray, arc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return arc lengths 2 mm apart [m] and the turn of the tangent over the window around each [rad].
 
-    The tangent is smoothed over 5 mm, so that the noise of a segmented centreline does not count; half a window from
+    The tangent is smoothed over 5 mm, so that the noise of a segmented centerline does not count; half a window from
     either end the turn is 0.
 
     Args:
-        points: Centreline [m], shape (n, 3).
+        points: Centerline [m], shape (n, 3).
         arc: Arc length of its points [m], shape (n,).
     """
     s = np.arange(arc[0], arc[-1], _SPACING)

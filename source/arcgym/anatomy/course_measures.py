@@ -18,7 +18,7 @@ _SPACING = 0.001
 """Distance of the points at which curvature is taken [m]."""
 
 _SMOOTHING = 0.005
-"""Standard deviation of the smoothing of the course [m], against the noise of centrelines from CT."""
+"""Standard deviation of the smoothing of the course [m], against the noise of centerlines from CT."""
 
 _ENDS = 0.010
 """Length at either end that does not count [m]: the smoothing straightens it."""
@@ -26,7 +26,7 @@ _ENDS = 0.010
 
 @dataclass(frozen=True)
 class CourseMeasures:
-    """Measures of one centreline, smoothed by a Gaussian of 5 mm."""
+    """Measures of one centerline, smoothed by a Gaussian of 5 mm."""
 
     length: float
     """Length [m]."""
@@ -51,7 +51,7 @@ class CourseMeasures:
 
 
 def measure_course(points: np.ndarray, radius: np.ndarray | None = None) -> CourseMeasures:
-    """Measure a centreline.
+    """Measure a centerline.
 
     Args:
         points: Positions along it [m], shape (n, 3).

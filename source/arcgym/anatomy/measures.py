@@ -27,7 +27,7 @@ def tet_quality(points: np.ndarray, tets: np.ndarray) -> np.ndarray:
 
 
 def face_normals(points: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Return unnormalised face normals (length twice the area) [m^2], shape (F, 3)."""
+    """Return unnormalized face normals (length twice the area) [m^2], shape (F, 3)."""
     a, b, c = (points[faces[:, k]].astype(np.float64) for k in range(3))
     return np.cross(b - a, c - a)
 

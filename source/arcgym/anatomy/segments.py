@@ -10,11 +10,11 @@ SEGMENTS = ("rectum", "sigmoid", "descending", "splenic", "transverse", "hepatic
 RETROPERITONEAL = ("rectum", "descending", "splenic", "hepatic", "ascending")
 """Segments held to the posterior abdominal wall (rectum, descending and ascending colon) or by ligaments (flexures).
 
-The sigmoid, the transverse colon and the caecum hang on a mesentery and move freely (Standring, Gray's Anatomy).
+The sigmoid, the transverse colon and the cecum hang on a mesentery and move freely (Standring, Gray's Anatomy).
 """
 
 ANCHOR_FREE = 0
-"""Anchor code of a vertex that is held by its neighbours only."""
+"""Anchor code of a vertex that is held by its neighbors only."""
 
 ANCHOR_ELASTIC = 1
 """Anchor code of a vertex that an elastic attachment pulls to its rest position."""

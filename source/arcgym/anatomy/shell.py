@@ -27,13 +27,13 @@ class ShellMesh:
     segment: np.ndarray
     """Index into ``SEGMENTS``, shape (V,), int32."""
     ring: np.ndarray
-    """Ring number along the centreline, shape (V,), int32."""
+    """Ring number along the centerline, shape (V,), int32."""
     layer: np.ndarray
     """All 0: the only layer is also the lumen side, shape (V,), int32."""
     frame_neighbors: np.ndarray
     """Next ring, previous ring, next around, previous around, shape (V, 4), int32."""
     ring_arc: np.ndarray
-    """Arc length of each ring along the centreline at rest [m], shape (R,), float32."""
+    """Arc length of each ring along the centerline at rest [m], shape (R,), float32."""
 
 
 def wall_thickness(wall: WallMesh) -> float:

@@ -12,12 +12,12 @@ from scipy.ndimage import map_coordinates
 
 @dataclass(frozen=True)
 class Grid:
-    """Values at voxel centres; axes are the patient's: +X right, +Y anterior, +Z cranial."""
+    """Values at voxel centers; axes are the patient's: +X right, +Y anterior, +Z cranial."""
 
     values: np.ndarray
     """One value a voxel, shape (X, Y, Z); the lumen is where it is above 0.5."""
     origin: np.ndarray
-    """Centre of the first voxel [m], shape (3,)."""
+    """Center of the first voxel [m], shape (3,)."""
     spacing: float
     """Edge of a voxel [m]."""
 

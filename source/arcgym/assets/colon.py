@@ -93,7 +93,7 @@ class Colon:
 
     @property
     def num_rings(self) -> int:
-        """Number of rings R along the centreline."""
+        """Number of rings R along the centerline."""
         return len(self.wall.ring_arc)
 
     @cached_property

@@ -21,7 +21,7 @@ class ColonCfg:
     """A colon and the tissue it is made of."""
 
     class_type: Any = "arcgym.assets.colon:Colon"
-    """Class built from this configuration; change it to add behaviour to the asset."""
+    """Class built from this configuration; change it to add behavior to the asset."""
     usd_path: str | list[str] = "colon_1/colon.usda"
     """Stage of the colon: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`).
 
@@ -59,7 +59,7 @@ class ColonCfg:
     """Way that some segments move, half way along, before their attachment gets tight [m], over the preset's. 0 holds
     the segment as a plain spring."""
     anchors: Literal["sparse", "default", "dense"] = "default"
-    """Factor on all anchor springs: 0.5, 1 or 1.75. Change it, or randomise it with the event
+    """Factor on all anchor springs: 0.5, 1 or 1.75. Change it, or randomize it with the event
     :func:`arcgym.envs.mdp.randomize_anchors`, to see how much a policy depends on how firmly the colon is held."""
     gas: GasCfg = GasCfg()
     """Gas in the lumen: pressure, insufflation and collapse; off by default."""

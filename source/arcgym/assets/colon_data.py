@@ -30,7 +30,7 @@ class ColonData:
         self.nodal_vel_w: torch.Tensor = wp.to_torch(sim.nodal_vel).transpose(0, 1)
         """Velocities of the wall vertices [m/s], shape (N, V, 3)."""
         self.centerline_pos_w: torch.Tensor = wp.to_torch(sim.ring_centers)
-        """Centres of the deformed rings [m], shape (N, R, 3)."""
+        """Centers of the deformed rings [m], shape (N, R, 3)."""
         self.patient: torch.Tensor = wp.to_torch(sim.patient)
         """Patient of each world, index into :attr:`Colon.patients`, shape (N,), int32; to be read only."""
         self.root_pos_w = torch.zeros(sim.num_envs, 3, device=sim.device)

@@ -80,7 +80,7 @@ class Endoscope:
 
     @property
     def tip_offset(self) -> float:
-        """Distance from the centre of the last link to the front of the tip [m]."""
+        """Distance from the center of the last link to the front of the tip [m]."""
         return float(self.half_length[-1] + self.stage.link_radius[-1])
 
     @property
@@ -95,7 +95,7 @@ class Endoscope:
 
     @property
     def rest_height(self) -> np.ndarray:
-        """Height of each link's centre above the anal verge in the rest pose [m], shape (L,)."""
+        """Height of each link's center above the anal verge in the rest pose [m], shape (L,)."""
         return self._rest_height
 
     def add_to(self, builder: newton.ModelBuilder, mass_scaling: float) -> None:

@@ -81,7 +81,7 @@ class EndoscopeCfg:
     """An endoscope and how it is driven."""
 
     class_type: Any = "arcgym.assets.endoscope:Endoscope"
-    """Class built from this configuration; change it to add behaviour to the asset."""
+    """Class built from this configuration; change it to add behavior to the asset."""
     usd_path: str = MISSING
     """Stage of the scope: a path, or one relative to the assets folder (:func:`arcgym.utils.paths.assets_dir`)."""
     actuators: dict[str, ActuatorBaseCfg] = MISSING
@@ -92,7 +92,7 @@ class EndoscopeCfg:
     :mod:`arcgym.experts`. None: episodes can start from rest or from states made before."""
     length: float | None = None
     """Length of a shipped scope with a shaft [m], over its 1.68 m; 2.2 m in the tasks ``ARC-Cecum``. All but 0.2 m can
-    be inserted. Raise it where the caecum is farther than the scope is long, as in many patients: enteroscopes are sold
+    be inserted. Raise it where the cecum is farther than the scope is long, as in many patients: enteroscopes are sold
     with 2.0 m; the cost grows with the number of links."""
     shaft_rigidity: float | None = None
     """Bending rigidity EI of the hinges behind the bending section [N m^2], over the stage's."""

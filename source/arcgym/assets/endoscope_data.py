@@ -37,15 +37,15 @@ class EndoscopeData:
         self.joint_pos_target: torch.Tensor = wp.to_torch(sim.control.joint_target_q).view(n, -1)
         """Joint targets [m or rad], shape (N, J)."""
         self.body_pos_w = pose[..., :3]
-        """Centres of the links [m], shape (N, L, 3)."""
+        """Centers of the links [m], shape (N, L, 3)."""
         self.body_quat_w = pose[..., 3:]
         """Orientations of the links, +Z towards the tip, shape (N, L, 4)."""
         self.body_lin_vel_w = twist[..., :3]
-        """Velocities of the links' centres [m/s], shape (N, L, 3)."""
+        """Velocities of the links' centers [m/s], shape (N, L, 3)."""
         self.body_ang_vel_w = twist[..., 3:]
         """Angular velocities of the links [rad/s], shape (N, L, 3)."""
         self.root_pos_w = self.body_pos_w[:, 0]
-        """Centre of the base link [m], shape (N, 3)."""
+        """Center of the base link [m], shape (N, 3)."""
         self.root_quat_w = self.body_quat_w[:, 0]
         """Orientation of the base link, shape (N, 4)."""
         self.tip_pos_w = tip[:, :3]
@@ -57,11 +57,11 @@ class EndoscopeData:
         self.tip_ang_vel_w = tip_twist[:, 3:]
         """Angular velocity of the tip [rad/s], shape (N, 3)."""
         self.tip_arc_length: torch.Tensor = wp.to_torch(readout.tip_arc)
-        """Arc length of the tip along the deformed centreline, in rest arc length from the anal verge [m], (N,)."""
+        """Arc length of the tip along the deformed centerline, in rest arc length from the anal verge [m], (N,)."""
         self.tip_centerline_distance: torch.Tensor = wp.to_torch(readout.tip_distance)
-        """Distance of the tip from the deformed centreline [m], shape (N,)."""
+        """Distance of the tip from the deformed centerline [m], shape (N,)."""
         self.tip_lumen_direction_w: torch.Tensor = wp.to_torch(readout.tip_direction)
-        """Direction of the deformed centreline beside the tip, away from the anus, shape (N, 3)."""
+        """Direction of the deformed centerline beside the tip, away from the anus, shape (N, 3)."""
         window = wp.to_torch(readout.window_force)
         norm, peak = wp.to_torch(readout.window_force_norm), wp.to_torch(readout.window_force_peak)
         self.window_arc: torch.Tensor = torch.tensor(endoscope.force_windows.arc, dtype=torch.float, device=sim.device)

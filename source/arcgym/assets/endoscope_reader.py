@@ -138,7 +138,7 @@ class _Reader:
         self.usd = open_stage(  # no rescaling: it would need masses, inertias and drives, too
             path,
             missing=lambda: _list_files(path.parent),
-            meters="Export the stage in metres (metersPerUnit 1).",
+            meters="Export the stage in meters (metersPerUnit 1).",
             up="Export the stage with Z up.",
         )
 

@@ -49,7 +49,7 @@ class CameraSpec:
     quaternion: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 0.0)
     """Orientation (x, y, z, w). The default looks along the link's +Z, image up along the link's +Y."""
     field_of_view: float = math.radians(150.0)
-    """Field of view over the image diagonal [rad]. The CF-HQ190L is labelled 170 degrees; labelled values are
+    """Field of view over the image diagonal [rad]. The CF-HQ190L is labeled 170 degrees; labeled values are
     significantly overstated (PMC5480555)."""
     clipping: tuple[float, float] = (0.0005, 0.6)
     """Nearest and farthest visible distance [m]."""

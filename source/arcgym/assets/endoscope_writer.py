@@ -128,7 +128,7 @@ def _write_link(stage: Usd.Stage, spec: EndoscopeSpec, link: int, height: float)
 
 
 def cylinder_inertia(mass: float, radius: float, length: float) -> tuple[float, float, float]:
-    """Principal moments of inertia of a solid cylinder along Z about its centre [kg m^2]."""
+    """Principal moments of inertia of a solid cylinder along Z about its center [kg m^2]."""
     across = mass * (3.0 * radius**2 + length**2) / 12.0
     return across, across, 0.5 * mass * radius**2
 
@@ -202,7 +202,7 @@ def _write_turn(stage: Usd.Stage, spec: EndoscopeSpec, hinge: int, axis: int, st
 
 
 def _write_frames(joint: UsdPhysics.Joint, height0: float, height1: float) -> None:
-    """Put the joint's frames on the Z axes of its two bodies, `height0` and `height1` from their centres [m]."""
+    """Put the joint's frames on the Z axes of its two bodies, `height0` and `height1` from their centers [m]."""
     joint.CreateLocalPos0Attr(Gf.Vec3f(0.0, 0.0, float(height0)))
     joint.CreateLocalPos1Attr(Gf.Vec3f(0.0, 0.0, float(height1)))
     joint.CreateLocalRot0Attr(Gf.Quatf(1.0))
@@ -217,7 +217,7 @@ def _write_limit(prim: Usd.Prim, axis: str, low: float, high: float) -> None:
 
 
 def _write_drive(prim: Usd.Prim, axis: str, spec: DriveSpec | None, unit: float) -> None:
-    """Drive of one axis, if any; `unit` is 1 for metres, one degree in radians for angles: USD counts per degree."""
+    """Drive of one axis, if any; `unit` is 1 for meters, one degree in radians for angles: USD counts per degree."""
     if spec is None:
         return
     drive = UsdPhysics.DriveAPI.Apply(prim, axis)

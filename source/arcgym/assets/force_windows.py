@@ -58,7 +58,7 @@ def force_windows(link_length: np.ndarray, tip_offset: float) -> ForceWindows:
 
     Args:
         link_length: Length of each link, base first [m], shape (L,).
-        tip_offset: Distance from the centre of the last link to the front of the tip [m]: its round end counts.
+        tip_offset: Distance from the center of the last link to the front of the tip [m]: its round end counts.
     """
     extent = np.array(link_length[::-1], float)
     extent[0] = 0.5 * extent[0] + tip_offset

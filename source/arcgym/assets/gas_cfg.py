@@ -8,7 +8,7 @@ from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import FieldError, Range, require, require_non_negative, require_positive
 
 MMHG = 133.322
-"""One millimetre of mercury [Pa]."""
+"""One millimeter of mercury [Pa]."""
 
 
 @configclass

@@ -24,7 +24,7 @@ ANCHOR_STIFFNESS = {
 }
 """Stiffness of the attachment per length of colon [N/m^2], spread over each ring's outer vertices: retroperitoneal
 segments are held, the sigmoid and the transverse colon hang in their mesentery. Chosen so that a scripted insertion
-moves the sigmoid by centimetres and the descending colon by millimetres; no published values are known to us."""
+moves the sigmoid by centimeters and the descending colon by millimeters; no published values are known to us."""
 
 MESOCOLON_HEIGHT = {"sigmoid": 0.063, "transverse": 0.074}
 """Height of the mesentery [m]: 6.3 +- 2.6 cm and 7.4 +- 3.6 cm in 35 cadavers (Annals of the Royal College of Surgeons

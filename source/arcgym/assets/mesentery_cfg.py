@@ -31,7 +31,7 @@ class MesenteryCfg:
     back by default, where both roots are; a choice, as all of a root lies right behind its colon then."""
     least_height: float = 0.03
     """Height at the ends of a segment [m]. A choice, the least that was found for a sigmoid (3.1 to 12 cm): there the
-    colon passes to stretches that are held firmly, and a lower sheet would be tight after millimetres."""
+    colon passes to stretches that are held firmly, and a lower sheet would be tight after millimeters."""
     youngs_modulus: float = 0.2e6
     """Young's modulus of the sheet at small strains [Pa]: 0.088 to 6.86 MPa in pigs (White et al., Mechanical
     characterisation of porcine non-intestinal colorectal tissues); 0.2 MPa is near that of rabbits, three times a shear

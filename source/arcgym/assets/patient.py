@@ -43,13 +43,13 @@ class Patient:
     material: TissueMaterial
     """Tissue that the stage asks for."""
     centerline: Centerline
-    """Centreline at rest."""
+    """Centerline at rest."""
     bounds: Bounds
     """Arc length at start and end of each segment [m]."""
     visual: VisualMesh
     """Surface that the policy's camera sees."""
     albedo_texture: Path
-    """Colour of the mucosa."""
+    """Color of the mucosa."""
     detail_texture: Path
     """Relief of the mucosa."""
     contact: ContactSurface | None = None

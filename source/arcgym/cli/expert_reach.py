@@ -30,7 +30,7 @@ class Reach:
     elapsed_s: float
     """Time that took [s]."""
     problem: str
-    """Why it ended before the caecum; empty if it arrived there."""
+    """Why it ended before the cecum; empty if it arrived there."""
 
     def __str__(self) -> str:
         """One line."""

@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--units", choices=("auto", "mm", "cm", "m"), default="auto", help="unit of a surface")
     parser.add_argument("--frame", choices=("auto", "ras", "lps", "y-up", "y-up-lps"), default="auto", help="its axes")
     parser.add_argument("--anus", metavar="X,Y,Z", help="place of the anus [mm], see docs/importing.md")
-    parser.add_argument("--cecum", metavar="X,Y,Z", help="place of the caecal pole [mm]")
+    parser.add_argument("--cecum", metavar="X,Y,Z", help="place of the cecal pole [mm]")
     parser.add_argument(
         "--landmark", action="append", default=[], metavar="NAME=MM", help="landmark by arc length, or X,Y,Z [mm]"
     )

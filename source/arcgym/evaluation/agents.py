@@ -28,7 +28,7 @@ def inputs_of(env_cfg: Any, agent_cfg: Any) -> dict[str, Any]:
     """Return what a trained agent acts by, and whether rules on its actions read true depth.
 
     It acts by observation groups, and by what was added to them: a group with further images is what it was, one with
-    the centreline in it is named with that term's function, ``policy`` and ``centerline_ahead``.
+    the centerline in it is named with that term's function, ``policy`` and ``centerline_ahead``.
     """
     groups = getattr(agent_cfg, "obs_groups", None) or {}
     rules = getattr(agent_cfg, "action_constraint", None)

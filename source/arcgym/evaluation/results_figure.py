@@ -14,7 +14,7 @@ from arcgym.evaluation.results_page import cells_of, published_figures
 from arcgym.evaluation.statistics import wilson
 
 COLORS = 32
-"""Colours of the picture: a palette takes a quarter of the bytes."""
+"""Colors of the picture: a palette takes a quarter of the bytes."""
 
 
 def draw_results(results: Sequence[Result], section: dict[str, Any], out: Path) -> None:

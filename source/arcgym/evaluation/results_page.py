@@ -30,7 +30,7 @@ SECTIONS_FILE = FOLDER / "results.yaml"
 METRICS = {
     "progress": ("progress", 2),
     "seconds": ("time [s]", 1),
-    "s_c": ("centred view s_c", 2),
+    "s_c": ("centered view s_c", 2),
     "coverage": ("mucosa seen", 2),
     "polyps_seen": ("polyps seen", 2),
     "tip_time_above_unsafe": ("tip above unsafe [s]", 2),

@@ -5,7 +5,7 @@
 
 They restate the "constrained PPO" of "ARCGym: Benchmarking Deep Reinforcement Learning in Autonomous Robotic
 Colonoscopy" (RA-L 2026): a constant step forward, no roll, lateral and angular commands clamped towards the side of the
-deep region of the depth image, and backing off from the wall. With simulator depth the policy is not one of colour
+deep region of the depth image, and backing off from the wall. With simulator depth the policy is not one of color
 images alone, so results belong beside those without the rules.
 """
 
@@ -43,7 +43,7 @@ class ConstraintRules:
 
 
 def deep_region_offset(depth: torch.Tensor, threshold: float, far: float) -> torch.Tensor:
-    """Return where the deep region is: right and down of the image centre in half images, in [-1, 1], shape (N, 2).
+    """Return where the deep region is: right and down of the image center in half images, in [-1, 1], shape (N, 2).
 
     Args:
         depth: Distance along the ray [m], shape (N, H, W).

@@ -40,7 +40,7 @@ def jitter_colors(images: torch.Tensor, strength: float) -> torch.Tensor:
     """Change brightness, contrast and saturation of each image at random.
 
     In this order each is multiplied by a factor of its own between ``1 - strength`` and ``1 + strength``: the values,
-    their distance from the image's mean, and their distance from the pixel's grey.
+    their distance from the image's mean, and their distance from the pixel's gray.
 
     Args:
         images: uint8, shape (N, 3 K, H, W): RGB images, K of them stacked, which change alike.
@@ -56,8 +56,8 @@ def jitter_colors(images: torch.Tensor, strength: float) -> torch.Tensor:
     values = values * factors[0]
     mean = values.mean(dim=(1, 2, 3, 4), keepdim=True)
     values = mean + (values - mean) * factors[1]
-    grey = values.mean(dim=2, keepdim=True)
-    values = grey + (values - grey) * factors[2]
+    gray = values.mean(dim=2, keepdim=True)
+    values = gray + (values - gray) * factors[2]
     return values.round_().clamp_(0.0, 255.0).to(torch.uint8).view_as(images)
 
 

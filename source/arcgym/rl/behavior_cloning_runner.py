@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Runner of behaviour cloning."""
+"""Runner of behavior cloning."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Generalised advantage estimation for signals other than the reward."""
+"""Generalized advantage estimation for signals other than the reward."""
 
 from __future__ import annotations
 

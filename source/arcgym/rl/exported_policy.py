@@ -13,7 +13,7 @@ from torch import nn
 
 
 class _ImagePolicy(nn.Module):
-    """Copies of the parts that act; the critic, the noise and the optimiser stay behind."""
+    """Copies of the parts that act; the critic, the noise and the optimizer stay behind."""
 
     def __init__(self, model: CNNModel):
         super().__init__()

@@ -16,7 +16,7 @@ from arcgym.rl.exported_policy import JitImagePolicy, OnnxImagePolicy
 
 
 class ByteToFloat(nn.Module):
-    """Maps bytes 0..255 to floats -0.5..0.5, so that the first layer sees inputs centred on zero."""
+    """Maps bytes 0..255 to floats -0.5..0.5, so that the first layer sees inputs centered on zero."""
 
     def forward(self, image: torch.Tensor) -> torch.Tensor:
         """Return ``image`` as float32, same shape."""

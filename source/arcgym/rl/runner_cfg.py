@@ -192,7 +192,7 @@ class RslRlCnnModelCfg(RslRlMlpModelCfg):
 
 @configclass
 class RslRlPpoAlgorithmCfg:
-    """Proximal policy optimisation (Schulman et al. 2017) as rsl_rl runs it."""
+    """Proximal policy optimization (Schulman et al. 2017) as rsl_rl runs it."""
 
     class_name: str = "PPO"
     """Algorithm class: a name in rsl_rl or ``module:Class``; extra constructor arguments go in a subclass of this."""
@@ -217,7 +217,7 @@ class RslRlPpoAlgorithmCfg:
     costs little."""
 
     lam: float = 0.95
-    """Trace decay of generalised advantage estimation (Schulman et al. 2016). Lower it where returns vary a lot."""
+    """Trace decay of generalized advantage estimation (Schulman et al. 2016). Lower it where returns vary a lot."""
 
     clip_param: float = 0.2
     """Clipping range of the probability ratio and, with ``use_clipped_value_loss``, of the value step. Lower it for
@@ -237,10 +237,10 @@ class RslRlPpoAlgorithmCfg:
     """Largest norm of a gradient; larger ones are scaled down. Lower it if the loss jumps."""
 
     optimizer: str = "adam"
-    """Optimiser that rsl_rl resolves (``adam``, ``adamw``, ``sgd``, ``rmsprop``)."""
+    """Optimizer that rsl_rl resolves (``adam``, ``adamw``, ``sgd``, ``rmsprop``)."""
 
     normalize_advantage_per_mini_batch: bool = False
-    """Whether advantages are normalised in each mini-batch rather than over the rollout."""
+    """Whether advantages are normalized in each mini-batch rather than over the rollout."""
 
     use_mixed_precision: bool = False
     """Whether updates compute in bfloat16 (``torch.autocast``); acting stays in float32. Turn on where ``arcgym bench
@@ -336,7 +336,7 @@ class RslRlOnPolicyRunnerCfg:
     """Mode of ``torch.compile`` for actor and critic; None runs them eagerly."""
 
     init_policy: str | None = None
-    """Checkpoint whose policy a new run starts from, of behaviour cloning, of a distillation (its student), or of
+    """Checkpoint whose policy a new run starts from, of behavior cloning, of a distillation (its student), or of
     another task; None starts from scratch. The student of a distillation may start from one, too. A policy without
     memory fits one with it whose ``skip_connection`` is on."""
 

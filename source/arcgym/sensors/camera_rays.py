@@ -10,7 +10,7 @@ import numpy as np
 
 
 def fisheye_rays(width: int, height: int, field_of_view: float, samples: int = 1) -> np.ndarray:
-    """Return the ray directions of an equidistant fisheye: angle from the axis = distance from the centre / f.
+    """Return the ray directions of an equidistant fisheye: angle from the axis = distance from the center / f.
 
     Args:
         width: Picture width [px].

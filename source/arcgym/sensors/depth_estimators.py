@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Depth of the tip's view for rules and rewards: the simulator's, or an estimate from the colour image."""
+"""Depth of the tip's view for rules and rewards: the simulator's, or an estimate from the color image."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class SimulatorDepth:
 
 
 class EstimatedDepth:
-    """Depth estimated from the camera's colour image, each frame aligned by itself.
+    """Depth estimated from the camera's color image, each frame aligned by itself.
 
     Monocular networks give inverse depth up to a scale and a shift that differ from frame to frame.
     """

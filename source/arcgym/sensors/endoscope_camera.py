@@ -225,7 +225,7 @@ class EndoscopeCamera(SensorBase):
             samples: Rays per pixel.
 
         Returns:
-            Colour, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
+            Color, uint8, shape (size, size, 3), and distance along the ray [m], float32, shape (size, size).
         """
         self._show(env_id)
         renderer = self._snapshot_renderer(size, samples, env_id)

@@ -16,10 +16,10 @@ from arcgym.utils.validation import Range, require, require_at_least, require_po
 
 @configclass
 class EndoscopeCameraCfg(SensorBaseCfg):
-    """Colour and depth from the tip of the endoscope, all worlds in one launch."""
+    """Color and depth from the tip of the endoscope, all worlds in one launch."""
 
     class_type: Any = "arcgym.sensors.endoscope_camera:EndoscopeCamera"
-    """Class built from this configuration; change it to add behaviour to the camera."""
+    """Class built from this configuration; change it to add behavior to the camera."""
 
     width: int = 84
     """Width of the policy's picture [px]."""

@@ -20,7 +20,7 @@ class LightingCfg:
     """Tip lights and the wet mucosa they fall on. Positions of the lights are in the endoscope's stage."""
 
     beam: float = 0.3
-    """How much the lights favour the axis: 0 is a bare (Lambertian) diode, 1 falls with the squared cosine."""
+    """How much the lights favor the axis: 0 is a bare (Lambertian) diode, 1 falls with the squared cosine."""
 
     concentration: float | None = None
     """Fall-off of a measured light with the angle from its axis, in place of :attr:`beam`: exp(-c (1 - cos)). None by

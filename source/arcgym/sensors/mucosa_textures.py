@@ -23,7 +23,7 @@ class MucosaTextures:
         """Copy both images to the device.
 
         Args:
-            color: Colour, square roots of linear light, shape (H, W, 4), uint8.
+            color: Color, square roots of linear light, shape (H, W, 4), uint8.
             detail: Slope along u, slope along v, height, wetness, shape (H, W, 4), uint8.
             device: Warp device.
             smooth_levels: Blend between two levels of the pyramid. Smoother in large pictures, twice the look-ups.
@@ -38,7 +38,7 @@ def read_images(albedo: Path, detail: Path) -> tuple[np.ndarray, np.ndarray]:
     """Read the images of :class:`MucosaTextures`.
 
     Args:
-        albedo: Colour image in sRGB.
+        albedo: Color image in sRGB.
         detail: RGBA image: slope along u, slope along v, height, wetness.
 
     Raises:

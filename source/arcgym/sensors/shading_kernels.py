@@ -22,8 +22,8 @@ class SurfaceView:
     roots: wp.array[int]  # root of each world's group, shape (W,)
     normals: wp.array[wp.vec3]  # unit normals towards the lumen, shape (W*M,)
     patient: wp.array[int]  # patient of each world, shape (W,)
-    attributes: wp.array2d[wp.vec4]  # u, v, tint and texels per metre of every vertex of each patient, shape (M, P)
-    albedo: wp.array[wp.Texture2D]  # colour, shape (P,)
+    attributes: wp.array2d[wp.vec4]  # u, v, tint and texels per meter of every vertex of each patient, shape (M, P)
+    albedo: wp.array[wp.Texture2D]  # color, shape (P,)
     detail: wp.array[wp.Texture2D]  # slope, height and wetness, shape (P,)
     texture_size: wp.array[wp.vec2]  # length of the texture along u and v at its true scale [m], shape (P,)
 
@@ -236,7 +236,7 @@ lit_by = make_lit_by(beam_power)
 
 @wp.func
 def covered_radiance(lighting: Lighting, albedo: wp.Texture2D) -> wp.vec3:
-    """Return the radiance of mucosa pressed against the lens: mean colour, lit from the least distance ("red-out")."""
+    """Return the radiance of mucosa pressed against the lens: mean color, lit from the least distance ("red-out")."""
     color = mucosa_color(wp.texture_sample(albedo, wp.vec2(0.5, 0.5), dtype=wp.vec4f, lod=16.0), 0.0)
     return wp.cw_mul(color, color) / lighting.min_distance_sq
 

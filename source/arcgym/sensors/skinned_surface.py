@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class SkinnedSurface:
     """A visual mesh that follows the wall by linear blend skinning with one frame per wall vertex.
 
-    Every frame is built from the vertex's neighbours along and around the colon, so folds turn with the wall instead
+    Every frame is built from the vertex's neighbors along and around the colon, so folds turn with the wall instead
     of being sheared. :meth:`update` only launches kernels, so that it can be captured in a graph.
 
     Every world has one of P patients; surfaces of fewer vertices or triangles than the largest are filled up. One

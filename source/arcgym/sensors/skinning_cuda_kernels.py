@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """The kernels of :mod:`arcgym.sensors.skinning_kernels` for a GPU, whose memory they use better.
 
-Neighbouring threads are of neighbouring worlds, so the numbers of a frame lie by world; and of the surface, whose
+Neighboring threads are of neighboring worlds, so the numbers of a frame lie by world; and of the surface, whose
 vertices lie world by world for the rays, a thread writes several at once. Results differ by rounding.
 
 Launch dimensions: V wall vertices, M vertices of the visual surface, W worlds; P patients.

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def texel_density(visual: VisualMesh, width: int, height: int) -> np.ndarray:
-    """Return the texels per metre at every vertex along the texture's denser axis, shape (M,), float64.
+    """Return the texels per meter at every vertex along the texture's denser axis, shape (M,), float64.
 
     The renderer picks the level of the texture pyramid by it. It is taken at rest, as the mean over the triangles
     around a vertex, so that levels change smoothly over the surface.

@@ -52,7 +52,7 @@ def drop_shapes(builder: newton.ModelBuilder) -> None:
 
 
 def wall_parameters(colon: Colon, patient: int = 0) -> WallParameters:
-    """Return the wall of a patient as Newton imports and colours it, in numpy."""
+    """Return the wall of a patient as Newton imports and colors it, in numpy."""
     builder = empty_builder()
     colon.add_to(builder, patient)
     wall = colon.patients[patient].wall
@@ -114,6 +114,6 @@ def carried_surface(
 
 
 def wall_lumen(wall: ShellMesh | WallMesh) -> LumenTopology:
-    """Return the faces of a wall that the scope touches, sorted along the centreline."""
+    """Return the faces of a wall that the scope touches, sorted along the centerline."""
     faces = wall.triangles if isinstance(wall, ShellMesh) else inner_faces(wall.tets, wall.layer)
     return lumen_topology(wall.points, faces, wall.ring, wall.layer)

@@ -225,7 +225,7 @@ class Simulation:
         self._read_out(self._all_worlds)
 
     def forward(self, env_mask: torch.Tensor | None = None) -> None:
-        """Recompute link poses, ring centres, tip and camera after the state was written to.
+        """Recompute link poses, ring centers, tip and camera after the state was written to.
 
         Args:
             env_mask: Worlds that were written to, shape (N,), bool; None for all. The others stay as they are to the

@@ -52,7 +52,7 @@ class ContactCfg:
     ``dt`` times its stiffness, 4 N s/m. With 0.5 slips come and go more as with smaller steps (docs/physics.md, known
     limits); with less a limp shaft does not stay finite. Keep 1 to compare with published forces."""
     friction: float = 0.1
-    """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomise it per world with
+    """Coulomb coefficient. Lubricated human mucosa has a dynamic minimum near 0.09; randomize it per world with
     the event :func:`arcgym.envs.mdp.randomize_friction`."""
     friction_stiffness: float = 1000.0
     """Stiffness along the wall of a contact that friction holds [N/m]: a contact of 1 N slides after
@@ -67,7 +67,7 @@ class ContactCfg:
     wall_radius: float = 0.0005
     """Thickness that the wall's surface adds to every link [m]."""
     surface: Literal["wall", "rows", "fine"] = "wall"
-    """What the links touch: ``wall``, the faces of the simulated wall, a centimetre wide, or ``fine``, the stage's
+    """What the links touch: ``wall``, the faces of the simulated wall, a centimeter wide, or ``fine``, the stage's
     contact surface, which has the folds that they leave out and is carried by the wall (docs/physics.md), or ``rows``,
     the rows of that surface with the wall's columns alone: folds go round the lumen. Choose them where folds and tight
     bends matter; they take three times the room for contacts, and stages made before them have none."""

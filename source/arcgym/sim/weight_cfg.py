@@ -36,7 +36,7 @@ class WeightCfg:
     """Acceleration of free fall [m/s^2]. Change it to compare."""
     wall_share: float = 1.0
     """Share of the wall's weight that its attachments bear; the rest rests on what lies around it. 1 by default, as the
-    slack mesentery of ``in_situ`` has it: nothing is known of how much neighbours carry, and in a fluid as dense as fat
+    slack mesentery of ``in_situ`` has it: nothing is known of how much neighbors carry, and in a fluid as dense as fat
     (950 kg/m^3, ICRU 46) it would be 0.08."""
     contents_per_length: float = 0.05
     """Mass of fluid and stool by length of colon [kg/m], spread evenly. A choice: 0.1 l in 1.9 m, for 0 to 0.2 l are

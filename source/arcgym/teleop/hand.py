@@ -37,7 +37,7 @@ PAD: dict[str, tuple[int, float]] = {
 }
 """Axis of a gamepad of the standard layout and its sign; with ``right`` there, roll and up are on the triggers."""
 DEAD_ZONE = 0.12
-"""Deflection of a gamepad's stick below which it counts as centred."""
+"""Deflection of a gamepad's stick below which it counts as centered."""
 
 
 class Hand:

@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """Points that all threads of a GPU block read again and again, kept in shared memory.
 
-Vertices of neighbouring worlds lie beside each other in memory, so that a block that works on one world gets a third of
+Vertices of neighboring worlds lie beside each other in memory, so that a block that works on one world gets a third of
 what it fetches, and waits for each of them. Copied once, they are at hand. On a CPU, and where there are more points
 than there is room for, all is read from the array itself.
 """

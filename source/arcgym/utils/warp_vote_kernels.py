@@ -13,7 +13,7 @@ from arcgym.utils import warp_setup  # noqa: F401
 LANES = 32
 """Threads of a warp on a GPU."""
 GROUP = 8
-"""Neighbouring threads that add up together, a divisor of ``LANES``."""
+"""Neighboring threads that add up together, a divisor of ``LANES``."""
 
 
 @wp.func_native("""
@@ -95,7 +95,7 @@ def warp_sum(value: int) -> int:
 """.replace("GROUP", str(GROUP))
 )
 def sum_of_group(value: wp.vec3) -> wp.vec3:
-    """Return the sum over the ``GROUP`` neighbouring threads, the same bits in each; all of them have to call it.
+    """Return the sum over the ``GROUP`` neighboring threads, the same bits in each; all of them have to call it.
 
     Other groups of the warp may be elsewhere.
     """

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Legends of the outside view: colours of scope and wall, scale and sides."""
+"""Legends of the outside view: colors of scope and wall, scale and sides."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def draw_legends(
         draw: Where to draw.
         origin: Upper left corner of the outside view in the picture [px].
         camera: Camera of the outside view.
-        wall: Colours of the wall.
-        tiers: Tiers that the scope is coloured by; None where it is plain.
+        wall: Colors of the wall.
+        tiers: Tiers that the scope is colored by; None where it is plain.
     """
     left, top = origin
     width, height = camera.size

@@ -63,7 +63,7 @@ class OutsideView:
             link_radius: Radius of each link [m], shape (L,).
             force_arc: Distance of the middle of each window of force from the front of the tip [m], shape (K,).
             bending_links: Number of distal links that form the bending section.
-            tiers: Tiers of the force and their colours.
+            tiers: Tiers of the force and their colors.
         """
         self.cfg = cfg
         self.surface = surface
@@ -104,7 +104,7 @@ class OutsideView:
             link_pos: Middle of each link [m], shape (L, 3).
             link_quat: Orientation of each link (x, y, z, w), +Z towards the tip, shape (L, 4).
             force: Wall force on each window of the scope [N], shape (K,).
-            wall_values: What the colour of each vertex shows, shape (M,); None for its displacement.
+            wall_values: What the color of each vertex shows, shape (M,); None for its displacement.
 
         Returns:
             Picture, uint8, shape (height, width, 3).

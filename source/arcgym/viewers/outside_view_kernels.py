@@ -38,9 +38,9 @@ class ViewParams:
     ghost_alpha: float
     """Opacity of a wall that is seen from the lumen and has the scope behind it."""
     scope_share: float
-    """Smallest share of the scope in the colour of a pixel that it lies behind."""
+    """Smallest share of the scope in the color of a pixel that it lies behind."""
     table_step: float
-    """Arc length between two entries of the scope's colour table [m]."""
+    """Arc length between two entries of the scope's color table [m]."""
 
 
 @wp.struct
@@ -122,7 +122,7 @@ def scope_color(
 
 @wp.func
 def outer_wall(base: wp.vec3, normal: wp.vec3, ray: wp.vec3, view: ViewParams):
-    """Colour (premultiplied) and opacity of the wall seen from outside; `normal` points out of the colon."""
+    """Color (premultiplied) and opacity of the wall seen from outside; `normal` points out of the colon."""
     facing = wp.abs(wp.dot(normal, ray))
     alpha = wp.min(view.near_alpha + view.rim_alpha * wp.pow(1.0 - facing, 2.0), 0.97)
     light = 0.18 + 0.90 * half_lambert(normal, view.key_light) + 0.14 * half_lambert(normal, view.fill_light)
@@ -133,7 +133,7 @@ def outer_wall(base: wp.vec3, normal: wp.vec3, ray: wp.vec3, view: ViewParams):
 
 @wp.func
 def inner_wall(base: wp.vec3, normal: wp.vec3, ray: wp.vec3, alpha: float, view: ViewParams):
-    """Colour (premultiplied) and opacity of the wall seen from the lumen; `normal` points into the lumen."""
+    """Color (premultiplied) and opacity of the wall seen from the lumen; `normal` points into the lumen."""
     facing = wp.abs(wp.dot(normal, ray))
     light = (0.42 + 0.60 * half_lambert(normal, view.key_light)) * (0.55 + 0.45 * facing)
     color = base * (light * alpha)
@@ -215,7 +215,7 @@ def trace_pixels(
 
 @wp.func
 def contrast(color: wp.array2d[wp.vec4], row: int, column: int):
-    """Largest difference between a pixel and its four neighbours."""
+    """Largest difference between a pixel and its four neighbors."""
     here = color[row, column]
     biggest = wp.float32(0.0)
     for k in range(4):
@@ -234,7 +234,7 @@ def refine_edges(
     color: wp.array2d[wp.vec4],
     refined: wp.array2d[wp.vec4],
 ):
-    """Copy flat pixels and average four rotated-grid samples where neighbours differ by more than `threshold`."""
+    """Copy flat pixels and average four rotated-grid samples where neighbors differ by more than `threshold`."""
     row, column = wp.tid()
     if contrast(color, row, column) < threshold:
         refined[row, column] = color[row, column]

@@ -36,9 +36,9 @@ class Cell:
     widest: str
     """Text of the largest width that the value can have, so that cells do not move from frame to frame."""
     dot: Color | None = None
-    """Colour of a dot before the value."""
+    """Color of a dot before the value."""
     note: str = ""
-    """Small text after the value, in the dot's colour."""
+    """Small text after the value, in the dot's color."""
     force: float | None = None
     """Force [N] to mark on a bar of the tiers below the value."""
 
@@ -49,7 +49,7 @@ def octagon(picture: np.ndarray, corner: float = 0.137, ground: Color = DARK) ->
     Args:
         picture: uint8, shape (H, W, 3).
         corner: Side of the triangles cut off, as a fraction of the width.
-        ground: Colour behind them.
+        ground: Color behind them.
 
     Returns:
         Picture of the same size.
@@ -83,7 +83,7 @@ def draw_panel(
         bounds: Start and end of each segment [m of arc length].
         rewards: Reward of each frame so far.
         forces: Largest force on a window of the scope of each frame so far [N].
-        tiers: Tiers of the force and their colours.
+        tiers: Tiers of the force and their colors.
     """
     left, top, right, bottom = box
     draw_segment_bar(draw, (left, top, right, top + 30), bounds, info.tip_arc, info.task_range)

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Colours and force tiers that every picture of the package shares."""
+"""Colors and force tiers that every picture of the package shares."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ForceTier:
     label: str
     """Meaning of the tier, for the legend."""
     color: tuple[int, int, int]
-    """Display colour (sRGB, 0..255)."""
+    """Display color (sRGB, 0..255)."""
 
 
 Tiers = Sequence[ForceTier]
@@ -30,7 +30,7 @@ Tiers = Sequence[ForceTier]
 
 
 def shown_tiers(limits: ForceTiersCfg) -> Tiers:
-    """Return the tiers between the limits of a task, with the colours of their pictures."""
+    """Return the tiers between the limits of a task, with the colors of their pictures."""
     return (
         ForceTier(0.0, "comfort", (66, 184, 131)),
         ForceTier(limits.comfort, "discomfort", (245, 190, 40)),
@@ -43,7 +43,7 @@ FORCE_TIERS = shown_tiers(ForceTiersCfg())
 """Tiers of the default limits."""
 
 VISIBLE_FORCE = 0.05
-"""Wall force from which a link is coloured at all [N]."""
+"""Wall force from which a link is colored at all [N]."""
 
 SEGMENT_COLORS: dict[str, tuple[int, int, int]] = dict(
     zip(
@@ -61,7 +61,7 @@ SEGMENT_COLORS: dict[str, tuple[int, int, int]] = dict(
         strict=True,
     )
 )
-"""Display colour of each colon segment (sRGB, 0..255)."""
+"""Display color of each colon segment (sRGB, 0..255)."""
 
 _DEFORMATION_STOPS = np.array(
     [[238, 158, 140], [236, 204, 158], [146, 206, 180], [60, 158, 190], [38, 96, 176], [52, 40, 120]], float
@@ -74,13 +74,13 @@ def force_tier(force: float, tiers: Tiers = FORCE_TIERS) -> ForceTier:
 
 
 def force_colors(force: np.ndarray, tiers: Tiers = FORCE_TIERS) -> np.ndarray:
-    """Return the colour of each force.
+    """Return the color of each force.
 
-    Colours change from one tier to the next over 10 % of the threshold, so that a tier reads as one colour.
+    Colors change from one tier to the next over 10 % of the threshold, so that a tier reads as one color.
 
     Args:
         force: Wall force [N], shape (K,).
-        tiers: Tiers and their colours.
+        tiers: Tiers and their colors.
 
     Returns:
         Linear RGB in 0..1, shape (K, 3).
@@ -93,9 +93,9 @@ def force_colors(force: np.ndarray, tiers: Tiers = FORCE_TIERS) -> np.ndarray:
 
 
 def deformation_colors(fraction: np.ndarray) -> np.ndarray:
-    """Return the wall's colour from undeformed (0, tissue) to the end of the scale (1, deep blue).
+    """Return the wall's color from undeformed (0, tissue) to the end of the scale (1, deep blue).
 
-    The ramp runs through cool colours: warm ones belong to the forces on the scope.
+    The ramp runs through cool colors: warm ones belong to the forces on the scope.
 
     Args:
         fraction: Displacement over the full scale, shape (K,).

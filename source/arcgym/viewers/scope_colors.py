@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Colour along the scope: material, depth marks and wall force."""
+"""Color along the scope: material, depth marks and wall force."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from arcgym.viewers.palette import FORCE_TIERS, VISIBLE_FORCE, Tiers, force_colors, to_linear
 
 TABLE_STEP = 0.001
-"""Wanted distance between two entries of the colour table [m]."""
+"""Wanted distance between two entries of the color table [m]."""
 
 _SHAFT = to_linear(np.array([44, 48, 58]))
 _BENDING = to_linear(np.array([86, 92, 106]))
@@ -27,10 +27,10 @@ def scope_color_table(
     force_arc: np.ndarray,
     tiers: Tiers = FORCE_TIERS,
 ) -> np.ndarray:
-    """Return the colour of the scope at even steps from its proximal end to its tip.
+    """Return the color of the scope at even steps from its proximal end to its tip.
 
     Dark shaft with a light ring every 10 cm from the tip (as real colonoscopes carry), a lighter bending section and
-    a light tip. The tier colour of the wall force covers all but the rings where there is any; each place has the force
+    a light tip. The tier color of the wall force covers all but the rings where there is any; each place has the force
     of the window around it.
 
     Args:
@@ -38,7 +38,7 @@ def scope_color_table(
         bending_links: Number of distal links that form the bending section.
         force: Wall force on each window of the scope [N], shape (K,).
         force_arc: Distance of the middle of each window from the front of the tip [m], ascending, shape (K,).
-        tiers: Tiers of the force and their colours.
+        tiers: Tiers of the force and their colors.
 
     Returns:
         Linear RGB, shape (K, 3), where K steps of about 1 mm make up the scope's length.
@@ -56,6 +56,6 @@ def scope_color_table(
 
 
 def _tinted(color: np.ndarray, force: np.ndarray, tiers: Tiers) -> np.ndarray:
-    """Blend the tier colour in, fully from twenty times the smallest visible force."""
+    """Blend the tier color in, fully from twenty times the smallest visible force."""
     share = np.clip((force - VISIBLE_FORCE) / (19.0 * VISIBLE_FORCE), 0.0, 1.0)[:, None]
     return color * (1.0 - 0.9 * share) + 0.9 * share * force_colors(force, tiers)

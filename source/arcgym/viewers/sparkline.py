@@ -32,9 +32,9 @@ def draw_sparkline(
         box: Everything drawn stays inside.
         values: Oldest first; values that are not finite leave a gap.
         label: Drawn in the upper left corner if it fits.
-        color: Colour of the line.
+        color: Color of the line.
         floor: Lowest and highest value that the axis always covers.
-        thresholds: Values and colours of horizontal lines, drawn where they lie on the axis.
+        thresholds: Values and colors of horizontal lines, drawn where they lie on the axis.
         capacity: Number of values that fill the width.
     """
     left, top, right, bottom = box

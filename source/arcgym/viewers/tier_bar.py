@@ -24,7 +24,7 @@ def draw_tier_bar(draw: ImageDraw.ImageDraw, box: Box, force: float, tiers: Tier
         draw: Where to draw.
         box: Left, top, right and bottom [px].
         force: Force to mark [N].
-        tiers: Tiers and their colours.
+        tiers: Tiers and their colors.
     """
     left, top, right, bottom = box
     end = _BEYOND * tiers[-1].start

@@ -47,7 +47,7 @@ class ViewCamera:
         return np.stack([offset @ self.right, offset @ self.up], axis=-1) / (offset @ self.forward)[:, None]
 
     def pixels_per_meter(self, point: np.ndarray) -> float:
-        """Return how many pixels a metre across the picture takes at the depth of `point` (shape (3,))."""
+        """Return how many pixels a meter across the picture takes at the depth of `point` (shape (3,))."""
         depth = float((np.asarray(point, float) - self.eye) @ self.forward)
         return 0.5 * self.size[0] / (self.tan_half[0] * depth)
 

@@ -40,9 +40,9 @@ class OutsideViewCfg:
     """Quantity that the wall's color shows: how far it moved, its strain, the pull of its anchors, or the force of the
     scope beside it."""
     scope_color: Literal["force", "plain"] = "force"
-    """Whether the scope is coloured by the force of the wall on each window of 50 mm."""
+    """Whether the scope is colored by the force of the wall on each window of 50 mm."""
     wall_full_scale: float | None = None
-    """Value of the wall that gets the last colour; None for 50 mm, a strain of 10 %, a pull of 1 N, or a force just
+    """Value of the wall that gets the last color; None for 50 mm, a strain of 10 %, a pull of 1 N, or a force just
     above the perforation tier. Lower it for gentle robots."""
     near_alpha: float = 0.16
     """Opacity of the wall that faces the camera, 0..1. Higher values hide the scope."""
@@ -55,7 +55,7 @@ class OutsideViewCfg:
     scope_share: float = 0.4
     """Smallest share of the scope in the picture, 0..1, however many loops of the colon lie before it."""
     edge_threshold: float = 0.06
-    """Difference of neighbouring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
+    """Difference of neighboring pixels (0..1) from which a pixel is traced four times. 2 switches anti-aliasing off.
     """
     depth_contrast: float = 0.7
     """Strength of the shade behind loops that lie in front of others, 0..1."""

@@ -33,7 +33,7 @@ _CONTACT_REACH = 0.012
 
 @dataclass(frozen=True)
 class WallScale:
-    """Colours from nothing to the full scale."""
+    """Colors from nothing to the full scale."""
 
     title: str
     """Name of the quantity."""
@@ -49,7 +49,7 @@ class WallScale:
     """Linear RGB at even steps from zero to ``full``, shape (K, 3)."""
 
     def paint(self, values: np.ndarray) -> np.ndarray:
-        """Return the colour of each value, linear RGB, shape (M, 3)."""
+        """Return the color of each value, linear RGB, shape (M, 3)."""
         place = np.clip(values / self.full, 0.0, 1.0) * (len(self.colors) - 1)
         steps = np.arange(len(self.colors))
         return np.stack([np.interp(place, steps, self.colors[:, channel]) for channel in range(3)], axis=1)
@@ -61,13 +61,13 @@ def wall_scale(kind: str, full: float | None = None, tiers: Tiers = FORCE_TIERS)
     Args:
         kind: One of :data:`WALL_COLORS`.
         full: Value at the end of the scale: [m], a strain, or [N]; None for one that suits a pushed colonoscope.
-        tiers: Tiers of the force and their colours.
+        tiers: Tiers of the force and their colors.
 
     Raises:
         ValueError: If there is no such quantity.
     """
     if kind not in WALL_COLORS:
-        raise ValueError(f"The wall cannot be coloured by '{kind}'; choose one of {', '.join(WALL_COLORS)}.")
+        raise ValueError(f"The wall cannot be colored by '{kind}'; choose one of {', '.join(WALL_COLORS)}.")
     share = np.linspace(0.0, 1.0, 257)
     if kind == "force":
         full = full or 1.07 * tiers[-1].start
@@ -79,7 +79,7 @@ def wall_scale(kind: str, full: float | None = None, tiers: Tiers = FORCE_TIERS)
 
 
 def _force_table(force: np.ndarray, tiers: Tiers) -> np.ndarray:
-    """Tissue where there is no force, the tier's colour from half a newton on."""
+    """Tissue where there is no force, the tier's color from half a newton on."""
     share = np.clip(force / 0.5, 0.0, 1.0)[:, None]
     return deformation_colors(np.zeros_like(force)) * (1.0 - share) + force_colors(force, tiers) * share
 

@@ -385,7 +385,7 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
             self.terminations.stuck.params["window_s"] = seconds
 
     def play(self) -> None:
-        """Make the task fit for watching: few worlds, nothing randomised, no noise on the observations."""
+        """Make the task fit for watching: few worlds, nothing randomized, no noise on the observations."""
         self.scene.num_envs = 4
         self.observations.policy.enable_corruption = False
         for name in ("patient", "aim", "light", "color", "texture", "stiffness", "friction"):

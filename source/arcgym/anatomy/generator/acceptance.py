@@ -24,7 +24,7 @@ RING_DISTANCE = 0.003
 
 
 def check_course(spec: ColonSpec, surface: Surface) -> list[Check]:
-    """Check a generated centreline against its spec: bends and lengths."""
+    """Check a generated centerline against its spec: bends and lengths."""
     curve = surface.curve
     wanted = np.array([spec.segments[name].length for name in SEGMENTS])
     error = np.abs((curve.ends - curve.starts) / wanted - 1.0).max()

@@ -43,7 +43,7 @@ _WAVES_FROM, _WAVES_TO = (0.05, 0.09), (0.06, 0.11)
 
 
 def make_centerline(spec: ColonSpec, rng: np.random.Generator, reference: Curve | None = None) -> Curve:
-    """Generate the centreline of a spec; the result still has to pass :mod:`arcgym.anatomy.generator.acceptance`.
+    """Generate the centerline of a spec; the result still has to pass :mod:`arcgym.anatomy.generator.acceptance`.
 
     Args:
         spec: Specification of the colon.

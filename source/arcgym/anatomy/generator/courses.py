@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tables of control points: where the colon runs round the abdomen, supine. :mod:`routes` makes a course of them.
 
-Positions in metres from the anal verge, +X patient's right, +Y anterior, +Z cranial. Typical positions against the
+Positions in meters from the anal verge, +X patient's right, +Y anterior, +Z cranial. Typical positions against the
 skeleton: the sacral promontory at z = 0.13, the iliac crests at 0.20, the left flexure at 0.42, higher than the right.
 """
 
@@ -111,5 +111,5 @@ FIXED_ROUTES: dict[str, list[tuple[float, float, float]]] = {
 """Courses of the segments that are held."""
 
 STRAIGHT_CECUM: list[tuple[float, float, float]] = [(0.130, 0.006, 0.112), (0.121, 0.021, 0.083), (0.109, 0.044, 0.060)]
-"""Course of a straight caecum: as long as it is, on in the ascending colon's line, turning by 30 degrees forwards
+"""Course of a straight cecum: as long as it is, on in the ascending colon's line, turning by 30 degrees forwards
 and to the middle, as it lies on the iliacus."""

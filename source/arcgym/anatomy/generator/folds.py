@@ -51,7 +51,7 @@ class Valve:
 
 
 def make_fold_rows(spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> list[FoldRow]:
-    """Place the folds of the three rows from the sigmoid to the caecum."""
+    """Place the folds of the three rows from the sigmoid to the cecum."""
     return [_make_row(spec, curve, rng, row) for row in range(TAENIAE)]
 
 

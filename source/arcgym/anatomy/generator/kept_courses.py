@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Courses of the five patients, kept as ``kept_courses.npz`` beside this file.
 
-Version 2 of the generator relaxed them, with a result that depended on the processor by up to a millimetre. Kept, the
+Version 2 of the generator relaxed them, with a result that depended on the processor by up to a millimeter. Kept, the
 five patients can be made again anywhere; all others are relaxed anew.
 """
 

@@ -17,7 +17,7 @@ WIDE_NECK = 0.007
 """Neck radius from which a diverticulum is also in the simulated wall [m]: a 13 mm colonoscope fits into it."""
 
 _BEND_NEAR, _BEND_SHARE = 0.015, 0.4
-"""How near a bend counts [m], and how far towards its centre a lesion may be, a wide sac's depth included, as a share
+"""How near a bend counts [m], and how far towards its center a lesion may be, a wide sac's depth included, as a share
 of its radius: where creases begin."""
 
 _PARIS = {"Ip": ("pedunculated", 1.2), "Is": ("sessile", 1.1), "IIa": ("flat", 0.45)}
@@ -66,7 +66,7 @@ def place_lesions(surface: Surface, rng: np.random.Generator) -> list[Lesion]:
 
 
 def _openings(surface: Surface) -> list[Lesion]:
-    """Place the ileocaecal valve on its fold at the medial wall, the appendix orifice 28 mm below."""
+    """Place the ileocecal valve on its fold at the medial wall, the appendix orifice 28 mm below."""
     s, theta = surface.ileum
     below = min(s + 0.028, surface.curve.length - DOME_LENGTH - 0.008)
     angle = surface.medial_angle(below)

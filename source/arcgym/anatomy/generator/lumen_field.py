@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The lumen of a generated colon as a field in space, positive inside, which bends of any radius leave whole.
 
-A point belongs to the nearest place of the centreline; the field is the lumen's radius there, folds included, less the
+A point belongs to the nearest place of the centerline; the field is the lumen's radius there, folds included, less the
 distance. Where the colon turns back on itself a wall is kept between its two legs.
 """
 
@@ -34,13 +34,13 @@ _AT_ONCE = 400_000
 """Points evaluated at once, which bounds the memory."""
 
 _CURVE_STEP = 0.0005
-"""Distance of the centreline points to which distances are taken [m]."""
+"""Distance of the centerline points to which distances are taken [m]."""
 
 _CHUNK = 0.020
-"""Length of the pieces of the centreline among which other legs are looked for [m]."""
+"""Length of the pieces of the centerline among which other legs are looked for [m]."""
 
 _LEGS = 1.0, 2.0
-"""Way along the centreline between two places, over the sum of their radii, from and at which they are two legs."""
+"""Way along the centerline between two places, over the sum of their radii, from and at which they are two legs."""
 
 _OPEN = 0.010
 """How far two places overlap before the wall between them begins, where they are not yet two legs [m]."""
@@ -52,7 +52,7 @@ _NEAR_WALL = -0.005, 0.010
 """Distances out of and into the plain tube between which another leg may cut into it [m]."""
 
 _CREASE = 0.45, 0.85
-"""Curvature times distance towards the centre of a bend where a crease begins, and where it is fully rounded."""
+"""Curvature times distance towards the center of a bend where a crease begins, and where it is fully rounded."""
 
 _ROUNDING = 0.0032
 """Standard deviation of the smoothing of creases on the inside of bends [m]: two walls do not fold to an edge."""
@@ -64,12 +64,12 @@ _BOX = 8
 
 @dataclass(frozen=True)
 class FieldGrid:
-    """A field at the centres of voxels."""
+    """A field at the centers of voxels."""
 
     values: np.ndarray
     """Positive in the lumen [m], shape (X, Y, Z), float32."""
     origin: np.ndarray
-    """Centre of the first voxel [m], shape (3,)."""
+    """Center of the first voxel [m], shape (3,)."""
     spacing: float
     """Edge of a voxel [m]."""
 
@@ -78,7 +78,7 @@ class LumenField:
     """Field of a generated lumen, at any points and on a grid."""
 
     def __init__(self, surface: Surface, septum: float) -> None:
-        """Prepare distances to the centreline.
+        """Prepare distances to the centerline.
 
         Args:
             surface: Radius by arc length and angle.
@@ -103,14 +103,14 @@ class LumenField:
         return self._evaluate(points)[0]
 
     def places(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return arc length [m] and angle about the centreline [rad] of points, shape (n,) each, of (n, 3)."""
+        """Return arc length [m] and angle about the centerline [rad] of points, shape (n,) each, of (n, 3)."""
         s, offset = self._foot(points, self._tree.query(points)[1])
         _, normal, binormal = self._surface.curve.frame(s)
         angle = np.arctan2(np.einsum("ij,ij->i", offset, binormal), np.einsum("ij,ij->i", offset, normal))
         return s, np.mod(angle, 2 * np.pi)
 
     def _foot(self, points: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the arc length of the centreline's foot point near a sample, and the way from it to each point."""
+        """Return the arc length of the centerline's foot point near a sample, and the way from it to each point."""
         offset, tangent = points - self._line[near], self._tangent[near]
         ahead = np.einsum("ij,ij->i", offset, tangent)
         reach = 0.5 * _CURVE_STEP
@@ -176,7 +176,7 @@ def _threads() -> int:
 
 
 class _Chunks:
-    """Pieces of the centreline, by which the other leg at a point is found."""
+    """Pieces of the centerline, by which the other leg at a point is found."""
 
     def __init__(self, line: np.ndarray, s: np.ndarray, radius: np.ndarray, septum: float) -> None:
         self._line, self._s, self._radius, self._septum = line, s, radius, septum

@@ -148,7 +148,7 @@ def draw_bends(rng: np.random.Generator, length: float) -> int:
 def segment_lengths(total: float) -> dict[str, float]:
     """Return the length of each segment [m]: sigmoid and transverse on the line through Hanson's two groups.
 
-    Rectum, caecum and flexures, which are bends, are the default spec's; descending and ascending colon share the rest
+    Rectum, cecum and flexures, which are bends, are the default spec's; descending and ascending colon share the rest
     in its proportions.
     """
     share = (total - REGULAR_LENGTH) / (LONG_LENGTH - REGULAR_LENGTH)

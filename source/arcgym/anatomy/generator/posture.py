@@ -16,7 +16,7 @@ from arcgym.anatomy.generator.spec import ColonSpec
 from arcgym.anatomy.segments import RETROPERITONEAL, SEGMENTS
 
 ASCENDING_ROTATION = np.radians(20.0)
-"""Turn of ascending colon and caecum about their axis from supine to prone; median 21 deg (Eur Radiol 2011)."""
+"""Turn of ascending colon and cecum about their axis from supine to prone; median 21 deg (Eur Radiol 2011)."""
 
 _BLEND = 15.0
 """Standard deviation of the smoothing of the turn, in samples of 2 mm."""

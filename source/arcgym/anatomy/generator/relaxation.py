@@ -67,7 +67,7 @@ def relax(
     Every constraint moves points directly (Mueller et al., JVCIR 2007); the pull back to the course is strong on
     retroperitoneal segments and weak on those that hang on a mesentery. Acute bends not given are chosen as they form.
 
-    Hundreds of rounds of points that push each other amplify a difference in the last digit to a millimetre. So that a
+    Hundreds of rounds of points that push each other amplify a difference in the last digit to a millimeter. So that a
     spec gives the same course on every processor, what they begin with is rounded, and they use nothing but
     additions, multiplications, divisions and square roots, which IEEE 754 defines to the bit, in a fixed order.
 
@@ -172,7 +172,7 @@ def _unbend_of(edge: np.ndarray, sharpest: np.ndarray, reach: int) -> _Unbend:
 def _unbent(points: np.ndarray, reaches: list[_Unbend]) -> np.ndarray:
     """Return a shift that opens bends, shape (3, n): a little everywhere, strongly where the curvature is too large.
 
-    Over 10, 20 and 40 mm; over the longer ones neighbours move the other way, and the course does not shrink.
+    Over 10, 20 and 40 mm; over the longer ones neighbors move the other way, and the course does not shrink.
     """
     shift = np.zeros_like(points)
     for bend in reaches:

@@ -31,7 +31,7 @@ class SegmentSpec:
     """Size and features of one segment."""
 
     length: float
-    """Length along the centreline [m]."""
+    """Length along the centerline [m]."""
     start_diameter: float
     """Inner diameter between folds where the segment begins [m]."""
     middle_diameter: float
@@ -76,7 +76,7 @@ def default_segments() -> dict[str, SegmentSpec]:
     """Return an average insufflated adult colon of 1.64 m.
 
     Lengths from CT colonography (Khashab et al., Endoscopy 2009; Hanson et al., AJR 2007; the sum is 1.5-1.9 m),
-    distended diameters below the upper bounds of radiology (transverse 6 cm, caecum 9 cm), flexures counted apart:
+    distended diameters below the upper bounds of radiology (transverse 6 cm, cecum 9 cm), flexures counted apart:
     the descending, transverse and ascending colon of the literature each hold half of the flexures beside them.
     """
     return {
@@ -119,7 +119,7 @@ class ColonSpec:
     """How many places turn by over 90 degrees within 60 mm (:mod:`arcgym.anatomy.bends`), one more or less;
     None leaves what the course gives. CT colonography counts 10.9 +- 2.4 acute flexures (Khashab et al., 2009)."""
     min_bend_radius: float = 0.0145
-    """Least radius of the centreline [m], where the lumen is narrow enough. Colons from CT bend at 14-15 mm at least
+    """Least radius of the centerline [m], where the lumen is narrow enough. Colons from CT bend at 14-15 mm at least
     and 15-18 at the 5th percentile; a colonoscope's bending section turns on about 25-30 mm."""
     waviness: float = 0.0025
     """Standard deviation of the course's waves between the bends [m]: larger ones turn more in total."""
@@ -136,8 +136,8 @@ class ColonSpec:
     jitter: float = 0.004
     """Standard deviation of the random shift of the course's control points [m]."""
     straight_cecum: bool = True
-    """Whether the caecum goes on in the ascending colon's line, turning gently forwards, as most do. If not, its course
-    is too short for it: it bends wherever :attr:`jitter` and its neighbours push it, as in the five patients."""
+    """Whether the cecum goes on in the ascending colon's line, turning gently forwards, as most do. If not, its course
+    is too short for it: it bends wherever :attr:`jitter` and its neighbors push it, as in the five patients."""
     radius_variation: float = 0.05
     """Relative standard deviation of the lumen radius along the colon."""
     clearance: float = 0.0005
@@ -147,7 +147,7 @@ class ColonSpec:
     polyp_list: tuple[PolypSpec, ...] = ()
     """Polyps of given size and shape, besides those that segments ask for."""
     openings: bool = True
-    """Whether the caecum has an ileocaecal valve and an appendix orifice."""
+    """Whether the cecum has an ileocecal valve and an appendix orifice."""
     mucosa: MucosaSpec = MucosaSpec()
     """Look of the mucosa."""
     wide_neck: tuple[float, float] = (0.0073, 0.0080)
@@ -160,9 +160,9 @@ class ColonSpec:
     """Rings and sectors of the wall, rows and columns of the surfaces. Change it for studies of the mesh alone: colons
     of different grids cannot be in one batch."""
     min_lumen_radius: float = 0.009
-    """Least distance from the centreline to folds [m]; lets a 13 mm scope through everywhere."""
+    """Least distance from the centerline to folds [m]; lets a 13 mm scope through everywhere."""
     closed_cecum: bool = True
-    """Whether the dome closes the caecum's end all through. If not, a ball stays open round the end of the centreline,
+    """Whether the dome closes the cecum's end all through. If not, a ball stays open round the end of the centerline,
     9 to 24 mm deep, as in the five patients, on whose start states and results it would bear to close it."""
     course: str | None = None
     """A kept course, a key of :data:`arcgym.anatomy.generator.kept_courses.KEPT_COURSES`: those of the five patients,

@@ -24,20 +24,20 @@ from arcgym.anatomy.generator.folds import (
 from arcgym.anatomy.generator.spec import ColonSpec
 
 DOME_LENGTH = 0.030
-"""Length over which the caecum closes [m]."""
+"""Length over which the cecum closes [m]."""
 
 SEAM_MARGIN = 0.7
 """Least angle from a lesion's middle to the texture's seam [rad]."""
 
 _MEDIAL = np.array([-0.8, -0.6, 0.0])
-"""Direction from the caecum to the ileum: the patient's left and back."""
+"""Direction from the cecum to the ileum: the patient's left and back."""
 
 _ILEUM = 0.004
-"""Where the ileum enters, above the beginning of the caecum [m]."""
+"""Where the ileum enters, above the beginning of the cecum [m]."""
 
 
 class Surface:
-    """Radial surface about a centreline, from which :mod:`arcgym.anatomy.generator.lumen_field` makes the lumen."""
+    """Radial surface about a centerline, from which :mod:`arcgym.anatomy.generator.lumen_field` makes the lumen."""
 
     def __init__(self, spec: ColonSpec, curve: Curve, rng: np.random.Generator) -> None:
         """Draw everything random: radius, taeniae, folds and valves."""
@@ -58,7 +58,7 @@ class Surface:
         return float(np.clip(theta, SEAM_MARGIN, 2 * np.pi - SEAM_MARGIN))
 
     def _put_fold_at(self, s: float, theta: float) -> None:
-        """Move the nearest fold to a place: the ileocaecal valve sits on one."""
+        """Move the nearest fold to a place: the ileocecal valve sits on one."""
         row = self.rows[int(self.sector(np.array([theta]))[0][0])]
         row.s[np.abs(row.s - s).argmin()] = s
 
@@ -69,16 +69,16 @@ class Surface:
         return surface
 
     def lumen_radius(self, s: np.ndarray) -> np.ndarray:
-        """Return the mean radius between folds at ``s`` [m], without the dome of the caecum."""
+        """Return the mean radius between folds at ``s`` [m], without the dome of the cecum."""
         return np.interp(s, self.curve.s, self.mean_radius)
 
     def dome(self, s: np.ndarray) -> np.ndarray:
-        """Return the share of the radius that the dome of the caecum leaves, a quarter of an ellipse."""
+        """Return the share of the radius that the dome of the cecum leaves, a quarter of an ellipse."""
         close = np.clip((self.curve.length - s) / DOME_LENGTH, 0.0, 1.0)
         return np.sqrt(close * (2.0 - close))
 
     def radius(self, s: np.ndarray, theta: np.ndarray, crease: np.ndarray | None = None) -> np.ndarray:
-        """Return the distance from centreline to wall [m].
+        """Return the distance from centerline to wall [m].
 
         Args:
             s: Arc length [m].

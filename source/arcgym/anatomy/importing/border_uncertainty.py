@@ -23,14 +23,14 @@ _RECTUM = 0.015
 """Half the range of what is called the end of the rectum [m]: 12 to 15 cm above the verge, and the sigmoid take-off."""
 
 _CECUM = 0.015
-"""Half the range of the caecum's length [m]; our choice."""
+"""Half the range of the cecum's length [m]; our choice."""
 
 
 def border_uncertainty(points: np.ndarray, arc: np.ndarray, given: dict[str, float]) -> dict[str, float]:
     """Return half the range of each border [m] when the patient is tilted and the iliac fossa lies higher or lower.
 
     Args:
-        points: Centreline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
+        points: Centerline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
         arc: Its arc length [m], shape (n,).
         given: Landmarks that the caller knows; they are certain.
     """

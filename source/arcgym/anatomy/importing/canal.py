@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The anal canal as a scope's head needs it: straight up, open, and blended into the rectum.
 
-On CT it is collapsed or held open by a tube, and the way through what is labelled there turns by right angles within
+On CT it is collapsed or held open by a tube, and the way through what is labeled there turns by right angles within
 3 cm. The last centimeters of the lumen are drawn anew: a straight tube along +Z, an arc, and the rectum's own way on.
 """
 
@@ -87,7 +87,7 @@ def straighten_canal(grid: Grid, path: np.ndarray) -> tuple[Grid, np.ndarray, di
 
     Args:
         grid: The lumen in the patient's frame, +Z cranial.
-        path: Way from the anus to the caecum [m], shape (n, 3).
+        path: Way from the anus to the cecum [m], shape (n, 3).
 
     Returns:
         The changed lumen, the new way, and figures for the report: what was found there, and what was done.

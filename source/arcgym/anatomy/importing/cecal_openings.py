@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ileocaecal valve and appendix: where small bowel and a thin tube were cut off the caecum."""
+"""Ileocecal valve and appendix: where small bowel and a thin tube were cut off the cecum."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _NEAR = 0.060
 
 @dataclass(frozen=True)
 class CecalOpening:
-    """An opening of the caecum."""
+    """An opening of the cecum."""
 
     position: np.ndarray
     """Where the lumen leaves the colon's [m], shape (3,)."""
@@ -41,10 +41,10 @@ class CecalOpening:
 
 
 def cecal_openings(line: np.ndarray, cut: Sequence[dict[str, Any]], rotation: np.ndarray) -> dict[str, CecalOpening]:
-    """Return the openings of the caecum that a scan shows, by name.
+    """Return the openings of the cecum that a scan shows, by name.
 
     Args:
-        line: Centerline from the anal verge to the caecal pole in the patient's frame [m], shape (n, 3).
+        line: Centerline from the anal verge to the cecal pole in the patient's frame [m], shape (n, 3).
         cut: What was cut off, with places on the file's axes.
         rotation: From these to the patient's, shape (3, 3).
     """

@@ -118,14 +118,14 @@ class _Bullet:
 
 
 def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Lead the last of a centreline along the fitted axis of the caecum to its pole.
+    """Lead the last of a centerline along the fitted axis of the cecum to its pole.
 
     Args:
         grid: The lumen, +X right, +Y anterior, +Z cranial.
-        points: Centreline from the anus to the wall of the caecum [m], evenly spaced, shape (n, 3).
+        points: Centerline from the anus to the wall of the cecum [m], evenly spaced, shape (n, 3).
 
     Returns:
-        The centreline, its last part replaced; led to the blind end where the fit ends far from it; as it was where the
+        The centerline, its last part replaced; led to the blind end where the fit ends far from it; as it was where the
         fit leads far away.
     """
     curve = Curve(points, np.linspace(0.0, 1.0, 9)[1:])
@@ -147,7 +147,7 @@ def lead_to_fitted_pole(grid: Grid, points: np.ndarray) -> np.ndarray:
 
 
 def _turned_to(grid: Grid, points: np.ndarray, end: np.ndarray, radius: float) -> np.ndarray:
-    """Return the centreline turned to the blind end in the widest parabola inside; as it was where none is."""
+    """Return the centerline turned to the blind end in the widest parabola inside; as it was where none is."""
     near = np.linalg.norm(points - end, axis=1) < SETTINGS.turn_in * radius
     first = int(near.argmax())
     if first < 2:

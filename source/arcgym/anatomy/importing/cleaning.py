@@ -102,7 +102,7 @@ def _report_pieces(grid: Grid, done: Cleaning, pieces: list[Piece], kept: list[P
 
 
 def in_millimeters(point: np.ndarray) -> list[int]:
-    """Return a position in whole millimetres."""
+    """Return a position in whole millimeters."""
     return [round(1e3 * float(value)) for value in point]
 
 

@@ -82,4 +82,4 @@ def _listed(values: np.ndarray) -> str:
 
 
 def _mend(spacing_given: bool) -> str:
-    return "Repair the header." if spacing_given else "Pass --spacing X Y Z in millimetres, or repair the header."
+    return "Repair the header." if spacing_given else "Pass --spacing X Y Z in millimeters, or repair the header."

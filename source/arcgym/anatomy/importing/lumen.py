@@ -57,16 +57,16 @@ class Progress:
 
 @dataclass(frozen=True)
 class Lumen:
-    """One connected lumen from anus to caecum on voxels, in the patient's frame."""
+    """One connected lumen from anus to cecum on voxels, in the patient's frame."""
 
     grid: Grid
     """The lumen, everything that is not colon cut off; axes right, anterior, cranial."""
     line: np.ndarray
-    """Its centerline from the anal verge to the caecal pole, evenly spaced; straight in the canal [m], shape (n, 3)."""
+    """Its centerline from the anal verge to the cecal pole, evenly spaced; straight in the canal [m], shape (n, 3)."""
     orientation: Orientation
     """How the file's axes lie in the patient."""
     openings: dict[str, CecalOpening] = field(default_factory=dict)
-    """Ileocaecal valve and appendix, where the scan shows them."""
+    """Ileocecal valve and appendix, where the scan shows them."""
     report: dict[str, Any] = field(default_factory=dict)
     """Figures of what was read, cleaned and found."""
 
@@ -104,7 +104,7 @@ def find_lumen(path: Path, settings: ImportSettings, progress: Progress) -> Lume
     grid, points = turned_grid(grid, points, rotation)
     grid = Grid(gaussian_filter(grid.values, _SMOOTHING / grid.spacing), grid.origin, grid.spacing)
     line = center_path(grid, points, settings.cecum is None, [opening.turned(rotation) for opening in openings])
-    progress.done("centreline", f"likeness {orientation.likeness:.2f}, frame {orientation.frame}")
+    progress.done("centerline", f"likeness {orientation.likeness:.2f}, frame {orientation.frame}")
     grid, line, canal = straighten_canal(grid, line)
     grid, windows = close_windows(grid, line)
     grid, widened = widen_for_head(grid, line, settings.min_lumen_radius)
@@ -141,9 +141,9 @@ def _read(path: Path, settings: ImportSettings) -> tuple[Grid, list[Opening], di
 
 
 def anus_and_cecum(settings: ImportSettings, openings: list[Opening]) -> tuple[list[np.ndarray | None], str]:
-    """Return anus and caecal pole on the file's axes [m], None where they are to be found, and where the anus is from.
+    """Return anus and cecal pole on the file's axes [m], None where they are to be found, and where the anus is from.
 
-    An only opening of a surface is the anus, unless it lies where the caller says that the caecum is.
+    An only opening of a surface is the anus, unless it lies where the caller says that the cecum is.
     """
     anus, cecum = (None if end is None else 1e-3 * np.array(end) for end in (settings.anus, settings.cecum))
     if anus is not None:

@@ -30,7 +30,7 @@ _TYPICAL_COURSE = np.array(
         (0.118, 0.018, 0.075),
     ]
 )
-"""Course of a colon from the anal verge to the caecal pole [m], +X right, +Y anterior, +Z cranial (Gray's Anatomy)."""
+"""Course of a colon from the anal verge to the cecal pole [m], +X right, +Y anterior, +Z cranial (Gray's Anatomy)."""
 
 _TYPICAL_SHARE = np.array([0.0, 0.06, 0.115, 0.19, 0.29, 0.40, 0.487, 0.55, 0.63, 0.715, 0.79, 0.86, 0.917, 1.0])
 """Share of the length at which each of these points lies."""
@@ -53,7 +53,7 @@ class Orientation:
     frame: str
     """Key of :data:`arcgym.anatomy.importing.formats.FRAMES`."""
     reversed: bool
-    """Whether the course was found from caecum to anus."""
+    """Whether the course was found from cecum to anus."""
     likeness: float
     """Correlation with a typical course, 1 at best."""
     margin: float
@@ -69,7 +69,7 @@ def orient(path: np.ndarray, frame: str, ends_known: bool) -> Orientation:
     Args:
         path: Course from one end to the other in the file's axes [m], shape (n, 3).
         frame: A key of :data:`arcgym.anatomy.importing.formats.FRAMES`, or ``auto``.
-        ends_known: The caller gave an end; the path runs from anus to caecum.
+        ends_known: The caller gave an end; the path runs from anus to cecum.
 
     Raises:
         ColonImportError: Both readings of the ends, or no frame, are like a colon.

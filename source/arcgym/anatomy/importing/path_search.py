@@ -69,7 +69,7 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
 
     Args:
         grid: The cleaned lumen; its values are changed where something is cut off or filled.
-        ends: Position of the anus and of the caecal pole [m], or None to find them.
+        ends: Position of the anus and of the cecal pole [m], or None to find them.
         frame: How the grid's axes lie in the patient: a key of ``FRAMES``, or ``auto``.
 
     Raises:
@@ -95,7 +95,7 @@ def find_path(grid: Grid, ends: list[np.ndarray | None], frame: str) -> FoundPat
     length = float(np.linalg.norm(np.diff(points[::5], axis=0), axis=1).sum())
     if length < _SHORTEST:
         raise ColonImportError(
-            f"No colon-like component: the lumen's centreline is only {1e3 * length:.0f} mm long",
+            f"No colon-like component: the lumen's centerline is only {1e3 * length:.0f} mm long",
             "Check the units (--spacing, --units), --label, --max-gap and --anus/--cecum.",
         )
     wide = float(np.median(caliber(tree.clearance[colon.nodes], tree.points[colon.nodes])))
@@ -164,7 +164,7 @@ def _nearest_voxel(clearance: Grid, point: np.ndarray) -> np.ndarray:
         where = ", ".join(f"{1e3 * value:.0f}" for value in point)
         raise ColonImportError(
             f"The end given at {where} mm is {1e3 * distance.min():.0f} mm away from the lumen",
-            "Pass --anus and --cecum in millimetres along the patient's right, anterior and cranial axes.",
+            "Pass --anus and --cecum in millimeters along the patient's right, anterior and cranial axes.",
         )
     near = inside[distance < distance.min() + _END_REACH]
     return near[clearance.values[tuple(near.T)].argmax()]

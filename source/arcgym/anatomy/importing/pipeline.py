@@ -30,7 +30,7 @@ from arcgym.anatomy.stage.types import ColonStage, TissueMaterial
 from arcgym.anatomy.voxel_grid import Grid
 
 _CECUM = (0.03, 0.12)
-"""Least and largest length of the caecum, from the valve's upper edge to the pole [m], at which a valve is believed."""
+"""Least and largest length of the cecum, from the valve's upper edge to the pole [m], at which a valve is believed."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class ImportedColon:
     grid: Grid
     """The cleaned lumen in the patient's frame."""
     path: np.ndarray
-    """Centreline in the patient's frame [m], shape (n, 3)."""
+    """Centerline in the patient's frame [m], shape (n, 3)."""
     rotation: np.ndarray
     """From the file's axes to the patient's, shape (3, 3)."""
     fitted: FittedColon
@@ -127,7 +127,7 @@ def _fit(lumen: Lumen, curve: Curve, settings: ImportSettings) -> FittedColon:
 
 
 def _arcs(lumen: Lumen, curve: Curve) -> dict[str, float]:
-    """Return the arc length of valve and appendix on the stage's centreline [m]."""
+    """Return the arc length of valve and appendix on the stage's centerline [m]."""
     arcs = {}
     for name, opening in lumen.openings.items():
         nearest = np.linalg.norm(curve.points - (opening.position - lumen.line[0]), axis=1).argmin()
@@ -136,7 +136,7 @@ def _arcs(lumen: Lumen, curve: Curve) -> dict[str, float]:
 
 
 def _valve_border(lumen: Lumen, arcs: dict[str, float], length: float) -> dict[str, float]:
-    """Return where the caecum begins [m]: at the upper edge of the valve, if that is where one may be."""
+    """Return where the cecum begins [m]: at the upper edge of the valve, if that is where one may be."""
     if VALVE not in arcs:
         return {}
     edge = arcs[VALVE] - lumen.openings[VALVE].radius

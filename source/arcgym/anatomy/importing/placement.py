@@ -40,8 +40,8 @@ def given_landmarks(settings: ImportSettings, curve: Curve, rotation: np.ndarray
         distance = np.linalg.norm(curve.points - 1e-3 * np.array(position) @ rotation.T, axis=1)
         if distance.min() > _FARTHEST_LANDMARK:
             raise ColonImportError(
-                f"The landmark {name} at {position} mm is {1e3 * distance.min():.0f} mm away from the centreline",
-                "Pass --landmark NAME=X,Y,Z in millimetres on the same axes as --anus.",
+                f"The landmark {name} at {position} mm is {1e3 * distance.min():.0f} mm away from the centerline",
+                "Pass --landmark NAME=X,Y,Z in millimeters on the same axes as --anus.",
             )
         arcs[name] = float(curve.s[distance.argmin()]) * length / curve.length
     return arcs

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Distance from the centreline to the wall in every direction, by rays through the grid."""
+"""Distance from the centerline to the wall in every direction, by rays through the grid."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def cast_rings(grid: Grid, curve: Curve, s: np.ndarray, sectors: int) -> np.ndar
 
 
 def cast(grid: Grid, centers: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Cast rays from centres, shape (n, 3), in unit directions, shape (n, k, 3); returns lengths [m], (n, k)."""
+    """Cast rays from centers, shape (n, 3), in unit directions, shape (n, k, 3); returns lengths [m], (n, k)."""
     rho = _STEP * np.arange(round(REACH / _STEP) + 1)
     out = np.zeros(directions.shape[:2])
     for start in range(0, len(centers), _CHUNK):

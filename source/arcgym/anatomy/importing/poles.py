@@ -34,7 +34,7 @@ _TIP = 0.020
 def lead_to_pole(clearance: Grid, path: np.ndarray, look: float) -> np.ndarray:
     """Lead the last part of a path through the middle of the lumen to its blind end, not into a corner.
 
-    It ends at the centre of the largest ball that fits in there; the pole is straight on.
+    It ends at the center of the largest ball that fits in there; the pole is straight on.
 
     Args:
         clearance: Distance to the wall [m].
@@ -51,7 +51,7 @@ def lead_to_pole(clearance: Grid, path: np.ndarray, look: float) -> np.ndarray:
 
 
 def _largest_ball(clearance: Grid, path: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return centre and radius [m] of the largest ball near a path, the mean of centres that are nearly as good."""
+    """Return center and radius [m] of the largest ball near a path, the mean of centers that are nearly as good."""
     reach = _NEAR / clearance.spacing
     index = clearance.index(path)
     low = np.maximum(np.floor(index.min(0) - reach).astype(int), 0)

@@ -98,7 +98,7 @@ def _cleaning_lines(cleaning: dict[str, Any]) -> list[str]:
 
 
 def _draw_projection(axis: Any, imported: ImportedColon, axes: tuple[int, int]) -> None:
-    """Draw the cleaned lumen seen through, with the centreline in the colours of its segments."""
+    """Draw the cleaned lumen seen through, with the centerline in the colors of its segments."""
     grid = imported.grid
     (hidden,) = set(range(3)) - set(axes)
     depth = grid.values.sum(hidden) * grid.spacing
@@ -140,7 +140,7 @@ def _draw_radius(axis: Any, stage: ColonStage, uncertain: dict[str, float | None
 
 
 def _draw_unrolled(axis: Any, stage: ColonStage) -> None:
-    """Draw the visual surface cut open along its seam: distance from the centreline, dark on folds."""
+    """Draw the visual surface cut open along its seam: distance from the centerline, dark on folds."""
     visual, line, wall = stage.visual, stage.centerline, stage.wall
     arc = (visual.skin_weights * wall.ring_arc[wall.ring[visual.skin_indices]]).sum(1)
     columns = int(np.argmax(arc > arc[0]))

@@ -17,7 +17,7 @@ RECTUM = 0.150
 """Length of the rectum [m]: clinically the last 15 cm above the anal verge (D'Souza et al., Ann Surg 2019)."""
 
 CECUM = 0.062
-"""Length of the caecum below the ileocaecal valve [m], about 6 cm (Gray's Anatomy)."""
+"""Length of the cecum below the ileocecal valve [m], about 6 cm (Gray's Anatomy)."""
 
 ILIAC_FOSSA = 0.180
 """Height above the anal verge at which the descending colon becomes the sigmoid: in the left iliac fossa, a little
@@ -29,7 +29,7 @@ lie within 1 cm and within 5 cm of its top."""
 
 HEPATIC_FLEXURE, LIMB_SHARE = 0.107, 0.185
 """Length of the right flexure [m], and where it ends: at this share of the way from the upper part of its descending
-limb to the caecum. That upper part is the mean of where the limb is steep, 3 cm and 8 cm below the top."""
+limb to the cecum. That upper part is the mean of where the limb is steep, 3 cm and 8 cm below the top."""
 
 _SHORTEST_SEGMENT = 0.02
 """Least length of a segment [m]; where one is shorter, all borders are set to typical shares."""
@@ -69,7 +69,7 @@ def find_segment_ends(points: np.ndarray, arc: np.ndarray, given: dict[str, floa
     """Find the arc length at the end of each of the eight segments.
 
     Args:
-        points: Centreline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
+        points: Centerline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
         arc: Its arc length [m], shape (n,).
         given: Arc length [m] of landmarks that the caller knows, by names of :data:`arcgym.anatomy.landmarks.BORDERS`.
 
@@ -92,7 +92,7 @@ def borders_of_course(points: np.ndarray, arc: np.ndarray, fossa: float = ILIAC_
     """Find the borders by the tops of both flexures, their limbs, and the height of the iliac fossa.
 
     Args:
-        points: Centreline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
+        points: Centerline from the anal verge, +X right, +Y anterior, +Z cranial [m], shape (n, 3).
         arc: Its arc length [m], shape (n,).
         fossa: Height of the iliac fossa above the verge [m].
     """

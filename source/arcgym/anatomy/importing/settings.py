@@ -48,7 +48,7 @@ class ImportSettings:
     anus: tuple[float, float, float] | None = None
     """Position of the anus [mm] on the patient's right, anterior and cranial axes, when it is not found."""
     cecum: tuple[float, float, float] | None = None
-    """Position of the caecal pole [mm], likewise."""
+    """Position of the cecal pole [mm], likewise."""
     landmarks: dict[str, float | tuple[float, float, float]] = field(default_factory=dict)
     """Borders between segments that are known better than found: arc length [m], or a position [mm] as ``anus``."""
     posture: str = "supine"
@@ -69,7 +69,7 @@ class ImportSettings:
     wall_thickness: float = ColonSpec.wall_thickness
     """Thickness of the simulated wall [m], as in generated colons."""
     min_lumen_radius: float = 0.008
-    """Least distance from the centreline to the simulated wall [m]; lets a 13 mm scope through with 1.5 mm to spare."""
+    """Least distance from the centerline to the simulated wall [m]; lets a 13 mm scope through with 1.5 mm to spare."""
     keep_doubtful: bool = False
     """Whether to make the folder although there are doubts about it, for looking at."""
 

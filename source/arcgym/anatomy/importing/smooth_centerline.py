@@ -51,7 +51,7 @@ def center_path(
 
     Args:
         grid: The lumen.
-        path: Path from the anus to the caecum [m], its ends a radius away from the wall, shape (n, 3).
+        path: Path from the anus to the cecum [m], its ends a radius away from the wall, shape (n, 3).
         find_pole: Whether the cecal pole has to be found.
         openings: Holes of a surface; an end of the path is led to the middle of its hole.
         rounds: How often it is moved.

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Read triangle surfaces, in millimetres or metres, and fill them on a grid."""
+"""Read triangle surfaces, in millimeters or meters, and fill them on a grid."""
 
 from __future__ import annotations
 

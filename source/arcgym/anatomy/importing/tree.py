@@ -34,7 +34,7 @@ _MOST_BRANCHES = 80
 
 @dataclass(frozen=True)
 class LumenTree:
-    """Nodes along centred paths; the first node is the root."""
+    """Nodes along centered paths; the first node is the root."""
 
     points: np.ndarray
     """Positions [m], shape (n, 3)."""

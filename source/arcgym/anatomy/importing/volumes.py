@@ -26,7 +26,7 @@ _MARGIN = 0.006
 """Room that is left round the lumen [m]."""
 
 _MOST_LABELS = 150
-"""Number of different values above which a volume is taken for grey values."""
+"""Number of different values above which a volume is taken for gray values."""
 
 _SAMPLE = 997
 """Every how many voxels these are looked for; a prime."""
@@ -59,7 +59,7 @@ def read_volume(
     if not all(low <= value <= high for value in image.GetSpacing()):
         found = " x ".join(f"{value:.4g}" for value in image.GetSpacing())
         raise ColonImportError(
-            f"{path} has voxels of {found} mm; a CT has {low} to {high} mm", "Pass --spacing X Y Z in millimetres."
+            f"{path} has voxels of {found} mm; a CT has {low} to {high} mm", "Pass --spacing X Y Z in millimeters."
         )
     return _resample(_binarise(image, path, label), voxel)
 
@@ -139,11 +139,11 @@ def _binarise(image: Any, path: Path, label: int | tuple[int, ...] | None) -> An
 
 
 def _chosen(values: np.ndarray, path: Path, label: int | tuple[int, ...] | None) -> np.ndarray:
-    """Return which voxels are the colon's; refuses grey values, several labels and none."""
+    """Return which voxels are the colon's; refuses gray values, several labels and none."""
     sample = np.unique(values.ravel()[::_SAMPLE])
     if len(sample) > _MOST_LABELS:
         raise ColonImportError(
-            f"{path} holds more than {_MOST_LABELS} different values from {sample[0]:g} to {sample[-1]:g}: grey values "
+            f"{path} holds more than {_MOST_LABELS} different values from {sample[0]:g} to {sample[-1]:g}: gray values "
             "of a CT, not labels",
             "Pass a segmentation of the colon's lumen: a label volume with 0 outside.",
         )
@@ -162,7 +162,7 @@ def _chosen(values: np.ndarray, path: Path, label: int | tuple[int, ...] | None)
 
 
 def _resample(image: Any, voxel: float) -> Grid:
-    """Resample onto axes right, anterior, cranial; ITK's are left, posterior, cranial and in millimetres."""
+    """Resample onto axes right, anterior, cranial; ITK's are left, posterior, cranial and in millimeters."""
     import SimpleITK as sitk
 
     ends = [(0, size - 1) for size in image.GetSize()]

@@ -13,7 +13,7 @@ From any lumen's surface, in reading order:
 - :mod:`quantize`: rounds surfaces for small files;
 - :mod:`colon_fitting`: all of it, :func:`arcgym.anatomy.meshing.colon_fitting.fit_colon`;
 
-and for surfaces swept along a centreline:
+and for surfaces swept along a centerline:
 
 - :mod:`wall`: the tetrahedral wall of rings and sectors;
 - :mod:`surface_grid`: triangles, normals, texture coordinates and skin weights of a visual surface.

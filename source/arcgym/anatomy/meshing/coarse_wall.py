@@ -11,7 +11,7 @@ from scipy.optimize import isotonic_regression
 from arcgym.anatomy.meshing.lumen_grid import LumenGrid, ring_centers
 
 RING_DISTANCE = 0.0034
-"""Distance along the outer layer that neighbouring rings keep at every sector [m]; nearer ones jitter at rest."""
+"""Distance along the outer layer that neighboring rings keep at every sector [m]; nearer ones jitter at rest."""
 
 _LOW_PASS = 0.35
 """Standard deviation of the smoothing over the distance of the wall's vertices: sharper folds would alias into it."""
@@ -43,7 +43,7 @@ def smooth_surface(grid: LumenGrid) -> tuple[np.ndarray, np.ndarray]:
 
 
 def place_rings(points: np.ndarray, normals: np.ndarray, rings: int, thickness: float) -> np.ndarray:
-    """Choose the row of each of the wall's vertices, so that neighbouring rings keep apart in its outer layer.
+    """Choose the row of each of the wall's vertices, so that neighboring rings keep apart in its outer layer.
 
     Vertices slide along their columns by the least way (isotonic regression along each); the first and the last ring
     stay.
@@ -110,7 +110,7 @@ def wall_points(grid: LumenGrid, thickness: float) -> tuple[np.ndarray, np.ndarr
 
 
 def _slide(rows: np.ndarray, length: np.ndarray, gap: np.ndarray) -> np.ndarray:
-    """Move rows by the least way along their columns until neighbours are ``gap`` apart, shape kept."""
+    """Move rows by the least way along their columns until neighbors are ``gap`` apart, shape kept."""
     out, at = np.empty_like(rows), np.arange(len(length))
     weight = np.r_[_HELD, np.ones(len(rows) - 2), _HELD]
     for j in range(rows.shape[1]):

@@ -23,10 +23,10 @@ from arcgym.anatomy.segments import SEGMENTS
 from arcgym.anatomy.stage.types import Centerline, ContactSurface, VisualMesh, WallMesh
 
 CENTERLINE_SPACING = 0.005
-"""Distance of the points of a stage's centreline [m]."""
+"""Distance of the points of a stage's centerline [m]."""
 
 _RADIUS_SMOOTHING = 0.010
-"""Standard deviation of the smoothing of the centreline's radius [m]."""
+"""Standard deviation of the smoothing of the centerline's radius [m]."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class FitSettings:
     thickness: float = 0.002
     """Thickness of the wall [m]."""
     least_radius: float = 0.0075
-    """Least distance of the wall's inner vertices from the centre of their ring [m]: a head has a radius of 6.6 mm."""
+    """Least distance of the wall's inner vertices from the center of their ring [m]: a head has a radius of 6.6 mm."""
     lead: float = 0.020
-    """Distance of the surface's first end in front of the anal verge along the centreline [m]; 0 if it ends there."""
+    """Distance of the surface's first end in front of the anal verge along the centerline [m]; 0 if it ends there."""
     proxy_step: int = 2
     """Rows and columns of the grid for each of the surface drawn for policies; 2 is the contact surface's density."""
 
@@ -60,7 +60,7 @@ class FittedColon:
     visual_proxy: VisualMesh
     """Surface for policies' images."""
     centerline: Centerline
-    """The given centreline, with the radius of the surface."""
+    """The given centerline, with the radius of the surface."""
     mended: float
     """Share of the wall's vertices that were moved by more than 1 mm to mend it."""
 
@@ -78,7 +78,7 @@ def fit_colon(
     Args:
         surface: Closed surface of the lumen, one tube without side branches or windows between loops (handles of a
             voxel's size do no harm). It runs from :attr:`FitSettings.lead` in front of the anal verge to the pole.
-        curve: Centreline inside of it from the anal verge to the caecal pole, with its segments.
+        curve: Centerline inside of it from the anal verge to the cecal pole, with its segments.
         settings: Numbers of rings and rows, thickness, least radius.
         detail: Shapes finer than the grid, on the visual surfaces alone.
         refinements: How often the fine surface is refined near them; that for policies once at most.

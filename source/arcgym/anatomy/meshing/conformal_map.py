@@ -59,7 +59,7 @@ def map_surface(surface: TriangleSurface, first: np.ndarray, last: np.ndarray) -
         gap = 1e3 * np.linalg.norm(np.asarray(first) - last)
         raise ValueError(
             f"The ends of the lumen are {gap:.1f} mm apart; caps of {1e3 * CAP_RADIUS:g} mm round them meet."
-            " Pass the two ends of the lumen, in metres."
+            " Pass the two ends of the lumen, in meters."
         )
     weights = _cotangent_weights(points, faces)
     u = _harmonic(_laplacian(weights, faces, len(points)), *caps)
@@ -145,7 +145,7 @@ def _jumps(faces: np.ndarray, cut: np.ndarray) -> np.ndarray:
 
 
 def _fan(vertex: int, start: int, stop: int, face_of: dict, corners: dict, turn: int) -> list[int]:
-    """Return the faces round a vertex from one neighbour to another: to the left for ``turn`` 2, to the right for 1."""
+    """Return the faces round a vertex from one neighbor to another: to the left for ``turn`` 2, to the right for 1."""
     fan: list[int] = []
     at = start
     while at != stop or not fan:

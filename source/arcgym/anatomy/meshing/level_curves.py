@@ -15,7 +15,7 @@ from arcgym.anatomy.meshing.triangle_surface import edge_ends, edge_keys
 
 _ROUND = 0.5
 """By how much the turns of a main loop in v may differ from one. Where they do, v's cut runs through a handle beside
-it, such as a hole in a fold; the ring then goes by its own flux and is turned to fit its neighbour."""
+it, such as a hole in a fold; the ring then goes by its own flux and is turned to fit its neighbor."""
 
 
 @dataclass(frozen=True)

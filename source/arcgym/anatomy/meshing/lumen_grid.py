@@ -25,7 +25,7 @@ _SMOOTHING = 0.006
 """Standard deviation of the smoothing of the distance of rows [m]: rows gather at folds, but not row by row."""
 
 _OUTSIDE = 0.080
-"""Length by which the centreline is continued in front of its first point [m]: the surface may begin there."""
+"""Length by which the centerline is continued in front of its first point [m]: the surface may begin there."""
 
 _VERGE = 0.005, 0.015
 """Arc lengths between which the canal's radius is taken [m]."""
@@ -34,7 +34,7 @@ _WIDE = 0.8
 """Radius of the first row over that radius."""
 
 _LAST_RADIUS = 0.55
-"""Mean radius of the last ring before the dome of the caecum over the largest within :data:`_CECUM`."""
+"""Mean radius of the last ring before the dome of the cecum over the largest within :data:`_CECUM`."""
 
 _AROUND = 3.0
 """Standard deviation, in rows and columns, of the surroundings from which points may stand out."""
@@ -43,12 +43,12 @@ _FARTHEST = 0.020
 """How far they may [m]."""
 
 _CECUM = 0.060
-"""Length of colon before its end in which the caecum's radius is taken [m]."""
+"""Length of colon before its end in which the cecum's radius is taken [m]."""
 
 
 @dataclass(frozen=True)
 class LumenGrid:
-    """Points on the surface of a lumen: rows from the anal verge to the caecal pole, columns round it.
+    """Points on the surface of a lumen: rows from the anal verge to the cecal pole, columns round it.
 
     Seen along the colon, columns run like the fingers of the right hand whose thumb points ahead.
     """
@@ -58,7 +58,7 @@ class LumenGrid:
     angle: np.ndarray
     """Conformal angle of each point [rad], ascending along a row by a full turn, shape (rows + dome rows, columns)."""
     arc: np.ndarray
-    """Arc length along the given centreline of each row [m], ascending, shape (rows + dome rows,)."""
+    """Arc length along the given centerline of each row [m], ascending, shape (rows + dome rows,)."""
     shape: GridShape
     """Numbers of rows and columns."""
 
@@ -76,17 +76,17 @@ class _Chart:
     travel: np.ndarray
     """Root-mean-square way of the points of a curve from the first one [m]."""
     arc: np.ndarray
-    """Arc length along the centreline [m]."""
+    """Arc length along the centerline [m]."""
     radius: np.ndarray
-    """Mean distance from its centre [m]."""
+    """Mean distance from its center [m]."""
 
 
 def fit_grid(mapped: ConformalMap, path: np.ndarray, shape: GridShape | None = None) -> LumenGrid:
     """Lay the grid on a mapped surface.
 
     Args:
-        mapped: Map of the surface, from before or at the anal verge to the caecal pole.
-        path: Centreline from the anal verge to the pole [m], shape (n, 3).
+        mapped: Map of the surface, from before or at the anal verge to the cecal pole.
+        path: Centerline from the anal verge to the pole [m], shape (n, 3).
         shape: Numbers of rows and columns.
 
     Raises:
@@ -130,7 +130,7 @@ def _first_row(chart: _Chart) -> float:
 
 
 def _chart(mapped: ConformalMap, path: np.ndarray) -> _Chart:
-    """Trace level curves a millimetre or two apart along the cut and measure them."""
+    """Trace level curves a millimeter or two apart along the cut and measure them."""
     along = arc_lengths(mapped.points[mapped.cut])
     rising = np.maximum.accumulate(mapped.u[mapped.cut])
     level = np.unique(np.interp(np.arange(0.5 * _STEP, along[-1], _STEP), along, rising))
@@ -148,7 +148,7 @@ def _chart(mapped: ConformalMap, path: np.ndarray) -> _Chart:
 
 
 def _arcs(rings: np.ndarray, path: np.ndarray) -> np.ndarray:
-    """Return the arc length of the centreline at each ring: the median over the ring of that of the nearest point."""
+    """Return the arc length of the centerline at each ring: the median over the ring of that of the nearest point."""
     step = 0.001
     ahead = (path[0] - path[min(5, len(path) - 1)]) / np.linalg.norm(path[0] - path[min(5, len(path) - 1)])
     before = path[0] + np.arange(_OUTSIDE, 0.0, -step)[:, None] * ahead
@@ -166,7 +166,7 @@ def _monotone(values: np.ndarray) -> np.ndarray:
 
 
 def _ascending(values: np.ndarray) -> np.ndarray:
-    """Return ascending values made strictly so by less than a micrometre."""
+    """Return ascending values made strictly so by less than a micrometer."""
     return _monotone(values) + 1e-9 * np.arange(len(values))
 
 

@@ -16,7 +16,7 @@ _LEAST_QUALITY = 0.06
 """Quality of an element below which the wall is smoothed there; half more than a valid wall needs."""
 
 _LEAST_DISTANCE = 0.0032
-"""Distance of neighbouring rings in the outer layer below which they are moved apart [m]."""
+"""Distance of neighboring rings in the outer layer below which they are moved apart [m]."""
 
 _ROUNDS = 40
 """Largest number of times that the wall is mended."""
@@ -25,7 +25,7 @@ _CROSSINGS_EVERY = 4
 """Rounds between two searches for crossings, which are slow."""
 
 _STEP = 0.35
-"""Share of the way to the mean of the neighbours, and step inwards at crossings of two loops [mm], in a round."""
+"""Share of the way to the mean of the neighbors, and step inwards at crossings of two loops [mm], in a round."""
 
 _ONE_STRETCH = 6
 """Rings that an edge and a face that cross may lie apart and still belong to one bend."""
@@ -37,7 +37,7 @@ def mend_wall(layers: np.ndarray, thickness: float, least_radius: float) -> np.n
     Args:
         layers: Positions of layer, ring and sector [m], shape (2, R, S, 3).
         thickness: Thickness of the wall [m].
-        least_radius: Least distance of inner vertices from the centre of their ring [m].
+        least_radius: Least distance of inner vertices from the center of their ring [m].
 
     Raises:
         ValueError: Elements stay inverted; says at which rings.
@@ -106,7 +106,7 @@ def _quality(layers: np.ndarray) -> np.ndarray:
 
 
 def _lack(outer: np.ndarray) -> np.ndarray:
-    """Return by how much neighbouring rings are too near each other [m], shape (R - 1, S)."""
+    """Return by how much neighboring rings are too near each other [m], shape (R - 1, S)."""
     return np.maximum(_LEAST_DISTANCE - np.linalg.norm(np.diff(outer, axis=0), axis=2), 0.0)
 
 

@@ -10,7 +10,7 @@ from arcgym.anatomy.meshing.triangle_surface import edge_ends, edge_keys
 
 
 def refine(points: np.ndarray, faces: np.ndarray, selected: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Split the selected triangles into four and their neighbours as far as needed to leave no hanging vertex.
+    """Split the selected triangles into four and their neighbors as far as needed to leave no hanging vertex.
 
     Args:
         points: Coordinates, shape (n, k).

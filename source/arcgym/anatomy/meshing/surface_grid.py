@@ -84,7 +84,7 @@ def tube_texture(s: np.ndarray, theta: np.ndarray, bounds: Mapping[str, tuple[fl
 
 
 def dome_texture(meridian: np.ndarray, theta: np.ndarray, rim: float) -> np.ndarray:
-    """Return u and v on the dome of the caecum, equal distances from the pole in every direction, shape (n, 2).
+    """Return u and v on the dome of the cecum, equal distances from the pole in every direction, shape (n, 2).
 
     A polar chart would squeeze the texture into streaks at the pole.
 

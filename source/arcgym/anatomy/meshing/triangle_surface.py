@@ -35,7 +35,7 @@ def cut_surface(values: np.ndarray, origin: np.ndarray, spacing: float, level: f
 
     Args:
         values: Field, above ``level`` in the lumen, shape (X, Y, Z).
-        origin: Centre of the first voxel [m], shape (3,).
+        origin: Center of the first voxel [m], shape (3,).
         spacing: Edge of a voxel [m].
         level: Value of the field at the lumen's wall.
 

@@ -16,7 +16,7 @@ _SMOOTHING = 0.6
 """Standard deviation of the smoothing of the lumen, in voxels: a wall of one voxel stays."""
 
 _LEAST_WAY = 0.060
-"""Way along the centreline between two neighbouring voxels above which there should be a wall between them [m]."""
+"""Way along the centerline between two neighboring voxels above which there should be a wall between them [m]."""
 
 _TURNS = 6.0
 """The same, in radii of the lumen: a bend brings places nearer than that to each other."""
@@ -25,7 +25,7 @@ _UNREACHED = 1e6
 """Arc length of voxels that no way leads to [m]; they touch no others."""
 
 _MOVES = np.array([(i, j, k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1) if (i, j, k) > (0, 0, 0)])
-"""Steps to half of the neighbours of a voxel; the others are their opposites."""
+"""Steps to half of the neighbors of a voxel; the others are their opposites."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Window:
     position: np.ndarray
     """Its middle [m], shape (3,)."""
     arcs: tuple[float, float]
-    """Arc lengths along the centreline of the two loops there [m]."""
+    """Arc lengths along the centerline of the two loops there [m]."""
     area: float
     """Area of the wall that was put in [m^2]."""
 
@@ -57,7 +57,7 @@ class SeparatedLoops:
     """A lumen on voxels with walls between loops that touch."""
 
     lumen: np.ndarray
-    """Whether each voxel is lumen, the piece with the centreline only, shape (X, Y, Z), bool."""
+    """Whether each voxel is lumen, the piece with the centerline only, shape (X, Y, Z), bool."""
     windows: list[Window]
     """Openings between loops that were closed, the largest first."""
     lost: float
@@ -69,12 +69,12 @@ def voxel_surface(values: np.ndarray, origin: np.ndarray, spacing: float, line: 
 
     Args:
         values: Share of each voxel that is lumen, above 0.5 inside, shape (X, Y, Z).
-        origin: Centre of the first voxel [m], shape (3,).
+        origin: Center of the first voxel [m], shape (3,).
         spacing: Edge of a voxel [m].
-        line: Centreline from anal verge to caecal pole, inside of the lumen [m], shape (n, 3).
+        line: Centerline from anal verge to cecal pole, inside of the lumen [m], shape (n, 3).
 
     Raises:
-        ValueError: The centreline is not inside of the lumen, or the walls cut it.
+        ValueError: The centerline is not inside of the lumen, or the walls cut it.
     """
     separated = separate_loops(values, origin, spacing, line)
     return VoxelSurface(smooth_surface(separated.lumen, origin, spacing), separated.windows, separated.lost)
@@ -85,7 +85,7 @@ def smooth_surface(mask: np.ndarray, origin: np.ndarray, spacing: float) -> Tria
 
     Args:
         mask: Whether each voxel is lumen, shape (X, Y, Z), bool.
-        origin: Centre of the first voxel [m], shape (3,).
+        origin: Center of the first voxel [m], shape (3,).
         spacing: Edge of a voxel [m].
     """
     low, kept = _boxed(mask)
@@ -96,18 +96,18 @@ def smooth_surface(mask: np.ndarray, origin: np.ndarray, spacing: float) -> Tria
 def separate_loops(values: np.ndarray, origin: np.ndarray, spacing: float, line: np.ndarray) -> SeparatedLoops:
     """Put walls between loops that touch.
 
-    Every voxel belongs to the place of the centreline that is nearest to it on a way through the lumen. Where voxels
+    Every voxel belongs to the place of the centerline that is nearest to it on a way through the lumen. Where voxels
     that touch belong to places far from each other along the colon, two loops are open to each other, or were
     segmented as one: the voxels on both sides become wall.
 
     Args:
         values: Share of each voxel that is lumen, above 0.5 inside, shape (X, Y, Z).
-        origin: Centre of the first voxel [m], shape (3,).
+        origin: Center of the first voxel [m], shape (3,).
         spacing: Edge of a voxel [m].
-        line: Centreline from anal verge to caecal pole, inside of the lumen [m], shape (n, 3).
+        line: Centerline from anal verge to cecal pole, inside of the lumen [m], shape (n, 3).
 
     Raises:
-        ValueError: The centreline is not inside of the lumen, or the walls cut it.
+        ValueError: The centerline is not inside of the lumen, or the walls cut it.
     """
     low, mask = _boxed(values > 0.5)
     origin = np.asarray(origin, float) + spacing * low
@@ -117,8 +117,8 @@ def separate_loops(values: np.ndarray, origin: np.ndarray, spacing: float, line:
     inside[inside] = mask[tuple(voxels[inside].T)]
     if inside.mean() < 0.9:
         raise ValueError(
-            f"{100 * (1 - inside.mean()):.0f} % of the centreline is outside of the lumen; expected less than 10 %."
-            " Pass both in the same frame, in metres."
+            f"{100 * (1 - inside.mean()):.0f} % of the centerline is outside of the lumen; expected less than 10 %."
+            " Pass both in the same frame, in meters."
         )
     nearest = _nearest_places(mask, voxels[inside], np.flatnonzero(inside))
     arc = np.r_[arc_lengths(fine), _UNREACHED].astype(np.float32)[nearest]
@@ -141,7 +141,7 @@ def _boxed(mask: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _nearest_places(mask: np.ndarray, seeds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
     """Return the number of the seed that is nearest to each voxel on a way through the mask, -1 outside.
 
-    Grows shell by shell over all 26 neighbours; of the seeds that reach a voxel in the same shell, the one at the least
+    Grows shell by shell over all 26 neighbors; of the seeds that reach a voxel in the same shell, the one at the least
     straight distance takes it.
     """
     owner = np.full(mask.shape, -1, np.int32)
@@ -163,7 +163,7 @@ def _nearest_places(mask: np.ndarray, seeds: np.ndarray, numbers: np.ndarray) ->
 
 
 def _radii(mask: np.ndarray, voxels: np.ndarray, inside: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the distance to the wall along the centreline, smoothed over a centimetre [m], shape (n,)."""
+    """Return the distance to the wall along the centerline, smoothed over a centimeter [m], shape (n,)."""
     distance = spacing * ndimage.distance_transform_edt(mask)
     at = np.arange(len(voxels))
     radius = np.interp(at, at[inside], distance[tuple(voxels[inside].T)])
@@ -205,7 +205,7 @@ def _windows(wall: np.ndarray, pairs: np.ndarray, spacing: float, origin: np.nda
 
 
 def _piece_with(mask: np.ndarray, voxels: np.ndarray) -> np.ndarray:
-    """Return the connected piece of a mask that holds the centreline, from its beginning to its end."""
+    """Return the connected piece of a mask that holds the centerline, from its beginning to its end."""
     label, _ = ndimage.label(mask)
     along = label[tuple(voxels.T)]
     along = along[along > 0]
@@ -213,7 +213,7 @@ def _piece_with(mask: np.ndarray, voxels: np.ndarray) -> np.ndarray:
     here = np.flatnonzero(along == piece)
     if not piece or len(here) < 0.95 * len(along):
         raise ValueError(
-            f"The walls between touching loops cut the lumen: {len(here)} of {len(along)} voxels of the centreline are"
+            f"The walls between touching loops cut the lumen: {len(here)} of {len(along)} voxels of the centerline are"
             " in one piece. Take the loops apart in the segmentation."
         )
     return label == piece

@@ -113,7 +113,7 @@ def polygon_triangles(sectors: int) -> np.ndarray:
 def _extrude(triangles: np.ndarray, stride: int) -> np.ndarray:
     """Split each prism between a triangle and its copy one layer out into three tetrahedra.
 
-    Prisms are split by ascending vertex number, so that neighbours agree on the diagonal of the face they share. Where
+    Prisms are split by ascending vertex number, so that neighbors agree on the diagonal of the face they share. Where
     the layers do not cross each other, volumes are positive: the order of vertices follows from the winding of the
     triangles, whose normals point to the outer layer, and is the same in all walls of a grid.
     """

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Procedural mucosa: colour with submucosal vessels, and fine relief with wetness; periodic and deterministic."""
+"""Procedural mucosa: color with submucosal vessels, and fine relief with wetness; periodic and deterministic."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SLOPE_RANGE = 1.0
 """Slope that the detail texture's red and green encode at 255; 0 encodes its negative, 127.5 a flat wall."""
 
 HEIGHT_RANGE = 0.5
-"""Height [mm] that the detail texture's blue encodes from 0 to 255, centred on 0."""
+"""Height [mm] that the detail texture's blue encodes from 0 to 255, centered on 0."""
 
 _DETAIL_BITS = np.array([0xFC, 0xFC, 0xF0, 0xF0], np.uint8)
 """Bits kept of slopes, height and wetness: the rest is noise that would double the size of the file."""
@@ -42,7 +42,7 @@ def write_textures(folder: Path, seed: int, look: MucosaSpec | None = None) -> t
 
 
 def _resize(image: np.ndarray, width: int) -> np.ndarray:
-    """Average each channel over larger pixels; one by one, or Pillow would weight colour by the last as by opacity."""
+    """Average each channel over larger pixels; one by one, or Pillow would weight color by the last as by opacity."""
     channels = [Image.fromarray(image[..., k]) for k in range(image.shape[2])]
     return np.stack([np.array(channel.resize((width, 2 * width), Image.Resampling.BOX)) for channel in channels], -1)
 

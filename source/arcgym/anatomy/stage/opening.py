@@ -14,7 +14,7 @@ from arcgym.anatomy.stage.types import StageError
 
 
 def open_stage(path: Path, missing: Callable[[], str], meters: str, up: str) -> Usd.Stage:
-    """Open a stage in metres with Z up.
+    """Open a stage in meters with Z up.
 
     Args:
         path: The file.

@@ -67,7 +67,7 @@ class _Reader:
         self.usd = open_stage(
             path,
             missing=lambda: _list_stages(path),
-            meters="Scale the points to metres and set metersPerUnit = 1",
+            meters="Scale the points to meters and set metersPerUnit = 1",
             up='Turn the points so that +Z is cranial and set upAxis = "Z"',
         )
 

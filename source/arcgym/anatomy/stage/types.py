@@ -39,13 +39,13 @@ class WallMesh:
     segment: np.ndarray
     """Index into ``SEGMENTS``, shape (V,), int32."""
     ring: np.ndarray
-    """Ring number along the centreline, from the anal verge, shape (V,), int32."""
+    """Ring number along the centerline, from the anal verge, shape (V,), int32."""
     layer: np.ndarray
     """0 for the lumen side, then outwards, shape (V,), int32."""
     frame_neighbors: np.ndarray
     """Next ring, previous ring, next around, previous around; itself where there is none, shape (V, 4), int32."""
     ring_arc: np.ndarray
-    """Arc length of each ring along the centreline at rest [m], shape (R,), float32."""
+    """Arc length of each ring along the centerline at rest [m], shape (R,), float32."""
 
     @property
     def num_rings(self) -> int:
@@ -83,7 +83,7 @@ class VisualMesh:
 class ContactSurface:
     """Inner surface that the scope touches, with folds that the wall is too coarse for.
 
-    A grid of rows from the anal verge to the caecal pole and columns round the lumen, with vertex
+    A grid of rows from the anal verge to the cecal pole and columns round the lumen, with vertex
     ``row * columns + column``, carried by the wall's inner layer. It closes after the last column; its last row is the
     pole, as often as there are columns. Rows and columns divide each cell of the wall evenly
     (:class:`arcgym.anatomy.grid_shape.GridShape`): with k columns a sector, the cell between rings r, r + 1 and
@@ -120,7 +120,7 @@ class ContactSurface:
 
 @dataclass(frozen=True)
 class Centerline:
-    """Centreline of the lumen from the anal verge to the caecal pole."""
+    """Centerline of the lumen from the anal verge to the cecal pole."""
 
     points: np.ndarray
     """Positions [m], shape (C, 3), float32."""
@@ -157,13 +157,13 @@ class ColonStage:
     visual_proxy: VisualMesh
     """Coarse surface for policy images (USD purpose ``proxy``)."""
     centerline: Centerline
-    """Centreline with radius and segment."""
+    """Centerline with radius and segment."""
     landmarks: dict[str, float]
     """Arc length s of each landmark [m], in ascending order."""
     material: TissueMaterial
     """Tissue of the wall."""
     albedo_texture: Path
-    """Colour of the mucosa, periodic in both directions."""
+    """Color of the mucosa, periodic in both directions."""
     detail_texture: Path
     """RGBA: slope along u, slope along v, height, wetness; periodic (see :mod:`arcgym.anatomy.mucosa.texture`)."""
     metadata: dict[str, Any] = field(default_factory=dict)
@@ -173,7 +173,7 @@ class ColonStage:
 
     @property
     def length(self) -> float:
-        """Length of the centreline [m]."""
+        """Length of the centerline [m]."""
         return float(self.centerline.arc[-1])
 
     def segment_bounds(self) -> dict[str, tuple[float, float]]:

@@ -92,7 +92,7 @@ class Passage:
 
 
 def head_passage(stage: ColonStage, radius: float = HEAD_RADIUS, length: float = HEAD_LENGTH) -> Passage:
-    """Return the room for a stiff head in a stage at rest, from the anal verge to the dome of the caecum.
+    """Return the room for a stiff head in a stage at rest, from the anal verge to the dome of the cecum.
 
     What counts is the contact surface; where a stage has none, the wall's inner layer.
 

@@ -44,7 +44,7 @@ def inspect_file(path: str) -> tuple[ColonStage | None, list[Check]]:
 
 
 def inspect_stage(stage: ColonStage) -> list[Check]:
-    """Check a stage in memory: size, meshes, topology, centreline, anchors."""
+    """Check a stage in memory: size, meshes, topology, centerline, anchors."""
     return [
         *_check_size(stage),
         *_check_meshes(stage),
@@ -64,7 +64,7 @@ def _check_schema(path: str) -> list[Check]:
 
 
 def _check_size(stage: ColonStage) -> list[Check]:
-    """Catch millimetres taken for metres, and the reverse."""
+    """Catch millimeters taken for meters, and the reverse."""
     diameter = 2 * float(np.median(stage.centerline.radius))
     return [
         Check("length [m]", stage.length, _LENGTH_RANGE[0], at_least=True),
@@ -144,13 +144,13 @@ def _check_topology(wall: WallMesh) -> list[Check]:
 
 
 def _check_centerline(stage: ColonStage) -> Check:
-    """Find centreline points outside the lumen; the end rings' planes may leave out a point each."""
+    """Find centerline points outside the lumen; the end rings' planes may leave out a point each."""
     wall, line = stage.wall, stage.centerline
     lumen = cap_openings(inner_faces(wall.tets, wall.layer))
     margin = 0.5 * float(np.median(np.diff(wall.ring_arc)))
     within = (line.arc > wall.ring_arc[0] + margin) & (line.arc < wall.ring_arc[-1] - margin)
     outside = winding_numbers(wall.points, lumen, line.points[within]) < 0.5
-    return Check("centreline points outside the lumen", int(outside.sum()), 0, at_least=False)
+    return Check("centerline points outside the lumen", int(outside.sum()), 0, at_least=False)
 
 
 def _check_way(stage: ColonStage) -> list[Check]:

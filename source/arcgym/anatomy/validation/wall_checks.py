@@ -52,13 +52,13 @@ def ring_centers(wall: WallMesh) -> np.ndarray:
 
 
 def ring_distance(wall: WallMesh) -> float:
-    """Return the least distance between vertices of neighbouring rings at the middle of the wall [m]."""
+    """Return the least distance between vertices of neighboring rings at the middle of the wall [m]."""
     points = wall.points.reshape(wall.layer.max() + 1, wall.num_rings, -1, 3).astype(float)
     return float(np.linalg.norm(np.diff(points.mean(0), axis=0), axis=-1).min())
 
 
 def ring_radii(wall: WallMesh) -> np.ndarray:
-    """Return the least distance from each ring's centre to its inner edges [m], shape (R,)."""
+    """Return the least distance from each ring's center to its inner edges [m], shape (R,)."""
     ring = wall.points[wall.layer == 0].reshape(wall.num_rings, -1, 3).astype(float)
     offset = ring - ring.mean(1, keepdims=True)
     edge = np.roll(offset, -1, axis=1) - offset
@@ -69,7 +69,7 @@ def ring_radii(wall: WallMesh) -> np.ndarray:
 def loop_gap(wall: WallMesh, reach: float = 0.05) -> float:
     """Return the least distance between outer vertices of different loops [m]; ``reach`` if there are none so near.
 
-    Two rings belong to different loops when the way along the centreline is more than 1.7 times what their radii
+    Two rings belong to different loops when the way along the centerline is more than 1.7 times what their radii
     and a straight wall between them would need.
     """
     outer = wall.layer == wall.layer.max()

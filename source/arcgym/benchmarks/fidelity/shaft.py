@@ -24,7 +24,7 @@ from arcgym.utils.math import quat_apply
 IN_AIR = {"stiffness_per_length": 0.0, "damping_per_length": 0.0}
 """Introducer that does nothing."""
 DEPTH = 0.4
-"""How far the tip is below the colon [m]; the base may be withdrawn by half a metre."""
+"""How far the tip is below the colon [m]; the base may be withdrawn by half a meter."""
 LINKS = 40
 """Links of the shaft."""
 

@@ -125,7 +125,7 @@ def read(scene: InteractiveScene, time: float) -> Row:
 
 
 def shaft(scene: InteractiveScene) -> np.ndarray:
-    """Return the centres of the links inside the body [m], shape (n, 3)."""
+    """Return the centers of the links inside the body [m], shape (n, 3)."""
     points = scene["endoscope"].data.body_pos_w[0].cpu().numpy()
     return points[int(np.argmax(points[:, 2] > 0.0)) :]
 

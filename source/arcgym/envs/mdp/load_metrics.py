@@ -58,7 +58,7 @@ class load_percentile(ManagerTermBase):
     """
 
     BINS = 192
-    """Number of bins; neighbouring edges differ by a factor of 10^(4/192) = 1.049."""
+    """Number of bins; neighboring edges differ by a factor of 10^(4/192) = 1.049."""
 
     def __init__(self, cfg: MetricsTermCfg, env: ManagerBasedRLEnv) -> None:
         """Allocate the histograms, steps and sums of their loads, shape (N, BINS) each."""

@@ -6,7 +6,7 @@
 With the depth image ``D`` [m], clipped at a far plane, of ``H x W`` pixels per world:
 
 * deep region ``S_d = {D >= tau}``, ``tau = depth_threshold * max D``;
-* ``s_c = 1 - r / r_max``: ``r`` is the distance [pixels] from the mean row and column of ``S_d`` to the image centre
+* ``s_c = 1 - r / r_max``: ``r`` is the distance [pixels] from the mean row and column of ``S_d`` to the image center
   ``((H - 1) / 2, (W - 1) / 2)``, ``r_max`` half the image diagonal;
 * ``s_1 = clamp((d_max - tau_wall) / (tau_lumen - tau_wall), 0, 1)``: far enough to be lumen and not wall;
 * ``s_2 = clamp((rho_d - rho_min) / (1 - rho_min), 0, 1)``, ``rho_d = |S_d| / (H W)``: size of the deep region;
@@ -100,7 +100,7 @@ class LumenCfg:
     """Depth contrast [m] from which on the view is surely a tube (``s_3 = 1``)."""
 
     weight_centering: float = 0.5
-    """``w_c``, weight of the centring ``s_c``."""
+    """``w_c``, weight of the centering ``s_c``."""
 
     weight_visibility: float = 0.5
     """``w_o``, weight of the visibility ``s_o``."""
@@ -138,10 +138,10 @@ class LumenCfg:
 
 
 PAPER = LumenCfg()
-"""The constants of the original code, in metres (0.01 of its stage units is 1 mm of colon).
+"""The constants of the original code, in meters (0.01 of its stage units is 1 mm of colon).
 
 In a metric colon ``s_1`` and ``s_3`` are one and ``s_2`` is zero unless the wall is closer than about 1 cm. So
-``s_o`` is 0.2 nearly everywhere and ``R`` follows the centring: about 0.5 looking along the lumen, 0.3 at 45 degrees
+``s_o`` is 0.2 nearly everywhere and ``R`` follows the centering: about 0.5 looking along the lumen, 0.3 at 45 degrees
 off, and 0.3, 0.1 and -0.1 facing the wall at 12, 6 and 3 mm (means over colon 1, measured with
 scripts/benchmarks/lumen_reward.py)."""
 
@@ -174,7 +174,7 @@ class LumenScores:
     """Parts of the lumen reward, one entry a world; every tensor is float32."""
 
     s_c: torch.Tensor
-    """Centring of the deep region in [0, 1], shape (N,)."""
+    """Centering of the deep region in [0, 1], shape (N,)."""
 
     s_1: torch.Tensor
     """Lumen against wall by the largest depth in [0, 1], shape (N,)."""

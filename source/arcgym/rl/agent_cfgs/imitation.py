@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Configurations of behaviour cloning and distillation."""
+"""Configurations of behavior cloning and distillation."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class RslRlBehaviorCloningAlgorithmCfg:
 
 @configclass
 class RslRlBehaviorCloningRunnerCfg(RslRlOnPolicyRunnerCfg):
-    """Runner of behaviour cloning; the steps in the environment only show how good the policy is."""
+    """Runner of behavior cloning; the steps in the environment only show how good the policy is."""
 
     class_name: str = "arcgym.rl.behavior_cloning_runner:BehaviorCloningRunner"
     """Runner class."""

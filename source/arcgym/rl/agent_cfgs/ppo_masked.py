@@ -15,7 +15,7 @@ class ConstraintRulesCfg:
 
     forward: float = 0.8
     """Raw action of the constant step forward: 36 mm/s of a pulled tip, 40 mm/s of a pushed scope. The paper's is not
-    given in metres; lower it where the tip outruns its steering."""
+    given in meters; lower it where the tip outruns its steering."""
 
     depth_threshold: float = 0.7
     """The deep region has at least this fraction of the largest depth, as in the lumen reward."""

@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Behaviour cloning: supervised learning of recorded actions."""
+"""Behavior cloning: supervised learning of recorded actions."""
 
 from __future__ import annotations
 

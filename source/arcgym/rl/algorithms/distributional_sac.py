@@ -41,7 +41,7 @@ class DistributionalSAC(SAC):
 
     A critic gives probabilities of the soft return on evenly spaced atoms; its value is their mean. The target is the
     distribution of the target critic with the smaller mean, whose atoms z go to
-    ``r + gamma (1 - terminated) (z - alpha log p)``, projected onto the atoms; the critics minimise the
+    ``r + gamma (1 - terminated) (z - alpha log p)``, projected onto the atoms; the critics minimize the
     cross-entropy to it.
     """
 

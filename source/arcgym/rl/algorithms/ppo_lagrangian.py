@@ -28,7 +28,7 @@ TOTAL = "total"
 class PPOLagrangian(PPO):
     """PPO on the Lagrangian of a constrained Markov decision process (Ray, Achiam and Amodei 2019).
 
-    Maximises the return under ``mean episode cost k <= limit k``. Every cost has a critic and a multiplier. The
+    Maximizes the return under ``mean episode cost k <= limit k``. Every cost has a critic and a multiplier. The
     advantages are those of ``(reward - sum_k multiplier_k cost_k) / (1 + sum_k multiplier_k)``, estimated with
     separate critics and then scaled as PPO scales its own: with fixed multipliers and equal discounts this is PPO on
     the penalised reward. Multipliers follow the undiscounted cost of the episodes that ended, not the

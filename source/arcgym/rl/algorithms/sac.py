@@ -38,7 +38,7 @@ class SAC:
 
     where r, gamma and s' may lead over several steps,
 
-    the critics minimise ``(Q_i(s, a) - y)^2``, the actor ``alpha log p(a | s) - min_i Q_i(s, a)``, the temperature
+    the critics minimize ``(Q_i(s, a) - y)^2``, the actor ``alpha log p(a | s) - min_i Q_i(s, a)``, the temperature
     ``-log alpha (log p(a | s) + target entropy)``. A time-out is not an end: its ``s'`` is the episode's last state.
     """
 

@@ -5,7 +5,7 @@
 
 Rings nearer along the colon than a tube needs to turn back on itself do not push on each other as loops do. Here they
 push where the colon runs opposite ways in them and they lie side by side, as in a hairpin: neither so in a straight
-tube, however it is gathered, nor between neighbours in a bend. What two rings push as loops is left out.
+tube, however it is gathered, nor between neighbors in a bend. What two rings push as loops is left out.
 V wall vertices, R rings, W worlds, P patients.
 """
 
@@ -32,7 +32,7 @@ TURNED = wp.constant(0.25)
 """Cosine between the course in one ring and that back in the other from which on they push: turned by 104 degrees. The
 stiffness grows to its full value within ``STIFFNESS_RAMP``, at 120 degrees."""
 BESIDE = wp.constant(0.5)
-"""Squared sine between course and line of centres from which on they push: 45 degrees. Full from 60 degrees on."""
+"""Squared sine between course and line of centers from which on they push: 45 degrees. Full from 60 degrees on."""
 
 
 @wp.struct

@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """Contact law between capsule links and the inner wall: records, gap and normal, normal force, friction.
 
-W worlds, L links a world, R rings (centreline bins), V wall vertices.
+W worlds, L links a world, R rings (centerline bins), V wall vertices.
 """
 
 import warp as wp

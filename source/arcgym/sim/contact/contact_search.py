@@ -38,7 +38,7 @@ class ContactSearch:
     """Finds the contacts of every link with the inner wall faces near it, however the wall is gathered or folded.
 
     Faces are found by distance, through spheres around rings and patches of them. A link's ring (its bin along the
-    centreline) is tracked from step to step: faces near it may touch the link from either side, faces elsewhere just
+    centerline) is tracked from step to step: faces near it may touch the link from either side, faces elsewhere just
     from the lumen, so that a neighboring loop of the colon, however close, is never mistaken for the link's own.
     """
 
@@ -205,7 +205,7 @@ class ContactSearch:
         self.moduli, self.law.tissue_share = moduli, share
 
     def update_centers(self, x: wp.array) -> None:
-        """Recompute the ring centres from the wall positions ``x`` [m], shape (V, W), vec3."""
+        """Recompute the ring centers from the wall positions ``x`` [m], shape (V, W), vec3."""
         wp.launch(
             lumen_kernels.ring_centers,
             (self.ring_count, self.num_envs),

@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """Contact search between capsule links and the inner wall, by distance: rings, then patches, then faces.
 
-W worlds, L links a world, R rings (centreline bins), P patches of faces, Q pairs of a link and a patch a world, F faces
+W worlds, L links a world, R rings (centerline bins), P patches of faces, Q pairs of a link and a patch a world, F faces
 a patch, V wall vertices.
 """
 

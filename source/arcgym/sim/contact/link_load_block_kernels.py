@@ -125,7 +125,7 @@ def load_contacts_by_block(
     Args:
         body_q: Link poses, shape (W*L,).
         body_qd: Link velocities [m/s, rad/s], shape (W*L,).
-        com: Centres of mass in the links' frames [m], shape (W*L,).
+        com: Centers of mass in the links' frames [m], shape (W*L,).
         x: Wall positions [m], shape (V, W).
         v: Wall velocities [m/s], shape (V, W).
         links: Capsules of one world.

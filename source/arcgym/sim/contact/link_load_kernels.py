@@ -36,7 +36,7 @@ class ContactPush:
     normal: wp.vec3  # from the scope into the wall
     along: float  # inertia along the normal [kg]
     across: float  # across it [kg]
-    lever: wp.vec3  # from the link's centre of mass to the point [m]
+    lever: wp.vec3  # from the link's center of mass to the point [m]
 
 
 @wp.func
@@ -222,7 +222,7 @@ def load_contacts(
     Args:
         body_q: Link poses, shape (W*L,).
         body_qd: Link velocities [m/s, rad/s], shape (W*L,).
-        com: Centres of mass in the links' frames [m], shape (W*L,).
+        com: Centers of mass in the links' frames [m], shape (W*L,).
         x: Wall positions [m], shape (V, W).
         v: Wall velocities [m/s], shape (V, W).
         links: Capsules of one world.

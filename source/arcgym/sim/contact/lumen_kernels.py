@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """Faces that links may touch: their surface, spheres around its rings and patches, and the ring of each link.
 
-W worlds, L links a world, R rings (centreline bins), P patches of faces, F faces, V wall vertices.
+W worlds, L links a world, R rings (centerline bins), P patches of faces, F faces, V wall vertices.
 """
 
 import warp as wp
@@ -52,7 +52,7 @@ def ring_centers(x: wp.array2d[wp.vec3], surface: LumenSurface, centers: wp.arra
     Args:
         x: Wall positions [m], shape (V, W).
         surface: Inner faces of one world.
-        centers: Ring centres [m], shape (W, R); written.
+        centers: Ring centers [m], shape (W, R); written.
     """
     r, w = wp.tid()
     n = surface.rings.shape[1]
@@ -77,7 +77,7 @@ def follow_rings(
         x: Wall positions [m], shape (V, W).
         surface: Inner faces of one world.
         slack: How far a vertex may have moved in a ring that counts as not moved [m].
-        centers: Ring centres [m], shape (W, R); written.
+        centers: Ring centers [m], shape (W, R); written.
         place: Where the vertices were when the ring had last moved [m], shape (V, W); updated.
         moved: 1 where the ring has moved, else 0, shape (R, W); written.
     """

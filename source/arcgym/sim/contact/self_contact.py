@@ -147,9 +147,9 @@ class _Reach:
     half_min_arc: np.ndarray
     """Half the least arc length at which two such rings may touch [m], shape (R,)."""
     max_radius: float
-    """No ring reaches farther from its centre than this [m]."""
+    """No ring reaches farther from its center than this [m]."""
     max_spacing: float
-    """No two neighbouring rings are farther apart than this [m]."""
+    """No two neighboring rings are farther apart than this [m]."""
 
 
 def _reach(points: np.ndarray, ring: np.ndarray) -> _Reach:

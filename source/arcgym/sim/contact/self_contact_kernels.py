@@ -3,7 +3,7 @@
 # mypy: ignore-errors
 """Contact of the wall with itself where two loops of the colon touch, ring against ring.
 
-The normal of a pair of rings lies along the line between their centres; each ring reaches as far towards the other as
+The normal of a pair of rings lies along the line between their centers; each ring reaches as far towards the other as
 its vertices on that side do. Pushed flat there, it reaches less far, and those vertices bear the force. A pair is
 measured in the same way from both of its sides, so that action is reaction.
 Launch dimensions: R rings, W worlds last.
@@ -20,7 +20,7 @@ REST_MARGIN = wp.constant(1.0e-4)
 MAX_OVERLAP = wp.constant(0.005)
 """Overlap beyond which a pair pushes no harder [m]: a crumpled wall may overlap deeply from one step to the next."""
 NESTED_RATIO = wp.constant(0.5)
-"""Distance of two centres over the extent of the rings, under which one is inside the other and nothing pushes."""
+"""Distance of two centers over the extent of the rings, under which one is inside the other and nothing pushes."""
 STIFFNESS_RAMP = wp.constant(0.25)
 """Range of that ratio, and of arc length over its least, within which the stiffness grows to its full value."""
 MIN_FORCE = wp.constant(1.0e-9)
@@ -37,8 +37,8 @@ class WallRings:
     next_candidate: wp.array2d[int]  # first ring after each that may touch it, shape (R, P)
     min_gap: wp.array3d[float]  # gap below which a pair pushes, negative where it overlaps at rest [m], shape (R, R, P)
     thickness: float  # distance between vertices of walls that touch [m]
-    max_radius: wp.array[float]  # no ring reaches farther from its centre than this [m], shape (P,)
-    max_spacing: wp.array[float]  # no two neighbouring rings are farther apart than this [m], shape (P,)
+    max_radius: wp.array[float]  # no ring reaches farther from its center than this [m], shape (P,)
+    max_spacing: wp.array[float]  # no two neighboring rings are farther apart than this [m], shape (P,)
     stiffness: float  # of a pair [N/m]
 
 
@@ -59,7 +59,7 @@ class SelfContactForce:
 class RingSpheres:
     """Bounding spheres of the rings, in each world."""
 
-    sphere: wp.array2d[wp.vec4]  # centre and distance of the farthest vertex from there [m], shape (R, W)
+    sphere: wp.array2d[wp.vec4]  # center and distance of the farthest vertex from there [m], shape (R, W)
     near: wp.array2d[int]  # 1 where a sphere meets that of a ring that may touch, shape (R, W)
 
 
@@ -86,7 +86,7 @@ def measure_spheres(x: wp.array2d[wp.vec3], rings: WallRings, spheres: RingSpher
 
 @wp.func
 def xyz(sphere: wp.vec4) -> wp.vec3:
-    """Return the first three components, such as the centre of a sphere."""
+    """Return the first three components, such as the center of a sphere."""
     return wp.vec3(sphere[0], sphere[1], sphere[2])
 
 
@@ -152,7 +152,7 @@ def arc_between(spheres: RingSpheres, r: int, s: int, w: int, longest: float) ->
 def pair_stiffness(
     rings: WallRings, spheres: RingSpheres, r: int, s: int, w: int, apart: float, overlap: float
 ) -> float:
-    """Return the stiffness of a pair, centres ``apart`` [m], in N/m: zero where wall is gathered on the shaft."""
+    """Return the stiffness of a pair, centers ``apart`` [m], in N/m: zero where wall is gathered on the shaft."""
     p = rings.patient[w]
     least = rings.half_min_arc[r, p] + rings.half_min_arc[s, p]
     around = arc_between(spheres, r, s, w, (1.0 + STIFFNESS_RAMP) * least) / least - 1.0

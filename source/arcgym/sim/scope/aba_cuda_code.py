@@ -257,7 +257,7 @@ RECORD = """
         }
     }
 """
-"""Writes the accelerations of all links' centres of mass, and adds up the forces of their loads."""
+"""Writes the accelerations of all links' centers of mass, and adds up the forces of their loads."""
 
 PARTS = (READ, PREPARE, GATHER, ACCELERATE, RECORD, MOVE, CHAIN_UP)
 SOLVE = "\n#if defined(__CUDA_ARCH__)" + "".join(PARTS) + "#endif\n"

@@ -86,7 +86,7 @@ PREPARE = """
         aa = add(aa, inertia);
         force = force + mul(ll, centripetal);
         torque = torque + (mul(transpose(la), centripetal) + cross(omega, mul(inertia, omega)));
-        // from the centre of mass to the anchor
+        // from the center of mass to the anchor
         const mat33 moved_la = add(la, transpose(skew_times(lever, ll)));
         const mat33 moved_aa = add(add(aa, skew_times(lever, moved_la)), transpose(skew_times(lever, la)));
         torque = torque + cross(lever, force);

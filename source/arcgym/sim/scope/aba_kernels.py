@@ -138,7 +138,7 @@ def inward_pass(chain: Chain, work: ChainWork, w: int) -> ArticulatedBody:
 
 @wp.struct
 class LinkMotion:
-    """Pose of a link, velocity of its centre of mass and its spin."""
+    """Pose of a link, velocity of its center of mass and its spin."""
 
     pose: wp.transform
     lin: wp.vec3

@@ -4,7 +4,7 @@
 """Loads of the links, one row of 32 floats each, as the warp reads them that solves a chain on a GPU.
 
 Of a load, see :class:`.scope_kernels.LinkLoads`, 27 numbers differ. A row holds them in the order of :class:`LoadSum`,
-then five that nobody reads: it is a line of memory, which eight neighbouring threads write in one go.
+then five that nobody reads: it is a line of memory, which eight neighboring threads write in one go.
 """
 
 import warp as wp
@@ -27,7 +27,7 @@ class LoadRows:
 
 @wp.struct
 class LoadSum:
-    """Load of a link about its centre of mass: the force on what it touches and its growth by acceleration."""
+    """Load of a link about its center of mass: the force on what it touches and its growth by acceleration."""
 
     force: wp.vec3  # if the link keeps its velocity [N]
     ll_diagonal: wp.vec3  # force by linear acceleration [kg]: xx, yy, zz
@@ -54,7 +54,7 @@ def with_push(total: LoadSum, force: wp.vec3, normal: wp.vec3, more: float, acro
         normal: Unit vector.
         more: Inertia along it less that across it [kg].
         across: Inertia across it [kg].
-        r: From the centre of mass to the point [m].
+        r: From the center of mass to the point [m].
     """
     arm = wp.cross(r, normal)
     inertia = more * normal
@@ -107,7 +107,7 @@ def with_push(total: LoadSum, force: wp.vec3, normal: wp.vec3, more: float, acro
 #endif
 """)
 def write_row(sum: LoadSum, row: int, lane: int, valid: bool, more: bool, rows: LoadRows):
-    """Write the sum over ``GROUP`` neighbouring threads to a row if it is ``valid``, or add it where there is ``more``.
+    """Write the sum over ``GROUP`` neighboring threads to a row if it is ``valid``, or add it where there is ``more``.
 
     All threads of the warp have to call it; on a CPU each is one of its own.
 

@@ -140,20 +140,20 @@ def locate_tip(
     distance: wp.array[float],
     direction: wp.array[wp.vec3],
 ):
-    """Find the closest point of the deformed centreline to the tip, near the last link's ring. Launch (W,).
+    """Find the closest point of the deformed centerline to the tip, near the last link's ring. Launch (W,).
 
-    Before the first ring and beyond the last the centreline goes on along its end segments.
+    Before the first ring and beyond the last the centerline goes on along its end segments.
 
     Args:
         tip_pose: Front of the tip, shape (W,).
-        centers: Ring centres [m], shape (W, R).
+        centers: Ring centers [m], shape (W, R).
         patient: Patient of each world, shape (W,).
         ring_arc: Arc length of the rings at rest [m], shape (R, P).
         link_ring: Ring of each link or -1, shape (W, L).
         span: Rings searched on either side.
         arc: Arc length of the point at rest [m], shape (W,); written.
         distance: Distance of the tip from it [m], shape (W,); written.
-        direction: Direction of the centreline there, shape (W,); written.
+        direction: Direction of the centerline there, shape (W,); written.
     """
     w = wp.tid()
     rings = centers.shape[1]

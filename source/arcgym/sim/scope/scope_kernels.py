@@ -4,7 +4,7 @@
 """Data of the articulated-body algorithm of a serial chain: inertias, loads and joint forces at a step's start.
 
 Linearly implicit Euler: springs, dampers and contacts act with their values at the end of the step, to first order in
-the acceleration. All vectors have world axes. Inertias refer to the link's joint (its *anchor*; the centre of mass of a
+the acceleration. All vectors have world axes. Inertias refer to the link's joint (its *anchor*; the center of mass of a
 free root) and accelerations are those of the material point there, so that lengths stay short and float32 suffices.
 
 W worlds, L links, D degrees of freedom a world. Scratch has the shape (L, W) or (D, W), world-fastest but where a warp
@@ -26,9 +26,9 @@ class Chain:
     free: int  # whether the root is free
     parent_frame: wp.array[wp.transform]  # joint in the frame of the link before, shape (L,)
     child_frame: wp.array[wp.transform]  # joint in the link's frame, shape (L,)
-    com: wp.array[wp.vec3]  # centre of mass in the link's frame [m], shape (L,)
+    com: wp.array[wp.vec3]  # center of mass in the link's frame [m], shape (L,)
     mass: wp.array[float]  # [kg], shape (L,)
-    inertia: wp.array[wp.mat33]  # about the centre of mass, link's axes [kg m^2], shape (L,)
+    inertia: wp.array[wp.mat33]  # about the center of mass, link's axes [kg m^2], shape (L,)
     dof_start: wp.array[int]  # first degree of freedom of each link's joint, shape (L + 1,)
     linear: wp.array[int]  # whether a degree of freedom slides, shape (D,)
     axis: wp.array[wp.vec3]  # in the joint's frame, shape (D,)
@@ -44,7 +44,7 @@ class Chain:
 
 @wp.struct
 class LinkLoads:
-    """Forces on the links that resist their acceleration, about the centre of mass.
+    """Forces on the links that resist their acceleration, about the center of mass.
 
     The force at the end of the step is ``wrench`` less the inertias times the link's acceleration: ``wrench`` holds for
     a link that keeps its velocity v, and a spring K and damper C add dt (C + dt K) to the inertias.
@@ -66,7 +66,7 @@ class ChainWork:
     force: wp.array2d[wp.vec3]  # bias force and torque, shape (L, W)
     torque: wp.array2d[wp.vec3]
     arm: wp.array2d[wp.vec3]  # from the anchor before to the link's own [m], shape (L, W)
-    lever: wp.array2d[wp.vec3]  # from the anchor to the centre of mass [m], shape (L, W)
+    lever: wp.array2d[wp.vec3]  # from the anchor to the center of mass [m], shape (L, W)
     drift_lin: wp.array2d[wp.vec3]  # acceleration of the joint at constant joint velocities, shape (L, W)
     drift_ang: wp.array2d[wp.vec3]
     axis: wp.array2d[wp.vec3]  # shape (D, W)
@@ -78,7 +78,7 @@ class ChainWork:
     gain_ang: wp.array2d[wp.vec3]
     offset: wp.array2d[float]
     drive_force: wp.array2d[float]  # force of each drive at the end of the step [N or N m], shape (D, W)
-    acc_lin: wp.array2d[wp.vec3]  # of each centre of mass [m/s^2], shape (L, W)
+    acc_lin: wp.array2d[wp.vec3]  # of each center of mass [m/s^2], shape (L, W)
     acc_ang: wp.array2d[wp.vec3]  # [rad/s^2], shape (L, W)
 
 
@@ -126,7 +126,7 @@ def anchor(chain: Chain, link: int, pose: wp.transform) -> wp.vec3:
 def link_inertia(
     chain: Chain, link: int, pose: wp.transform, omega: wp.vec3, lever: wp.vec3, load: ArticulatedBody
 ) -> ArticulatedBody:
-    """Return the articulated body of a link with its loads (about the centre of mass) at its anchor."""
+    """Return the articulated body of a link with its loads (about the center of mass) at its anchor."""
     rot = wp.quat_to_matrix(wp.transform_get_rotation(pose))
     inertia = rot * chain.inertia[link] * wp.transpose(rot)
     centripetal = wp.cross(omega, wp.cross(omega, lever))
@@ -210,7 +210,7 @@ def prepare_links(
         chain: Links and joints of one world.
         body_q: Link poses, shape (W*L,).
         body_qd: Link velocities [m/s, rad/s], shape (W*L,).
-        body_f: Force [N] and torque [N m] on the centres of mass, shape (W*L,).
+        body_f: Force [N] and torque [N m] on the centers of mass, shape (W*L,).
         joint_q: Joint coordinates [m or rad], shape (W*J,), J = D, or D + 1 for a free root.
         joint_qd: Joint velocities [m/s or rad/s], shape (W*D,).
         resistance: Diagonal of the drop of ``body_f`` by acceleration [kg, kg m^2], shape (L, W).
@@ -293,7 +293,7 @@ def record_loads(
 
     Args:
         loads: Loads of the links.
-        acc_lin: Accelerations of the centres of mass [m/s^2], shape (L, W).
+        acc_lin: Accelerations of the centers of mass [m/s^2], shape (L, W).
         acc_ang: Angular accelerations [rad/s^2], shape (L, W).
         weight: Share of the step in the mean.
         mean_load: Mean force on each link [N], shape (W*L,); added to.

@@ -38,8 +38,8 @@ class ScopeReadout:
         tip_velocity: Its velocity [m/s] and spin [rad/s], shape (W,), spatial_vector.
         camera_pose: Pose of the camera, shape (W,), transform.
         tip_arc: Arc length of the tip along the colon at rest [m], shape (W,).
-        tip_distance: Distance of the tip from the deformed centreline [m], shape (W,).
-        tip_direction: Direction of the deformed centreline there, shape (W,), vec3.
+        tip_distance: Distance of the tip from the deformed centerline [m], shape (W,).
+        tip_direction: Direction of the deformed centerline there, shape (W,), vec3.
         broken: 1 where the state is not finite or farther than 10 m away, shape (W,), int.
         penetrated: 1 where a link's axis came close to the wall or behind it, set by the coupling, shape (W,), int.
     """
@@ -106,7 +106,7 @@ class ScopeReadout:
 
         Args:
             state: State of all scopes.
-            contact: Contact search; its ring centres and the links' rings must be those of ``x`` and ``state``.
+            contact: Contact search; its ring centers and the links' rings must be those of ``x`` and ``state``.
             x: Wall positions [m], shape (V, W), vec3.
         """
         wp.launch(

@@ -54,7 +54,7 @@ class Depth:
 
     depth: float  # [m], not positive if it touches nothing
     normal: wp.vec3  # unit vector outwards
-    yielding: float  # depth gained for each metre of dent
+    yielding: float  # depth gained for each meter of dent
 
 
 @wp.func

@@ -8,7 +8,7 @@ coordinates (p, q) that its vertices have at rest. Moving both rings alike strai
 five vectors: how far the ring's t is from the next one's, its g_p and g_q, and those of the next ring. In every element
 each of them moves the corners by a number times the vector; only differences of the numbers along the edges count.
 
-Bending along the colon joins three rings, which a system of neighbours cannot hold: a band has a bound of it, see
+Bending along the colon joins three rings, which a system of neighbors cannot hold: a band has a bound of it, see
 ``ring_modes.bending_bound``, with the rings' widening and flattening measured in the plane in which each lies now.
 """
 

@@ -4,7 +4,7 @@
 """Coarse correction of the wall: every ring moves by x_i += t + p_i g_p + q_i g_q, see ``ring_modes``.
 
 The matrix is that of the wall's present shape: elements as ``band_kernels`` measures them, inertia, anchors at the
-shift of the ring's centre, the contacts at hand with the scope and of the wall with itself. As it is nowhere softer
+shift of the ring's center, the contacts at hand with the scope and of the wall with itself. As it is nowhere softer
 than the wall (negative parts count as zero, bending along the colon by its bound), a step does not raise the energy
 that it is computed from. What is left of an error therefore shrinks from step to step, whatever shape the wall is in,
 and no correction has to be held back.
@@ -51,7 +51,7 @@ def place_ring(
     r: int,
     w: int,
 ):
-    """Measure how ring ``r`` of world ``w`` lies and how far its centre has moved since rest, see ``place_rings``."""
+    """Measure how ring ``r`` of world ``w`` lies and how far its center has moved since rest, see ``place_rings``."""
     patient = rings.patient[w]
     total = wp.vec3(0.0)
     p = wp.vec3(0.0)
@@ -73,14 +73,14 @@ def place_ring(
 
 @wp.kernel
 def place_rings(x: wp.array2d[wp.vec3], rings: Rings, loads: RingLoads, axes: RingAxes, shift: wp.array2d[wp.vec3]):
-    """Measure how each ring lies and how far its centre has moved since rest. Launch (R, W).
+    """Measure how each ring lies and how far its center has moved since rest. Launch (R, W).
 
     Args:
         x: Wall positions [m], shape (V, W).
         rings: Rings of all patients.
         loads: Loads of all patients.
         axes: Directions of the rings; written.
-        shift: Shift of each ring's centre [m], shape (R, W); written.
+        shift: Shift of each ring's center [m], shape (R, W); written.
     """
     r, w = wp.tid()
     place_ring(x, rings, loads, axes, shift, r, w)
@@ -156,7 +156,7 @@ def anchor_row(
     Args:
         rings: Rings of all patients.
         loads: Loads of all patients.
-        shift: Shift of the ring's centre [m].
+        shift: Shift of the ring's center [m].
         r: Ring.
         field: Which of t, g_p and g_q the unknown is part of.
         along: Axis of the unknown.
@@ -215,7 +215,7 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
         shift: wp.array2d[wp.vec3],
         tissue: Tissue,
         inv_dt2: float,
-        regularisation: float,
+        regularization: float,
         records: ContactRecords,
         measured: MeasuredContacts,
         self_contact: SelfContactForce,
@@ -234,10 +234,10 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
             rings: Rings of all patients.
             loads: Loads of all patients.
             bands: Stiffness of each band between its unknowns [N/m], upper half, shape (R, 15, 15, W).
-            shift: Shift of each ring's centre [m], shape (R, W).
+            shift: Shift of each ring's center [m], shape (R, W).
             tissue: Values of each world.
             inv_dt2: One over the squared physics step [1/s^2].
-            regularisation: Relative addition to the diagonal.
+            regularization: Relative addition to the diagonal.
             records: Contacts, listed by ring.
             measured: Their normals and stiffness.
             self_contact: Contact of the wall with itself.
@@ -278,7 +278,7 @@ def _assemble_kernel(keeps: bool) -> wp.Kernel:
                     next_row[i] = next_sign(i) * band_entry(bands, r, a, next_unknown(i), w)
             for i in range(MODES):  # own_row[a], which would keep the row out of the registers
                 if i == a:
-                    own_row[i] = own_row[i] * (1.0 + regularisation) + 1.0e-6
+                    own_row[i] = own_row[i] * (1.0 + regularization) + 1.0e-6
             if self_contact.in_contact[r, w] == 1:
                 own_row += self_contact_row(rings, loads, self_contact, r, field, along, w)
         if free and not on_cpu():

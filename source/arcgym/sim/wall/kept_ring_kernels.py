@@ -52,7 +52,7 @@ def place_changed_rings(
         rings: Rings of all patients.
         loads: Loads of all patients.
         axes: Directions of the rings; written.
-        shift: Shift of each ring's centre [m], shape (R, W); written.
+        shift: Shift of each ring's center [m], shape (R, W); written.
         tissue: Values of each world.
         unmoved: How far a vertex may be from its place in a ring that has not moved [m].
         kept: ``changed`` is written, and the rest where a ring has moved.

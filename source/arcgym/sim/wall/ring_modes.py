@@ -3,7 +3,7 @@
 """Modes in which every ring of the wall moves as a whole, in numpy.
 
 A ring moves by x_i += t + p_i g_p + q_i g_q: any affine motion of its plane. (p, q) are the coordinates that its
-vertices have in the ring's plane at rest, over their rms distance from its centre; t, g_p, g_q are vectors in space.
+vertices have in the ring's plane at rest, over their rms distance from its center; t, g_p, g_q are vectors in space.
 """
 
 from __future__ import annotations

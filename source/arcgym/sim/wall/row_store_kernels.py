@@ -3,8 +3,8 @@
 # mypy: ignore-errors
 """Rows of the ring equations to memory: on a GPU the threads of a warp, a row each, write theirs together.
 
-A thread that writes its M numbers one after the other touches another sector of the memory than its neighbour with each
-of them. Exchanged in shared memory first, 32 neighbouring numbers at a time go out in one piece.
+A thread that writes its M numbers one after the other touches another sector of the memory than its neighbor with each
+of them. Exchanged in shared memory first, 32 neighboring numbers at a time go out in one piece.
 """
 
 import warp as wp

@@ -30,7 +30,7 @@ class SweepKernels(NamedTuple):
     """Kernels of a wall for one kind of elements."""
 
     sweep_color: wp.Kernel
-    """Newton step of the vertices of one colour."""
+    """Newton step of the vertices of one color."""
     residual: wp.Kernel
     """Total force on every vertex."""
     sweep_packed: wp.Kernel
@@ -84,7 +84,7 @@ def _sweep_kernel(
         force: wp.array2d[wp.vec3],
         x: wp.array2d[wp.vec3],
     ):
-        """Make one Newton step of every vertex of one colour. Launch (C, W).
+        """Make one Newton step of every vertex of one color. Launch (C, W).
 
         Args:
             color: Vertices that share no element, shape (C,).

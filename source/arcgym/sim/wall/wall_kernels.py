@@ -3,8 +3,8 @@
 # mypy: ignore-errors
 """Parts common to walls of both kinds: vertices with mass and anchor, contact, the start and the end of a step.
 
-W worlds, V wall vertices; arrays of vertices have the shape (V, W), so that neighbouring GPU threads, which work on
-neighbouring worlds, read neighbouring memory.
+W worlds, V wall vertices; arrays of vertices have the shape (V, W), so that neighboring GPU threads, which work on
+neighboring worlds, read neighboring memory.
 """
 
 import warp as wp

@@ -56,7 +56,7 @@ class WallParameters:
     share: np.ndarray
     """Thickness of each ring over that of the tissue, shape (R,); 1 but for walls whose thickness differs."""
     colors: list[np.ndarray]
-    """Vertices that share no element, colour by colour."""
+    """Vertices that share no element, color by color."""
 
 
 def wall_nodes(walls: Sequence[WallParameters], patient: wp.array, device: str) -> WallNodes:

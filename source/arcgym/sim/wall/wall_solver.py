@@ -34,7 +34,7 @@ from arcgym.sim.wall.wall_weight import WallWeight
 from arcgym.utils.threaded_graph import in_parts, in_sequence, launch_rows
 from arcgym.utils.warp_setup import GPU_BLOCK
 
-REGULARISATION = 1.0e-5
+REGULARIZATION = 1.0e-5
 """Shift of the coarse matrix, relative to each diagonal entry."""
 ROUNDING = 2.0e-7
 """Residual of a vertex, over the stiffness of its elements, under which it is not swept [m]. Of rounding alone it is up
@@ -362,7 +362,7 @@ class WallSolver:
         self._launch(
             kernel,
             (rows, self.num_envs, MODES),
-            [*inputs, REGULARISATION, contacts.records, self.measured, contacts.self_contact, kept],
+            [*inputs, REGULARIZATION, contacts.records, self.measured, contacts.self_contact, kept],
             [system.diagonal, system.upper, system.rhs],
         )
 

@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Connectivity of one world's wall, in numpy: lumen faces sorted along the centreline, tets around each vertex."""
+"""Connectivity of one world's wall, in numpy: lumen faces sorted along the centerline, tets around each vertex."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ class NavigationMaskedPPORunnerCfg(NavigationPPORunnerCfg, RslRlConstrainedRunne
     """PPO whose actions obey the paper's rules on simulated depth, in training and in evaluation.
 
     Report it also with ``agent.action_constraint.in_evaluation=false``: with the rules on, the policy is not one of
-    colour images alone.
+    color images alone.
     """
 
     class_name: str = "arcgym.rl.constrained_runner:ConstrainedRunner"

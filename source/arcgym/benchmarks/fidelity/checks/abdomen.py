@@ -22,7 +22,7 @@ STIFF = 2.0e8
 GAP = 0.001
 """Way from the tube to the inside of the abdomen [m], a plane: so is the front of a box, by the exponent."""
 HELD = {"weight": 1.0e3, "hand": 2.0e4}
-"""Stiffness of the tube's attachments per length [N/m^2]: it moves by millimetres, and stays clear of what is in it."""
+"""Stiffness of the tube's attachments per length [N/m^2]: it moves by millimeters, and stays clear of what is in it."""
 DENSITY = 1.0e4
 """Mass density of the tube [kg/m^3], with which it weighs 22 N/m."""
 FORCE = 30.0

@@ -68,7 +68,7 @@ def sigmoid_deep(run: Run, name: str = "sigmoid_deep", step_damping: float | Non
     """Push through the S of the shipped colon against a converged run.
 
     Now and then the tip snaps past a fold a moment earlier or later than in the reference, so that the tips are some
-    millimetres apart meanwhile; the row is their mean distance, as the force is a mean.
+    millimeters apart meanwhile; the row is their mean distance, as the force is a mean.
 
     Args:
         run: Device and folder.

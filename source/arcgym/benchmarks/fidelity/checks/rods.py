@@ -1,6 +1,6 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pushes of the colonoscope against another discretization: an elastic rod in equilibrium at every half millimetre.
+"""Pushes of the colonoscope against another discretization: an elastic rod in equilibrium at every half millimeter.
 
 The walls are rigid on both sides, and of the same shape. The rod has the colonoscope's EI, radii and friction, and
 neither links nor speed, damping or facets.

@@ -18,7 +18,7 @@ from arcgym.sim.wall.abdomen import vertex_area
 TUBE = Tube(0.40)
 """The tube; its rings and sectors are the shipped sigmoid's."""
 TRACTION = 20.0
-"""Largest of the load on the wall [Pa]; without tension it would give by millimetres."""
+"""Largest of the load on the wall [Pa]; without tension it would give by millimeters."""
 MODE = 2
 """Waves of the load around the tube."""
 
