@@ -12,6 +12,7 @@ from arcgym.cli.task import agent_key
 from arcgym.rl import RslRlVecEnvWrapper, constrained_runner
 from arcgym.rl.agent_checks import check_agent
 from arcgym.utils.errors import UsageError
+from arcgym.utils.hydra import apply_overrides
 from arcgym.utils.registry import list_tasks, load_cfg_from_registry
 from arcgym.utils.threads import one_thread
 
@@ -65,9 +66,19 @@ def test_agent_learns_and_acts(key, counting_env, monkeypatch):
 
 
 def test_every_task_has_every_agent():
-    """Those that learn from the environment, and the two that need a teacher or recordings."""
+    """Those that learn from the environment, and those that need a teacher or recordings."""
     for task in list_tasks():
-        assert {agent_key(key) for key in (*KEYS, "distillation", "bc")} <= set(gym.registry[task].kwargs)
+        assert {agent_key(key) for key in (*KEYS, "distillation", "distillation_recurrent", "bc")} <= set(gym.registry[task].kwargs)
+
+
+@pytest.mark.parametrize(
+    ("key", "model"), [("distillation", "actor"), ("distillation_recurrent", "critic"), ("bc", "critic")]
+)
+def test_a_network_that_an_agent_does_not_have_cannot_be_set(key: str, model: str) -> None:
+    """Otherwise ``agent.actor.hidden_dims=[64]`` would say nothing and change nothing for a student."""
+    cfg = load_cfg_from_registry(TASK, agent_key(key))
+    with pytest.raises(UsageError, match=f"'agent.{model}' is switched off"):
+        apply_overrides({"agent": cfg}, [f"agent.{model}.hidden_dims=[64]"])
 
 
 def test_each_agent_has_a_folder_of_its_own():

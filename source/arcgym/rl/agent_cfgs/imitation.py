@@ -90,6 +90,9 @@ class RslRlBehaviorCloningRunnerCfg(RslRlOnPolicyRunnerCfg):
     actor: RslRlMlpModelCfg = AugmentedCnnModelCfg(distribution_cfg=GaussianDistributionCfg(init_std=0.3))
     """Policy network. Give it the shape of the PPO policy that it is to start."""
 
+    critic: Any = None
+    """None: nothing here has a value."""
+
     algorithm: Any = RslRlBehaviorCloningAlgorithmCfg()
     """Learning algorithm."""
 
@@ -130,6 +133,12 @@ class RslRlDistillationRunnerCfg(RslRlOnPolicyRunnerCfg):
 
     obs_groups: dict[str, list[str]] = {"student": ["policy"], "teacher": ["critic"]}
     """Observation groups that each model reads."""
+
+    actor: Any = None
+    """None: the policies are ``student`` and ``teacher``."""
+
+    critic: Any = None
+    """None: nothing here has a value."""
 
     student: RslRlMlpModelCfg = AugmentedCnnModelCfg(distribution_cfg=GaussianDistributionCfg(init_std=0.1))
     """Policy to learn; its deviation is the noise it acts with."""
