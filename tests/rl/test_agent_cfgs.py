@@ -68,7 +68,8 @@ def test_agent_learns_and_acts(key, counting_env, monkeypatch):
 def test_every_task_has_every_agent():
     """Those that learn from the environment, and those that need a teacher or recordings."""
     for task in list_tasks():
-        assert {agent_key(key) for key in (*KEYS, "distillation", "distillation_recurrent", "bc")} <= set(gym.registry[task].kwargs)
+        keys = (*KEYS, "distillation", "distillation_recurrent", "bc")
+        assert {agent_key(key) for key in keys} <= set(gym.registry[task].kwargs)
 
 
 @pytest.mark.parametrize(
@@ -77,7 +78,7 @@ def test_every_task_has_every_agent():
 def test_a_network_that_an_agent_does_not_have_cannot_be_set(key: str, model: str) -> None:
     """Otherwise ``agent.actor.hidden_dims=[64]`` would say nothing and change nothing for a student."""
     cfg = load_cfg_from_registry(TASK, agent_key(key))
-    with pytest.raises(UsageError, match=f"'agent.{model}' is switched off"):
+    with pytest.raises(ValueError, match=f"'agent.{model}' is switched off"):
         apply_overrides({"agent": cfg}, [f"agent.{model}.hidden_dims=[64]"])
 
 
