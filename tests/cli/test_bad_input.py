@@ -93,6 +93,14 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*PLAY, "--experiment_name", "nowhere"], "No checkpoint 'latest'"),
         ([*PLAY, "--policy", "rando"], "invalid choice: 'rando'"),
         (["record", *TASK, "--agent", "exprt"], "--agent is 'exprt'. Did you mean 'expert'"),
+        (
+            ["evaluate", "--agent", "zero", "--out", "results", "env.scene.colon.usd_path=ct_1"],
+            "usd_path=ct_1 would change nothing, as trials set env.scene.colon.usd_path themselves: give trials on these",
+        ),
+        (
+            ["evaluate", "--agent", "zero", "--out", "results", "+env.recorders.episodes={}"],
+            "trials set env.recorders themselves",
+        ),
         (["replay", "."], ". is a folder, expected a file ending in .hdf5."),
         (["preview", "colon_9", "page.png"], "no such file. Existing stages in"),
         (["preview", "colons/a/colon.usda", "page.png"], "ct_2; nor is it in the working folder, "),

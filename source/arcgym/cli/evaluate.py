@@ -69,10 +69,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(namespace: argparse.Namespace) -> None:
     """Run the trials, print the summary and write it."""
+    from arcgym.evaluation.set_by_trials import refuse_what_trials_set
     from arcgym.evaluation.suites import read_suites, refuse_earlier, split_task
     from arcgym.evaluation.trials import read_conditions
 
     args = read_fields(EvaluateArguments, namespace)
+    refuse_what_trials_set(args.overrides)
     suite = _choose(args.suite or USUAL_SUITE, read_suites(), "suite")
     agents = tuple(args.agent.split(","))
     tasks = args.tasks.split(",") if args.tasks else suite.tasks(args.robot or _robot_of(agents[0]))

@@ -14,6 +14,7 @@ import torch
 from arcgym.envs.provenance import versions
 from arcgym.evaluation.options import EvaluationOptions
 from arcgym.evaluation.resolved_cfg import resolved
+from arcgym.evaluation.set_by_trials import is_set_by_trials
 from arcgym.evaluation.suites import split_task
 from arcgym.evaluation.trained_on import trained_on
 from arcgym.evaluation.trials import Conditions
@@ -24,18 +25,6 @@ from arcgym.rl.rollout import UNTRAINED_POLICIES
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
 from arcgym.utils.registry import load_cfg_from_registry
-
-SET_HERE = (
-    "seed",
-    "log_dir",
-    "recorders",
-    "curriculum",
-    "sim.device",
-    "scene.num_envs",
-    "scene.colon.usd_path",
-    "scene.colon.num_patients",
-)
-"""Fields that an evaluation sets itself, with all below them."""
 
 
 def run_record(tasks: Sequence[str], conditions: Conditions, options: EvaluationOptions) -> dict[str, Any]:
@@ -100,7 +89,7 @@ def changes_of(task: str, env_cfg: Any) -> dict[str, list[Any]]:
     registered = load_cfg_from_registry(split_task(task)[0], "env_cfg_entry_point")
     found = differences(to_plain(registered), to_plain(env_cfg))
     run = [resolved(cfg) for cfg in (registered, env_cfg)]
-    kept = [path for path in found if not any(path == own or path.startswith(f"{own}.") for own in SET_HERE)]
+    kept = [path for path in found if not is_set_by_trials(path)]
     return {path: list(found[path]) for path in kept if not all(_is_off(path, cfg) for cfg in run)}
 
 
