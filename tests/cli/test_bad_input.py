@@ -95,7 +95,7 @@ def nothing_is_built(tmp_path, monkeypatch):
         (["record", *TASK, "--agent", "exprt"], "--agent is 'exprt'. Did you mean 'expert'"),
         (
             ["evaluate", "--agent", "zero", "--out", "results", "env.scene.colon.usd_path=ct_1"],
-            "usd_path=ct_1 would change nothing, as trials set env.scene.colon.usd_path themselves: give trials on these",
+            "usd_path=ct_1 would change nothing, as trials set env.scene.colon.usd_path themselves: give trials",
         ),
         (
             ["evaluate", "--agent", "zero", "--out", "results", "+env.recorders.episodes={}"],
