@@ -60,6 +60,7 @@ def nothing_is_built(tmp_path, monkeypatch):
             "env.actions.capsule.back_off_velocity is 0.045 m/s, but capsule.usda has no tether",
         ),
         ([*TRAIN, "env.lumen=metrik"], "'metrik'"),
+        ([*TRAIN, "env.direction=withdrawal"], "env.direction is 'withdrawal' with terminations.stuck, which counts"),
         ([*TRAIN, "env.segment=cecu"], "env.segment is 'cecu'. Did you mean 'cecum'"),
         ([*TRAIN, "env.scene.colon.material=in_sit"], "'in_sit'"),
         ([*TRAIN, "env.scene.colon.usd_path=colon_9/colon.usda"], "colon_9/colon.usda"),

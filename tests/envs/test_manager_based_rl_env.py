@@ -40,7 +40,7 @@ def test_world_that_ends_is_reset_and_the_other_goes_on(env) -> None:
     assert terminated.tolist() == [False, True] and not truncated.any()
     assert obs["critic"].tolist() == [[2.0, 1.0], [0.0, 0.0]]
     assert reward.tolist() == pytest.approx([0.4, 1.6])
-    assert env.episode_length_buf.tolist() == [1, 0]
+    assert env.episode_length_buf.tolist() == [1, 0] and env.num_done == 1
     assert extras["log"]["Episode_Termination/above"].item() == 1.0
     # Episode sum 1.6 over the longest episode of 0.5 s.
     assert extras["log"]["Episode_Reward/position"].item() == pytest.approx(3.2)

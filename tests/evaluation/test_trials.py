@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from arcgym.evaluation.suites import FOLDER
+from arcgym.evaluation.suites import FOLDER, read_suites
 from arcgym.evaluation.trial_queue import TrialQueue
 from arcgym.evaluation.trials import Trial, read_conditions, write_conditions
 from arcgym.utils.errors import UsageError
@@ -72,6 +72,18 @@ def test_a_missing_file_names_its_neighbors(tmp_path: Path) -> None:
     write_conditions(tmp_path / "two_v1.csv", TRIALS, "")
     with pytest.raises(UsageError, match="two_v1"):
         read_conditions(tmp_path / "two_v2.csv")
+
+
+@pytest.mark.parametrize(
+    ("suite", "count", "shares"),
+    [("paper", 3, [10, 10, 10]), ("paper", 2, [15, 15]), ("population", 3, [67, 67, 66]), ("population", 1, [200])],
+)
+def test_checkpoints_get_as_many_trials_each(suite: str, count: int, shares: list[int]) -> None:
+    conditions = read_conditions(read_suites()[suite].conditions_path)
+    numbers = [conditions.checkpoint_of(trial, count) for trial in conditions.trials]
+    assert [numbers.count(number) for number in range(count)] == shares
+    if count == conditions.groups:
+        assert numbers == [trial.group for trial in conditions.trials]
 
 
 def test_worlds_take_the_next_trial_until_none_is_left() -> None:

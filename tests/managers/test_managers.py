@@ -165,6 +165,18 @@ def test_metrics_reduce_over_the_episode(env, reduce, expected) -> None:
     assert manager.reset(torch.tensor([0]))["Episode_Metrics/a"].item() == expected
 
 
+@pytest.mark.parametrize(("reduce", "expected"), [("mean", 3.0), ("last", 2.0), ("max", 4.0), ("sum", 6.0)])
+def test_the_step_in_which_a_state_breaks_is_left_out(env, reduce: str, expected: float) -> None:
+    """Steps of 4 and 2, then one whose state is not finite: neither a further zero nor the last value."""
+    manager = MetricsManager({"a": MetricsTermCfg(func=value, reduce=reduce)}, env)
+    for first, broken in ((4.0, False), (2.0, False), (torch.nan, True)):
+        env.value = torch.tensor([first, 1.0])
+        env.sim.non_finite = torch.tensor([broken, False])
+        manager.compute()
+    assert manager.reset(torch.tensor([0]))["Episode_Metrics/a"].item() == expected
+    assert manager.get_value("a")[1].item() == (3.0 if reduce == "sum" else 1.0)
+
+
 def test_metrics_of_all_reductions_side_by_side(env) -> None:
     reductions = ("mean", "max", "sum", "last", "mean")
     cfg = {f"{reduce}_{k}": MetricsTermCfg(func=value, reduce=reduce) for k, reduce in enumerate(reductions)}

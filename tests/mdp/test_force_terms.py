@@ -11,6 +11,7 @@ import pytest
 import torch
 
 from arcgym.envs import mdp
+from arcgym.envs.mdp import load_metrics
 from arcgym.managers import MetricsTermCfg, RewardTermCfg
 
 
@@ -116,6 +117,17 @@ def test_a_steady_load_is_its_own_percentile(env, force: float) -> None:
     assert values == pytest.approx([force] * 3)
 
 
+@pytest.mark.parametrize(("kind", "largest"), [("tip_force", 20.0), ("wall_strain", 0.02), ("lumen_pressure", 8000.0)])
+def test_percentiles_of_every_load_are_within_five_percent(env, monkeypatch, kind: str, largest: float) -> None:
+    """Of 100 steps that rise evenly to the largest the 95th percentile is 0.95 of it."""
+    monkeypatch.setattr(load_metrics, "load", lambda env, kind: env.now)
+    term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
+    for step in range(1, 101):
+        env.now = torch.full((2,), largest * step / 100)
+        value = term(env, kind)
+    assert value.tolist() == pytest.approx([0.95 * largest] * 2, rel=0.05)
+
+
 def test_percentile_forgets_at_reset(env) -> None:
     term = mdp.load_percentile(MetricsTermCfg(func=mdp.load_percentile), env)
     env.scope.tip_force_w[:, 2] = 10.0
@@ -135,6 +147,12 @@ def test_a_task_changes_the_tiers_of_all_its_terms(loaded) -> None:
 def test_unknown_tier_lists_the_known(env) -> None:
     with pytest.raises(ValueError, match="no force tier 'unsave'.*'unsafe'.*comfort, perforation, unsafe"):
         mdp.force_limit(env, "unsave")
+
+
+@pytest.mark.parametrize("term", [mdp.load_above, mdp.load_excess, mdp.load_time_above])
+def test_tiers_are_of_forces_alone(loaded, term) -> None:
+    with pytest.raises(ValueError, match="limit is 'comfort' for wall_strain, expected a number"):
+        term(loaded, "wall_strain", limit="comfort")
 
 
 def test_tiers_must_rise() -> None:

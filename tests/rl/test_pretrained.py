@@ -54,9 +54,12 @@ def test_a_robot_without_a_policy_is_told_which_have_one(shipped: Path) -> None:
         pretrained_checkpoint("ARC-Sigmoid-Mine-Play-v1", "sac")
 
 
+WAY_BACK = ("env.direction=withdrawal", "env.terminations.stuck=null")
+
+
 @pytest.mark.parametrize(
     "task, overrides",
-    [("ARC-Withdrawal-Magnetic-Play", ()), ("ARC-Sigmoid-Magnetic-Play", ("env.direction=withdrawal",))],
+    [("ARC-Withdrawal-Magnetic-Play", ()), ("ARC-Sigmoid-Magnetic-Play", WAY_BACK)],
 )
 @pytest.mark.parametrize("asked", [True, False])
 def test_a_way_back_does_not_get_the_policy_of_the_way_in(shipped: Path, task: str, overrides, asked: bool) -> None:

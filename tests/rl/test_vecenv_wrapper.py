@@ -42,6 +42,20 @@ def test_truncation_is_a_time_out_and_a_done(counting_env):
     assert extras["time_outs"].tolist() == [True, False]
 
 
+def test_means_over_worlds_that_end_count_as_often_as_these(counting_env, monkeypatch) -> None:
+    """One success alone, then three failures together: rsl_rl's mean over the steps is 1 of 4, not a half."""
+    env, seen = RslRlVecEnvWrapper(counting_env), []
+    for success, ended in ((1.0, 1), (0.0, 3)):
+        log = {"Episode_Metrics/success": torch.tensor(success), "Episode_Termination/success": torch.tensor(success)}
+        step = counting_env._obs(), torch.zeros(2), *[torch.zeros(2, dtype=torch.bool)] * 2, {"log": log}
+        monkeypatch.setattr(counting_env, "step", lambda actions, step=step: step)
+        counting_env.num_done = ended
+        log = env.step(torch.zeros(2, 2))[3]["log"]
+        seen.append(log["Episode_Metrics/success"])
+        assert log["Episode_Termination/success"].shape == ()
+    assert torch.cat(seen).mean().item() == 0.25
+
+
 def test_finite_horizon_has_no_time_outs(counting_env):
     counting_env.cfg.is_finite_horizon = True
     extras = RslRlVecEnvWrapper(counting_env).step(torch.zeros(2, 2))[3]

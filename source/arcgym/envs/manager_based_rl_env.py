@@ -37,6 +37,9 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "autoreset_mode": AutoresetMode.SAME_STEP}
 
+    num_done: int = 0
+    """Worlds whose episode the last step ended, and which it reset."""
+
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         """Build scene and managers; arguments as of :class:`ManagerBasedEnv`."""
         super().__init__(*args, **kwargs)
@@ -160,6 +163,7 @@ class ManagerBasedRLEnv(ManagerBasedEnv):
     def _reset_done(self) -> None:
         """Start a new episode in every world that is done, after a last look at the old one where it is asked for."""
         host_ids = self._done_on_host.wait().nonzero().flatten()
+        self.num_done = len(host_ids)
         if len(host_ids) > 0:
             if self.cfg.compute_final_obs:
                 self.extras |= self._final()

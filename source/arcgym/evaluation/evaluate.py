@@ -67,7 +67,11 @@ def _run_task(
     trials = options.share.trials(conditions.trials)
     left = [trial for trial in trials if trial.trial not in done]
     print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
-    for agent, batch in _batches(left, options.agents_for(task), options.most(options.num_patients, PATIENTS)):
+    agents = options.agents_for(task)
+    of_agent = {trial.trial: agents[conditions.checkpoint_of(trial, len(agents))] for trial in trials}
+    if len(unused := set(agents) - set(of_agent.values())) > 0:
+        print(f"note: this share has no trial of {', '.join(sorted(unused))}: its figures are of the others alone")
+    for agent, batch in _batches(left, of_agent, options.most(options.num_patients, PATIENTS)):
         _run_batch(task, agent, batch, load_cfgs, options, folder)
 
 
@@ -80,9 +84,11 @@ def _check_all(tasks: Sequence[str], load_cfgs: LoadCfgs, options: EvaluationOpt
             check_values(*cfgs)
 
 
-def _batches(trials: Sequence[Trial], agents: Sequence[str], most: int) -> list[tuple[str, list[Trial]]]:
+def _batches(trials: Sequence[Trial], of_agent: dict[int, str], most: int) -> list[tuple[str, list[Trial]]]:
     """Return the trials that can share an environment: of one agent, and of so many patients at most."""
-    chosen = {agent: [trial for trial in trials if agent_of(trial, agents) == agent] for agent in agents}
+    chosen: dict[str, list[Trial]] = {}
+    for trial in trials:
+        chosen.setdefault(of_agent[trial.trial], []).append(trial)
     batches = []
     for agent, members in chosen.items():
         of_patient: dict[str, list[Trial]] = {}
@@ -153,11 +159,6 @@ def opened(
 def patients_of(trials: Sequence[Trial]) -> list[str]:
     """Return the patients of trials, each once, in order."""
     return list(dict.fromkeys(trial.patient for trial in trials))
-
-
-def agent_of(trial: Trial, agents: Sequence[str]) -> str:
-    """Return the agent that runs a trial: that of its group."""
-    return agents[trial.group % len(agents)]
 
 
 def checkpoint_of(agent: str) -> Path | None:

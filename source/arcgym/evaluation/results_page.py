@@ -33,7 +33,7 @@ METRICS = {
     "s_c": ("centered view s_c", 2),
     "coverage": ("mucosa seen", 2),
     "polyps_seen": ("polyps seen", 2),
-    "tip_time_above_unsafe": ("tip above unsafe [s]", 2),
+    "tip_time_above_unsafe": ("tip above unsafe, mean [s]", 2),
     "shaft_time_above_unsafe": ("shaft above unsafe [s]", 2),
     "p95_tip_force": ("p95 tip force [N]", 2),
     "p95_shaft_force": ("p95 shaft force [N]", 2),
@@ -71,14 +71,14 @@ EARLIER_PATIENCE = (
 INTRODUCTION = """# Results
 
 Made by `{command}`
-and nothing else. A cell has the share
-of successful trials [%] with Wilson's interval (95 %), and behind it the number of trials where they are not all of the
-suite's; other figures are interquartile means with bootstrap intervals. `–` was not run: the command that would make it
-is below its table. *n* seeds are training runs, each with its share of the trials; of one seed the interval is that of
-this policy and not of the method. † marks rules on actions that read the simulator's depth, which the policy does not
-see. ‡ marks trials of an earlier physics step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what
-an agent commands, `_roll8_2s` one of 8 rad/s in 2 s where others take 4; `_back45` goes back at 45 mm/s for a while
-where a tether no longer comes on; `_slow6.5` commands at most 6.5 mm/s. What was run where is in the
+and nothing else. A cell has the share of successful trials [%] with Wilson's interval (95 %), and behind it the
+number of trials where they are not all of the suite's; other figures are interquartile means with bootstrap
+intervals, but where a column says mean. `–` was not run: the command that would make it is below its table. *n* seeds
+are training runs, each with its share of the trials; of one seed the interval is that of this policy and not of the
+method. † marks rules on actions that read the simulator's depth, which the policy does not see. ‡ marks trials of an
+earlier physics step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what an agent commands,
+`_roll8_2s` one of 8 rad/s in 2 s where others take 4; `_back45` goes back at 45 mm/s for a while where a tether no
+longer comes on; `_slow6.5` commands at most 6.5 mm/s. What was run where is in the
 [last table](#what-was-run).
 """
 

@@ -53,6 +53,13 @@ class Conditions:
         """Number of training seeds that the trials are for."""
         return len({trial.group for trial in self.trials})
 
+    def checkpoint_of(self, trial: Trial, count: int) -> int:
+        """Return which of several checkpoints runs a trial: that of its group, where each group has one.
+
+        Of fewer checkpoints than groups each gets every ``count``-th trial of the file, so that all have as many.
+        """
+        return (trial.group if count == self.groups else self.trials.index(trial)) % count
+
 
 def read_conditions(path: Path) -> Conditions:
     """Return the trials of a condition file.

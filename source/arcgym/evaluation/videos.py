@@ -6,13 +6,12 @@ from __future__ import annotations
 
 import itertools
 from pathlib import Path
-from typing import Any
 
-from arcgym.evaluation.evaluate import agent_of, checkpoint_of, opened
+from arcgym.evaluation.evaluate import checkpoint_of, opened
 from arcgym.evaluation.options import EvaluationOptions, LoadCfgs
 from arcgym.evaluation.result_folder import ResultFolder, Row
 from arcgym.evaluation.run_trials import run_trials
-from arcgym.evaluation.trials import Conditions
+from arcgym.evaluation.trials import Conditions, Trial
 from arcgym.evaluation.video_choice import chosen_rows, video_path
 from arcgym.utils.progress import counted
 from arcgym.viewers import VideoRecorder
@@ -38,14 +37,15 @@ def film(conditions: Conditions, load_cfgs: LoadCfgs, options: EvaluationOptions
         for label, row in chosen_rows([row for row in folder.rows if row["task"] == task]).items():
             path = video_path(folder.path, row, label)
             if row["trial"] in trials and not path.is_file():
-                _film(row, trials[row["trial"]], path, load_cfgs, options)
+                agents = options.agents_for(task)
+                agent = agents[conditions.checkpoint_of(trials[row["trial"]], len(agents))]
+                _film(row, trials[row["trial"]], agent, path, load_cfgs, options)
                 made.append(path)
     return made
 
 
-def _film(row: Row, trial: Any, path: Path, load_cfgs: LoadCfgs, options: EvaluationOptions) -> None:
+def _film(row: Row, trial: Trial, agent: str, path: Path, load_cfgs: LoadCfgs, options: EvaluationOptions) -> None:
     print(f"filming trial {trial.trial} of {row['task']}", flush=True)
-    agent = agent_of(trial, options.agents_for(row["task"]))
     partial = path.with_name(f"partial_{path.name}")
     again: list[Row] = []
     cfgs = load_cfgs(row["task"], checkpoint_of(agent))

@@ -51,7 +51,10 @@ class MetricsManager(ManagerBase):
         return {name: self._finished[self._order.index(name)] for name in self._terms}
 
     def compute(self) -> None:
-        """Take the values of this control step in; one that is not finite counts as zero, and is counted."""
+        """Take the values of this control step in; one that is not finite counts as zero, and is counted.
+
+        The step in which the state of a world is no longer finite is left out: figures are those of the steps before.
+        """
         if not self._terms:
             return
         self._sort_rows()
@@ -60,11 +63,14 @@ class MetricsManager(ManagerBase):
         by_name = {name: self._evaluate(name) for name in self._terms}
         values = self._finite_rows([by_name[name] for name in self._order])
         self._step_values = dict(zip(self._order, values, strict=True))
+        past = self._values.clone()
         last, largest, added = self._rows_of("last"), self._rows_of("max"), self._rows_of("sum", "mean")
+        means = self._rows_of("mean")
         self._values[last] = values[last]
-        past = self._values[largest]
-        self._values[largest] = torch.where(is_first, values[largest], torch.maximum(past, values[largest]))
+        self._values[largest] = torch.where(is_first, values[largest], torch.maximum(past[largest], values[largest]))
         self._values[added] += values[added]
+        past[means] += past[means] / (self._num_steps - 1).clamp(min=1)
+        self._values.copy_(torch.where(self._env.sim.non_finite, past, self._values))
 
     @property
     def _value_names(self) -> list[str]:

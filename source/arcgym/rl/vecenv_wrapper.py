@@ -13,6 +13,9 @@ from gymnasium.vector import AutoresetMode
 from rsl_rl.env import VecEnv
 from tensordict import TensorDict
 
+MEANS = ("Episode_Metrics/", "Episode_Reward/", "Episode_Cost/")
+"""Beginnings of the names in the log whose values are means over the worlds that end in a step."""
+
 
 class RslRlVecEnvWrapper(VecEnv):
     """Shows a manager-based environment to rsl_rl.
@@ -76,16 +79,23 @@ class RslRlVecEnvWrapper(VecEnv):
         Returns:
             Observations, rewards (N,), dones (N,) int64, and extras. ``extras["time_outs"]``, which makes rsl_rl add
             the value of the state after a truncation, is false in a world that also terminated, and is left out when
-            the task's horizon is finite.
+            the task's horizon is finite. Means over the worlds that end are in ``extras["log"]`` once for each of
+            them, as rsl_rl takes the mean of a rollout's values: so it is that of its episodes.
         """
         if self.clip_actions is not None:
             actions = actions.clamp(-self.clip_actions, self.clip_actions)
         obs, rewards, terminated, truncated, extras = self.env.step(actions)
         self._obs = self.pack(obs)
         extras = {key: value for key, value in extras.items() if key != "time_outs"}
+        extras["log"] = {name: self._once_an_episode(name, value) for name, value in extras["log"].items()}
         if not self.unwrapped.cfg.is_finite_horizon:
             extras["time_outs"] = truncated & ~terminated
         return self._obs, rewards.clone(), (terminated | truncated).long(), extras
+
+    def _once_an_episode(self, name: str, value: Any) -> Any:
+        """Return a mean over the worlds that ended, shape (), as often as there were such; other values as they are."""
+        is_mean = name.startswith(MEANS) and isinstance(value, torch.Tensor) and value.dim() == 0
+        return value.expand(self.unwrapped.num_done) if is_mean else value
 
     def seed(self, seed: int) -> int:
         """Seed the environment."""

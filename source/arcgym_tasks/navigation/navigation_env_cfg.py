@@ -125,7 +125,8 @@ class EventsCfg:
 class CostsCfg:
     """What a constrained policy keeps low; plain PPO ignores it.
 
-    Each is 1 while something is wrong and 0 else, so that a cost of an episode is in seconds.
+    Each is 1 while something is wrong and 0 else, so that a cost of an episode is in seconds (with
+    ``scale_rewards_by_dt``, else in control steps).
     """
 
     tip_force = CostTerm(func=mdp.load_above, params={"kind": "tip_force", "limit": "unsafe"})
@@ -229,7 +230,8 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
     with the whole way to the segment's end to go. States that are missing are made when they are first needed."""
 
     direction: Literal["insertion", "withdrawal"] = "insertion"
-    """``insertion``: to the end of the segment. ``withdrawal``: from the start of the segment back to the rectum."""
+    """``insertion``: to the end of the segment. ``withdrawal``: from the start of the segment back to the rectum; its
+    rewards, terminations and metrics are those of ``ARC-Withdrawal-*``, which a task of your own has to take over."""
 
     episode_length_s: float | None = None  # type: ignore[assignment]
     """Longest episode [s]; None takes the time limit of segment and start, see
@@ -319,6 +321,13 @@ class NavigationEnvCfg(ManagerBasedRLEnvCfg):
         if self.direction == "withdrawal" and self.start == "rest":
             raise FieldError(
                 self, "start", "is 'rest', at the anus: a withdrawal starts at a segment, env.start=segment."
+            )
+        if self.direction == "withdrawal" and self.terminations.stuck is not None:
+            raise FieldError(
+                self,
+                "direction",
+                "is 'withdrawal' with terminations.stuck, which counts the way to the cecum: take ARC-Withdrawal-*, or "
+                "set env.terminations.stuck=null and rewards and metrics of your own.",
             )
         check_back_off(self)
         super().validate_config()

@@ -46,15 +46,16 @@ def load_time_above(env: ManagerBasedRLEnv, kind: str, limit: float | str) -> to
         kind: One of :data:`arcgym.envs.mdp.LOADS`.
         limit: Limit [N, or strain], or the name of a tier of force.
     """
-    return (load(env, kind) > force_limit(env, limit)) * env.step_dt
+    return (load(env, kind) > force_limit(env, limit, kind)) * env.step_dt
 
 
 @expects(kind=LOADS, percentile=Range(0.0, 100.0))
 class load_percentile(ManagerTermBase):
     """Percentile of a load over the episode so far [N, or strain], shape (N,) (reduce: last).
 
-    From a histogram of the control steps, its bins evenly spaced in the logarithm between 0.01 and 100: the result is
-    the mean of the steps in the percentile's bin, which is 5 % wide, and so never above the largest.
+    From a histogram of the control steps, its bins evenly spaced in the logarithm between a hundredth of the load's
+    scale and a hundred times that: the result is the mean of the steps in the percentile's bin, which is 5 % wide, and
+    so never above the largest. All values beyond the ends share a bin.
     """
 
     BINS = 192
@@ -80,7 +81,7 @@ class load_percentile(ManagerTermBase):
             percentile: Share of the steps that bear less [%].
         """
         value = load(env, kind)
-        place = torch.searchsorted(self._edges, value.contiguous()).clamp(max=self.BINS - 1)
+        place = torch.searchsorted(self._edges, value / LOADS[kind].scale).clamp(max=self.BINS - 1)
         self._counts.scatter_add_(1, place[:, None], torch.ones_like(value)[:, None])
         self._sums.scatter_add_(1, place[:, None], value[:, None])
         share = self._counts.cumsum(dim=1) / self._counts.sum(dim=1, keepdim=True)

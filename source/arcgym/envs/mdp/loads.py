@@ -54,13 +54,17 @@ class Load:
     unit: str
     """Unit of the load; empty for a ratio."""
 
+    scale: float = 1.0
+    """A usual value: percentiles tell values from a hundredth of it to a hundred times apart. Set it for a load that is
+    mostly larger or smaller."""
+
 
 LOADS = {
     "tip_force": Load("endoscope", "tip_force", "tip_force_peak", "N"),
     "shaft_force": Load("endoscope", "window_force_norm", "window_force_peak", "N"),
-    "wall_strain": Load("colon", "wall_strain", "wall_strain_peak", ""),
+    "wall_strain": Load("colon", "wall_strain", "wall_strain_peak", "", 0.1),
     "anchor_tension": Load("colon", "anchor_tension", "anchor_tension_peak", "N"),
-    "lumen_pressure": Load("colon", "lumen_pressure_mean", "lumen_pressure_peak", "Pa"),
+    "lumen_pressure": Load("colon", "lumen_pressure_mean", "lumen_pressure_peak", "Pa", 1000.0),
 }
 """Loads by kind: force between tip and wall, between each window of the scope and wall (the tip's windows included),
 largest principal strain of each ring of the wall, pull of each ring on its anchors (the mesentery), pressure of the gas
@@ -77,7 +81,7 @@ TIERS = tuple(vars(FORCE_TIERS))
 def load_parts(env: ManagerBasedEnv, kind: str, reduce: str = "mean") -> torch.Tensor:
     """Load on each part, a window of the scope or a ring of the wall [N, or strain], shape (N, P).
 
-    The windows of a scope are as many as its length has, 60 for the shipped colonoscopes and 1 for the capsule.
+    The windows of a scope are as many as its length has, 67 for the shipped colonoscopes and 1 for the capsule.
 
     Args:
         kind: One of :data:`LOADS`. ``tip_force`` has one part.
@@ -115,7 +119,7 @@ def load_above(env: ManagerBasedEnv, kind: str, limit: float | str, reduce: str 
         limit: Limit [N, or strain], or the name of a tier of force.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
     """
-    return load(env, kind, reduce) > force_limit(env, limit)
+    return load(env, kind, reduce) > force_limit(env, limit, kind)
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS, limit=TIERS)
@@ -127,7 +131,7 @@ def load_excess(env: ManagerBasedEnv, kind: str, limit: float | str, reduce: str
         limit: Limit [N, or strain], or the name of a tier of force.
         reduce: ``mean`` over the control step, or ``peak`` of its physics steps.
     """
-    return (load(env, kind, reduce) - force_limit(env, limit)).clamp(min=0.0)
+    return (load(env, kind, reduce) - force_limit(env, limit, kind)).clamp(min=0.0)
 
 
 @expects(kind=LOADS, reduce=REDUCTIONS)
@@ -141,10 +145,17 @@ def load_l2(env: ManagerBasedEnv, kind: str, reduce: str = "mean") -> torch.Tens
     return load(env, kind, reduce).square()
 
 
-def force_limit(env: ManagerBasedEnv, limit: float | str) -> float:
+def force_limit(env: ManagerBasedEnv, limit: float | str, kind: str = "tip_force") -> float:
     """Return a limit, given as a number or as the name of a tier of the task [N].
 
+    Args:
+        env: Environment.
+        limit: A number, or the name of a tier of force.
+        kind: One of :data:`LOADS`, of which it is the limit.
+
     Raises:
-        ValueError: If there is no such tier, with those there are.
+        ValueError: If there is no such tier, with those there are, or the load is no force.
     """
+    if isinstance(limit, str) and LOADS[kind].unit != "N":
+        raise ValueError(f"limit is '{limit}' for {kind}, expected a number: tiers are of forces.")
     return tier_limit(tiers_of(env.cfg), limit)
