@@ -69,6 +69,16 @@ def test_those_of_recorded_episodes_are_its_patients_too(tmp_path: Path) -> None
     assert trained_on(lost / "model_0.pt") == ["colon_1/colon.usda", f"unknown: {tmp_path / 'gone'}"]
 
 
+def test_those_of_the_run_that_it_went_on_from_are_its_patients_too(tmp_path: Path) -> None:
+    first, second = tmp_path / "first", tmp_path / "second"
+    for folder, colon in ((first, "ct_1/colon.usda"), (second, "colon_1/colon.usda")):
+        folder.mkdir()
+        (folder / "model_0.pt").touch()
+        run = {"task": "ARC-Rectum-Capsule"} | ({"resumed_from": str(first / "model_0.pt")} if folder == second else {})
+        write_params(folder, run=run, env={"scene": {"colon": {"usd_path": colon}}}, agent={})
+    assert trained_on(second / "model_0.pt") == ["colon_1/colon.usda", "ct_1/colon.usda"]
+
+
 def test_an_expert_is_asked_in_the_patients_of_the_run(tmp_path: Path) -> None:
     agent = {"algorithm": {"demonstrations": "expert"}}
     write_params(tmp_path, run={"task": "ARC-Rectum-Capsule"}, env=ON_COLON_1, agent=agent)

@@ -20,7 +20,7 @@ from typing import Any
 
 from arcgym.cli.arguments import RunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.stopping import stopped_cleanly
-from arcgym.cli.task import agent_names, load_cfgs, load_run_cfgs
+from arcgym.cli.task import agent_names, load_cfgs, load_run_cfgs, refuse_run
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
 from arcgym.utils.untrained import UNTRAINED
@@ -60,6 +60,8 @@ def run(namespace: argparse.Namespace) -> int:
     if len(known) > len(UNTRAINED) + 1 and args.agent not in known and not args.agent.endswith("cfg_entry_point"):
         raise UsageError(f"--agent is '{args.agent}'. {did_you_mean(args.agent, known)}")
     key = "rsl_rl_cfg_entry_point" if scripted or args.agent == "policy" else args.agent
+    if scripted:
+        refuse_run(args, f"with --agent {args.agent}, which has none: --agent policy is the run's own")
     asked = replace(args, agent=key)
     env_cfg, agent_cfg, checkpoint = (*load_cfgs(asked), None) if scripted else load_run_cfgs(asked)
     if args.num_envs is None:

@@ -194,6 +194,18 @@ def with_trained_agent(args: A) -> A:
     return replace(args, agent=saved.agent_key) if saved is not None and saved.agent_key else args
 
 
+def refuse_run(args: RunArguments, why: str) -> None:
+    """Raise if arguments choose a run or its checkpoint where none is read.
+
+    Args:
+        args: Arguments.
+        why: What follows ``--checkpoint is given``.
+    """
+    for name in ("checkpoint", "load_run", "no_params"):
+        if getattr(args, name):
+            raise UsageError(f"--{name} is given {why}.")
+
+
 def _registered(task: str, agent: str) -> tuple[Any, Any]:
     """Return the environment's and the agent's configuration as they are registered."""
     from arcgym.utils.registry import cfg_keys, load_cfg_from_registry

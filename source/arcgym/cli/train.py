@@ -14,10 +14,12 @@ from __future__ import annotations
 import argparse
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from arcgym.cli.arguments import FilmedRunArguments, add_fields, argument, positive, read_fields
 from arcgym.cli.stopping import stopped_cleanly
-from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs, with_trained_agent
+from arcgym.cli.task import agent_key, load_cfgs, load_run_cfgs, refuse_run, with_trained_agent
+from arcgym.utils.errors import UsageError
 
 TAKES_OVERRIDES = True
 
@@ -51,6 +53,9 @@ def run(namespace: argparse.Namespace) -> int:
     if agent_cfg.resume:
         args = with_trained_agent(args)
         env_cfg, agent_cfg, checkpoint = load_run_cfgs(args)
+        _refuse_another_start(agent_cfg, checkpoint)
+    else:
+        refuse_run(args, "without --resume: it goes on from a run; agent.init_policy=PATH takes a policy alone")
 
     from arcgym.rl.training import TrainOptions, train
 
@@ -68,3 +73,20 @@ def run(namespace: argparse.Namespace) -> int:
     )
     with stopped_cleanly("before the first update; nothing is left"):
         return train(args.task, env_cfg, agent_cfg, options)
+
+
+def _refuse_another_start(agent_cfg: Any, checkpoint: Path) -> None:
+    """Raise if a resumed run is to have begun with another policy or teacher, which it would not load any more."""
+    from arcgym.evaluation.trained_on import BEGUN_FROM
+    from arcgym.rl.params import read_params
+
+    saved = read_params(checkpoint.parent)
+    if saved is None:
+        return
+    for name in BEGUN_FROM:
+        then, now = saved.agent.get(name) or None, getattr(agent_cfg, name, None) or None
+        if then != now:
+            raise UsageError(
+                f"agent.{name} is {now} with --resume, and the run began with {then}: a run that goes on loads neither "
+                "again. Leave it out, or start a new run."
+            )

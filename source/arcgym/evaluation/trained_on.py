@@ -24,8 +24,8 @@ def trained_on(checkpoint: Path) -> Any:
     """Return the patients that a checkpoint was trained on; None where nothing beside it says so.
 
     The parameters of its run name them, or else the command that started it; those of a shipped policy do not, but its
-    description does. A policy or teacher that the run began with brings its own, as recorded episodes do that it
-    learnt from; what is no longer there is ``unknown: PATH``.
+    description does. A policy or teacher that the run began with brings its own, as do the run that it resumed and
+    recorded episodes that it learnt from; what is no longer there is ``unknown: PATH``.
     """
     about = checkpoint.with_name(ABOUT)
     if about.is_file():
@@ -39,8 +39,9 @@ def trained_on(checkpoint: Path) -> Any:
 
 
 def _of_checkpoints(saved: RunParams) -> list[Any]:
-    """Return the patients of each checkpoint that a run began from."""
+    """Return the patients of each checkpoint that a run began or went on from."""
     paths = [Path(saved.agent[name]) for name in BEGUN_FROM if saved.agent.get(name)]
+    paths += [saved.resumed_from] if saved.resumed_from else []
     return [(trained_on(path) if path.is_file() else None) or f"{UNKNOWN} {path}" for path in paths]
 
 

@@ -58,6 +58,9 @@ class RunParams:
     command: tuple[str, ...] = ()
     """Words of the command that started it, as far as the run says so."""
 
+    resumed_from: Path | None = None
+    """Checkpoint that the run went on from; None for a run from the beginning."""
+
 
 def read_params(run: Path) -> RunParams | None:
     """Return the parameters of a run, or None where its folder has none.
@@ -80,7 +83,16 @@ def read_params(run: Path) -> RunParams | None:
     about = contents["run"]
     command = about.get("command")
     words = tuple(map(str, command)) if isinstance(command, list) else ()
-    return RunParams(folder, str(about.get("task", "")), about.get("agent"), contents["env"], contents["agent"], words)
+    before = about.get("resumed_from")
+    return RunParams(
+        folder,
+        str(about.get("task", "")),
+        about.get("agent"),
+        contents["env"],
+        contents["agent"],
+        words,
+        Path(str(before)) if before else None,
+    )
 
 
 def restore(cfg: Any, saved: Plain, kind: str, keep: Sequence[str] = (), recorded: bool = False) -> None:

@@ -59,6 +59,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
                 "and its relatives alone can leave their policy as it is."
             )
         self.completed_iterations = 0
+        self.resumed_at = 0
         self.clock = RunClock(train_cfg.get("max_minutes"), train_cfg.get("max_transitions"))
         self.best_reward = float("-inf")
         self.last_checkpoint: Path | None = None
@@ -84,6 +85,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             TrainingInterrupted: A signal came; a checkpoint has been saved.
             TrainingDiverged: A loss or a weight is not finite; the checkpoints are from before.
         """
+        if self.clock.is_over:
+            print(f"nothing is learnt: the run has had {self.clock}, all that agent.{self.clock.limit} gives it")
         if self.cfg.get("init_policy") and self.completed_iterations == 0:
             self._start_from(self.cfg["init_policy"])
         update, log, init_writer = self.alg.update, self.logger.log, self.logger.init_logging_writer
@@ -138,9 +141,11 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             self.alg.load(contents, load_cfg, strict)
         except (KeyError, RuntimeError, ValueError) as error:
             raise UsageError(f"{path} {_misfit(error, self.env)}") from error
+        if load_cfg is None and self.cfg["algorithm"].get("schedule") != "adaptive":
+            set_learning_rate(self.alg, self.cfg["algorithm"]["learning_rate"])  # the checkpoint's may be another one
         infos = contents["infos"] or {}
         self.completed_iterations = int(infos.get("completed_iterations", 0))
-        self.current_learning_iteration = self.completed_iterations
+        self.current_learning_iteration = self.resumed_at = self.completed_iterations
         self.best_reward = infos.get("best_reward", self.best_reward)
         self.clock.restore(infos)
         self.env.unwrapped.common_step_counter = infos.get("common_step_counter", 0)  # type: ignore[attr-defined]
@@ -160,7 +165,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         except (KeyError, RuntimeError, ValueError) as error:
             reason = " ".join(str(error).split())  # torch's has a line for each kind of mismatch
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {reason}") from error
-        print(f"policy: starts from {path}")
+        print(f"policy: starts from {path}, with its deviation")
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():
@@ -180,7 +185,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         end = self.cfg.get("final_learning_rate")
         if end is not None:
             start = self.cfg["algorithm"]["learning_rate"]
-            done = self.completed_iterations / max(self.cfg["max_iterations"] - 1, 1)
+            updates = self.resumed_at + self.cfg["max_iterations"]
+            done = self.completed_iterations / max(updates - 1, 1)
             set_learning_rate(self.alg, linear_rate(start, end, max(done, self.clock.fraction)))
 
     def _hold_policy(self) -> None:

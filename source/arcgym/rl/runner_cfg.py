@@ -104,8 +104,8 @@ class GaussianDistributionCfg:
     """Distribution class, resolved by rsl_rl."""
 
     init_std: float = 1.0
-    """Initial standard deviation in units of the raw action, which the action terms scale from [-1, 1]. Lower it to go
-    on from a policy."""
+    """Initial standard deviation in units of the raw action, which the action terms scale from [-1, 1]. Lower it where
+    a policy jitters at first. One from ``init_policy`` brings its own, which ``std_range`` bounds."""
 
     std_type: str = "scalar"
     """``scalar`` learns the standard deviation, ``log`` its logarithm, which cannot become negative."""

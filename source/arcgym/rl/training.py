@@ -91,6 +91,7 @@ def _start_folder(task: str, env_cfg: Any, agent_cfg: Any, options: TrainOptions
     with removed_on_failure(folder):
         env_cfg.log_dir = str(folder)
         about = {"task": task, "agent": options.agent, "arcgym": arcgym.__version__, "command": sys.argv}
+        about |= {"resumed_from": str(options.checkpoint)} if options.checkpoint else {}
         write_params(folder, run=about, env=env_cfg, agent=agent_cfg)
     return folder
 

@@ -120,6 +120,16 @@ class RslRlDistillationAlgorithmCfg:
     loss_type: str = "mse"
     """``mse``, or ``huber`` where single actions of the teacher lie far off."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds or a name is unknown.
+        """
+        require_at_least(self, 1, "num_learning_epochs", "gradient_length")
+        require_positive(self, "learning_rate", "max_grad_norm")
+        require(self, "loss_type", ("mse", "huber"))
+
 
 @configclass
 class RslRlDistillationRunnerCfg(RslRlOnPolicyRunnerCfg):
@@ -150,3 +160,19 @@ class RslRlDistillationRunnerCfg(RslRlOnPolicyRunnerCfg):
 
     algorithm: Any = RslRlDistillationAlgorithmCfg()
     """Learning algorithm."""
+
+    def validate_config(self) -> None:
+        """Check bounds, and that every step of a rollout is learnt from.
+
+        Raises:
+            ValueError: If a value is out of its bounds, or steps would be left over.
+        """
+        super().validate_config()
+        steps = self.algorithm.num_learning_epochs * self.num_steps_per_env
+        if steps % self.algorithm.gradient_length:
+            raise FieldError(
+                self.algorithm,
+                "gradient_length",
+                f"is {self.algorithm.gradient_length}, expected a divisor of num_learning_epochs * num_steps_per_env, "
+                f"{steps}.",
+            )
