@@ -106,6 +106,10 @@ def nothing_is_built(tmp_path, monkeypatch):
             ["evaluate", "--agent", "zero", "--out", "results", "+env.recorders.episodes={}"],
             "trials set env.recorders themselves",
         ),
+        (
+            ["evaluate", "--agent", "zero", "--out", "results", "env.scene.colon={usd_path: ct_1}"],
+            "would change nothing, as trials set env.scene.colon.usd_path themselves",
+        ),
         (["replay", "."], ". is a folder, expected a file ending in .hdf5."),
         (["preview", "colon_9", "page.png"], "no such file. Existing stages in"),
         (["preview", "colons/a/colon.usda", "page.png"], "ct_2; nor is it in the working folder, "),

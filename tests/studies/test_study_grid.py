@@ -11,8 +11,9 @@ import pytest
 
 from arcgym.cli.study import SHIPPED
 from arcgym.cli.task import agent_key
+from arcgym.studies.checks import check_cells, check_names
 from arcgym.studies.grid import hydra_value
-from arcgym.studies.launch import all_cells, check_cells
+from arcgym.studies.launch import all_cells
 from arcgym.studies.study_cfg import StudyCfg, find_study, read_study
 from arcgym.utils.errors import UsageError
 from arcgym.utils.hydra import apply_overrides
@@ -249,3 +250,34 @@ def test_the_papers_table_has_three_seeds_where_the_paper_has_them():
     }
     assert by_name["sigmoid-proximal_ppo_seed1"].overrides == ("agent.max_transitions=614400",)
     assert by_name["sigmoid-proximal_ppo_seed1"].num_envs == 1024
+
+
+@pytest.mark.parametrize("path", ["agent.seed", "env.seed", "agent.max_minutes", "env.scene.num_envs"])
+def test_what_a_cell_gives_as_a_flag_is_no_override(path: str) -> None:
+    """The flag would stand: three cells of one seed would be named and tabled as three seeds."""
+    with pytest.raises(UsageError, match=f"gives {path}=2 to 'rectum-magnetic_ppo_seed1.*', which takes it from '"):
+        check_cells(all_cells(study(algorithm="ppo", grid={path: [2, 3]}), FOLDER))
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        (
+            {"tasks": {"ARC-Rectum-Magentic": {"minutes": 6}}},
+            "the task 'ARC-Rectum-Magentic'. Did you mean 'ARC-Rectum-Ma",
+        ),
+        ({"algorithms": {"ppo_lagrangain": {"minutes": 6}}}, "'ppo_lagrangain'. Did you mean 'ppo_lagrangian'"),
+        (
+            {"algorithms": {"ppo": {"robots": {"magnetic": {"env": {}}}}}},
+            "the robot 'magnetic'. Did you mean 'Magnetic'",
+        ),
+    ],
+)
+def test_settings_of_what_is_not_registered_are_refused(fields: dict, message: str) -> None:
+    with pytest.raises(UsageError, match=re.escape(message)):
+        check_names(study(**fields))
+
+
+def test_settings_of_the_shipped_studies_are_of_what_is_registered() -> None:
+    for path in SHIPPED.glob("*.yaml"):
+        check_names(read_study(path))

@@ -59,13 +59,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(namespace: argparse.Namespace) -> int:
     """Run the study and return the exit status: 0 when all cells are finished, 1 when one failed, 3 when some wait."""
-    from arcgym.studies.launch import LaunchOptions, all_cells, check_cells, launch
+    from arcgym.studies.checks import check_cells, check_names
+    from arcgym.studies.launch import LaunchOptions, all_cells, launch
     from arcgym.studies.study_cfg import find_study, read_study
 
     args = read_fields(StudyArguments, namespace)
     cfg = read_study(find_study(namespace.config, SHIPPED))
     changes = [f"++{text}" if text.startswith(("env.", "agent.")) else text for text in namespace.overrides]
     folder = Path(args.folder or Path("logs") / "studies" / cfg.name).resolve()
+    check_names(cfg)
     cells = all_cells(cfg, folder, changes)
     check_cells(cells)
     if args.dry_run:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from arcgym.utils.errors import UsageError
@@ -36,12 +37,19 @@ def refuse_what_trials_set(overrides: Sequence[str]) -> None:
         UsageError: One is of a field that an evaluation sets itself.
     """
     for text in overrides:
-        path = text.lstrip("+").partition("=")[0]
-        field = _field_above(path.removeprefix("env.")) if path.startswith("env.") else None
+        path, _, value = text.lstrip("+").partition("=")
+        field = _set_by(path.removeprefix("env."), value) if path.startswith("env.") else None
         if field is not None:
             raise UsageError(
                 f"{text} would change nothing, as trials set env.{field} themselves: {SET_BY_TRIALS[field]}."
             )
+
+
+def _set_by(path: str, value: str) -> str | None:
+    """Return the entry of :data:`SET_BY_TRIALS` that an override gives, alone or in a group such as ``{seed: 1}``."""
+    below = [field for field in SET_BY_TRIALS if field.startswith(f"{path}.")]
+    inside = (field for field in below if re.search(rf"\b{field.rpartition('.')[2]}\b['\"]?\s*:", value))
+    return _field_above(path) or next(inside, None)
 
 
 def _field_above(path: str) -> str | None:

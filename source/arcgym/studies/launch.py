@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import gymnasium
 import hydra
 import yaml
 
 from arcgym.rl.agent_checks import check_installed
 from arcgym.rl.run_folder import write_whole
 from arcgym.studies.cell import Cell
+from arcgym.studies.checks import check_cells, check_names
 from arcgym.studies.grid import NAMED, is_left_out, make_cell, sweep_overrides
 from arcgym.studies.run_cell import run_cell
 from arcgym.studies.stopping import stopping_on_signals, was_stopped
@@ -28,7 +28,6 @@ from arcgym.studies.suite_trials import seeds_of
 from arcgym.utils.coerce import from_dict, to_plain
 from arcgym.utils.configclass import validate
 from arcgym.utils.errors import UsageError
-from arcgym.utils.registry import CFG_SUFFIX, list_tasks
 from arcgym.utils.string import did_you_mean
 
 CONFIG = "study"
@@ -71,6 +70,7 @@ def launch(cfg: StudyCfg, folder: Path, options: LaunchOptions) -> list[Cell]:
     Raises:
         UsageError: A task is unknown, or a cell needs one that the grid does not have.
     """
+    check_names(cfg)
     cells = all_cells(cfg, folder, options.overrides)
     check_cells(cells)
     if options.launcher in EXTRAS:
@@ -160,49 +160,6 @@ def _check_types(values: dict[str, Any]) -> None:
         validate(checked, "study")
     except (TypeError, ValueError) as error:
         raise UsageError(f"An override does not fit: {error}") from error
-
-
-def check_cells(cells: Sequence[Cell]) -> None:
-    """Raise unless all tasks exist, names differ, and cells that others need are there; what began goes on as it was.
-
-    Raises:
-        UsageError: The first thing that is wrong.
-    """
-    names = [cell.name for cell in cells]
-    tasks = list_tasks(prefix="")
-    for cell in cells:
-        if cell.task not in tasks:
-            raise UsageError(f"The study has the task '{cell.task}'. {did_you_mean(cell.task, tasks)}")
-        _check_agent(cell)
-        if names.count(cell.name) > 1:
-            raise UsageError(f"The study has the cell '{cell.name}' {names.count(cell.name)} times, expected once.")
-        teacher = cell.teacher()
-        if teacher is not None and teacher.name not in names:
-            raise UsageError(f"The cell '{cell.name}' comes after '{teacher.name}', which the grid does not have.")
-        _check_settings(cell)
-
-
-def _check_agent(cell: Cell) -> None:
-    """Raise if the cell's task has no such agent; ``sac`` stands for ``rsl_rl_sac_cfg_entry_point``."""
-    given = cell.like or cell.algorithm
-    keys = [key for key in gymnasium.registry[cell.task].kwargs if key.endswith(CFG_SUFFIX) and key[:4] != "env_"]
-    names = {key.removesuffix(CFG_SUFFIX).removeprefix("rsl_rl").lstrip("_") or "ppo" for key in keys}
-    if given not in names | set(keys):
-        raise UsageError(f"The study has the algorithm '{given}'. {did_you_mean(given, names)}")
-
-
-def _check_settings(cell: Cell) -> None:
-    """Raise if a cell was begun with other settings; more time or iterations are no others."""
-    began = cell.read_state().get("settings")
-    if began is None or not cell.runs:
-        return
-    now = cell.settings()
-    for name in now:
-        if name not in ("minutes", "max_iterations") and began.get(name) != now[name]:
-            raise UsageError(
-                f"The cell '{cell.name}' was begun with other settings: {name} {began.get(name)}, now {now[name]}. "
-                f"Choose another --folder, or remove {cell.folder}."
-            )
 
 
 def _axes(cfg: StudyCfg, overrides: Sequence[str]) -> dict[str, list[str]]:
