@@ -94,6 +94,22 @@ def test_the_same_command_goes_on(data, colons, capsys) -> None:
     assert "recorded: nothing to do, 6 were there" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        (("--agent", "zero"), "was made with agent expert, and now it is zero"),
+        (("--seed", "6"), "was made with seed 5, and now it is 6"),
+        (("env.scene.colon.material=in_situ",), "was made with overrides ['env.start=rest'"),
+    ],
+)
+def test_a_data_set_is_made_by_one_agent(data, colons, capsys, changed: tuple[str, ...], message: str) -> None:
+    """It would be kept as it is, and its card would name the new one."""
+    card = (data / "README.md").read_text()
+    with pytest.raises(SystemExit):
+        main(["record", *OPTIONS, "--images", "--patients", str(colons[0]), "--out", str(data), *changed])
+    assert message in capsys.readouterr().err and (data / "README.md").read_text() == card
+
+
 def test_replays_bit_for_bit(data, capsys) -> None:
     assert main(["replay", str(episode_paths(data / "bent")[1]), "--device", "cpu"]) == 0
     assert "the same, bit for bit" in capsys.readouterr().out

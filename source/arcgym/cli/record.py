@@ -93,6 +93,7 @@ def _record(
     from arcgym.envs import mdp
     from arcgym.recordings.data_card import write_card
     from arcgym.recordings.generating import GenerationPlan, generate
+    from arcgym.recordings.made_by import hold_to
     from arcgym.rl.device import place
     from arcgym.rl.playing import load_policy
     from arcgym.rl.preflight import check_environment
@@ -107,13 +108,31 @@ def _record(
     plan = GenerationPlan(
         args.task, episodes, out, groups, args.agent, images if args.images else None, args.observations
     )
+    hold_to(out, _made_by(args, agent_cfg.seed, checkpoint))
     load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint)
     with stopped_cleanly(f"{out} holds what was done; the same command goes on"):
         report = generate(plan, env_cfg, agent_cfg, load)
     print(f"recorded: {report}")
     for line in report.skipped:
         print(f"left out: {line}")
-    if out.is_dir():
+    if report.episodes or report.found:
         agent = f"the checkpoint {checkpoint.name} of {checkpoint.parent.name}" if checkpoint else args.agent
         print(f"data card: {write_card(out, agent)}")
     return 1 if report.skipped else 0
+
+
+def _made_by(args: RecordArguments, seed: int, checkpoint: Path | None) -> dict[str, Any]:
+    """Return what decides an episode of the data set, beside its patient and its number."""
+    from arcgym.rl.checkpoint import file_sha256
+
+    pictures = {"size": args.size, "samples": args.samples} if args.images else None
+    return {
+        "task": args.task,
+        "agent": args.agent,
+        "checkpoint": file_sha256(checkpoint) if checkpoint else None,
+        "seed": seed,
+        "overrides": list(args.overrides),
+        "pictures": pictures,
+        "observations": args.observations,
+        "together": args.together,
+    }
