@@ -78,6 +78,11 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*TRAIN, "--logger", "wandb"], "agent.logger=wandb needs the package 'wandb', which is not installed"),
         ([*TRAIN, "agent.logger=papyrus"], "'papyrus'"),
         ([*TRAIN, "--experiment_name", "a/b"], "experiment_name is 'a/b', expected a name without '/'"),
+        ([*TRAIN, "--agent", "distillation", "+agent.obs_groups.actor=[policy]"], "has 'actor', and NavigationDist"),
+        (
+            [*TRAIN, "--agent", "ppo_lagrangian", "agent.algorithm.multiplier.kind=fixed"],
+            "init is 0.001 with the kind 'fixed', whose penalty it is",
+        ),
         ([*TRAIN, "--checkpoint", "model_7.pt"], "--checkpoint is given without --resume"),
         ([*TRAIN, "--load_run", "mine"], "--load_run is given without --resume"),
         (["record", *TASK, "--checkpoint", "model_7.pt"], "--checkpoint is given with --agent expert, which has none"),

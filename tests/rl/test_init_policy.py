@@ -11,6 +11,7 @@ from small_agents import runner_cfg, with_memory
 
 from arcgym.rl import GaussianDistributionCfg, OnPolicyRunner, RslRlMlpModelCfg
 from arcgym.rl.pretrained import write_small
+from arcgym.rl.run_folder import write_params
 from arcgym.utils.errors import UsageError
 from arcgym.utils.threads import one_thread
 
@@ -39,6 +40,18 @@ def test_the_critic_learns_first(tmp_path):
     assert not same(critic, runner.alg.critic)
     runner.learn(1)
     assert not same(copied(first.alg.actor), runner.alg.actor)
+
+
+@one_thread()
+def test_a_policy_of_other_activations_is_refused(tmp_path) -> None:
+    """Its weights would fit, and act otherwise."""
+    cfg = runner_cfg()
+    cfg.actor.activation = "relu"
+    write_params(tmp_path, run={"task": "Dot"}, env={}, agent=cfg)
+    make_runner(seed=0, actor=cfg.actor).save(str(tmp_path / "model_0.pt"))
+    with pytest.raises(UsageError, match="does not fit the policy: its activation is relu, and here it is elu"):
+        make_runner(seed=1, init_policy=str(tmp_path / "model_0.pt")).learn(1)
+    make_runner(seed=1, actor=cfg.actor, init_policy=str(tmp_path / "model_0.pt")).learn(1)
 
 
 @one_thread()

@@ -228,6 +228,8 @@ def _write(args: TaskArguments, env_cfg: Any, agent_cfg: Any) -> None:
         apply_overrides({"env": env_cfg, "agent": agent_cfg}, args.overrides)
     except (TypeError, ValueError) as error:
         raise UsageError(str(error)) from error
+    if any(text.lstrip("+").startswith("env.seed=") for text in args.overrides):
+        agent_cfg.seed = env_cfg.seed  # runs give their environment the agent's
     for name in AGENT_FIELDS:
         if getattr(args, name, None) is not None:
             setattr(agent_cfg, name, getattr(args, name))

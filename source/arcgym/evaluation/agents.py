@@ -33,7 +33,7 @@ def inputs_of(env_cfg: Any, agent_cfg: Any) -> dict[str, Any]:
     groups = getattr(agent_cfg, "obs_groups", None) or {}
     rules = getattr(agent_cfg, "action_constraint", None)
     simulated = rules is not None and rules.in_evaluation and _reads_truth(rules.depth)
-    names = list(groups.get("actor", groups.get("student", ())))
+    names = list(groups.get("student") or groups.get("actor", ()))
     added = {function for name in names for function in _added(getattr(env_cfg.observations, name, None))}
     return {"sees": [*names, *sorted(added)], "simulator_depth": simulated}
 

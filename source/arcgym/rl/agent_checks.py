@@ -91,6 +91,8 @@ def _check_classes(agent_cfg: Any) -> None:
 def _check_groups(env_cfg: Any, agent_cfg: Any) -> None:
     groups = _entries(env_cfg.observations)
     for name, wanted in agent_cfg.obs_groups.items():
+        if getattr(agent_cfg, name, None) is None:
+            raise UsageError(f"agent.obs_groups has '{name}', and {type(agent_cfg).__name__} has no such model.")
         for group in wanted:
             if groups.get(group) is None:
                 raise UsageError(

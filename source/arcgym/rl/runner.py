@@ -25,6 +25,7 @@ from arcgym.rl.device import join_processes
 from arcgym.rl.divergence import check_finite
 from arcgym.rl.interrupt import InterruptGuard, TrainingInterrupted
 from arcgym.rl.learning_rate import linear_rate, set_learning_rate
+from arcgym.rl.params import read_params
 from arcgym.rl.patient_writer import PatientWriter
 from arcgym.rl.run_clock import BudgetSpent, RunClock
 from arcgym.rl.widened import widened, with_memory
@@ -156,6 +157,7 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         try:
             contents = read_checkpoint(path, self.device)
             own = "student_state_dict" if "student_state_dict" in contents else "actor_state_dict"
+            self._check_activation(Path(path).parent)
             policy: Any = self.alg.get_policy()
             wanted = policy.state_dict()
             actor = widened(contents[own], wanted)
@@ -166,6 +168,22 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             reason = " ".join(str(error).split())  # torch's has a line for each kind of mismatch
             raise UsageError(f"agent.init_policy={path} does not fit the policy: {reason}") from error
         print(f"policy: starts from {path}, with its deviation")
+
+    def _check_activation(self, run: Path) -> None:
+        """Raise if a run's policy has other activations: its weights would fit, and mean something else.
+
+        Raises:
+            ValueError: With the two.
+        """
+        saved = read_params(run)
+        then = {} if saved is None else saved.agent.get("student") or saved.agent.get("actor") or {}
+        now = self.cfg[self.policy_name]
+        for name, old, new in (
+            ("activation", then, now),
+            ("cnn_cfg.activation", then.get("cnn_cfg") or {}, now.get("cnn_cfg") or {}),
+        ):
+            if "activation" in old and old["activation"] != new.get("activation", old["activation"]):
+                raise ValueError(f"its {name} is {old['activation']}, and here it is {new['activation']}")
 
     def _update(self, update: Any, guard: InterruptGuard) -> dict[str, float]:
         with guard.hold():

@@ -33,7 +33,7 @@ class RslRlA2cAlgorithmCfg(RslRlPpoAlgorithmCfg):
     """Trace decay; 1 is the n-step return of the original. Lower it for long rollouts."""
 
     use_clipped_value_loss: bool = False
-    """Whether the value step is clipped; the original's is not. Turn on if ``Loss/value`` jumps."""
+    """Whether the value step is clipped; the original's is not. With one step there is nothing to clip."""
 
     value_loss_coef: float = 0.5
     """Weight of the value loss against the policy's. It matters where both share an encoder."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from arcgym.rl.runner_cfg import RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg, RslRlPpoAlgorithmCfg
 from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import (
+    FieldError,
     Range,
     require,
     require_at_least,
@@ -35,6 +36,8 @@ class MultiplierCfg:
         """
         require(self, "kind", ("pid", "ascent", "fixed"))
         require_non_negative(self, "init")
+        if self.kind == "fixed" and self.init == MultiplierCfg.init:
+            raise FieldError(self, "init", f"is {self.init} with the kind 'fixed', whose penalty it is: give another.")
 
 
 @configclass
