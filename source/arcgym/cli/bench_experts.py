@@ -35,6 +35,8 @@ TISSUES = ("paper", "in_situ")
 """Tissue presets that are driven through where none are given."""
 GPU_WORLDS, CPU_WORLDS = 12, 4
 """Worlds of each patient where none are given."""
+HELD = ("max_time", "patience", "seed")
+"""Settings that all rows of a folder share."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -79,13 +81,14 @@ def run(args: argparse.Namespace) -> None:
     """
     from arcgym.assets.patient_files import find_stages
     from arcgym.benchmarks.experts.table import failures, read_rows, table
+    from arcgym.recordings.made_by import hold_to
 
     began = time.monotonic()
     try:
         stages = find_stages(args.colons, args.num_patients)
     except (ValueError, OSError) as error:
         raise UsageError(str(error)) from error
-    args.out.mkdir(parents=True, exist_ok=True)
+    hold_to(args.out, {name: getattr(args, name) for name in HELD}, "rows.jsonl")
     rows = args.out / "rows.jsonl"
     for robot, tissue in product(args.robots, args.tissues):
         label = " ".join((tissue, *args.overrides))

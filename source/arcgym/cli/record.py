@@ -108,7 +108,7 @@ def _record(
     plan = GenerationPlan(
         args.task, episodes, out, groups, args.agent, images if args.images else None, args.observations
     )
-    hold_to(out, _made_by(args, agent_cfg.seed, checkpoint))
+    hold_to(out, _made_by(args, agent_cfg.seed, checkpoint), "*/*.hdf5")
     load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint)
     with stopped_cleanly(f"{out} holds what was done; the same command goes on"):
         report = generate(plan, env_cfg, agent_cfg, load)
