@@ -78,6 +78,10 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*TRAIN, "--logger", "wandb"], "agent.logger=wandb needs the package 'wandb', which is not installed"),
         ([*TRAIN, "agent.logger=papyrus"], "'papyrus'"),
         ([*TRAIN, "--experiment_name", "a/b"], "experiment_name is 'a/b', expected a name without '/'"),
+        (
+            [*TRAIN, "--agent", "bc", "agent.torch_compile_mode=default"],
+            "torch_compile_mode is 'default', expected None",
+        ),
         ([*TRAIN, "--agent", "distillation", "+agent.obs_groups.actor=[policy]"], "has 'actor', and NavigationDist"),
         (
             [*TRAIN, "--agent", "ppo_lagrangian", "agent.algorithm.multiplier.kind=fixed"],

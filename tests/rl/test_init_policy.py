@@ -77,11 +77,12 @@ def test_a_deviation_that_is_fixed_stays_so(tmp_path):
 
 
 @one_thread()
-def test_without_another_runs_policy_all_learn_at_once():
+def test_without_another_runs_policy_all_learn_at_once(capsys):
     runner = make_runner(seed=1, critic_first=2)
     actor = copied(runner.alg.actor)
     runner.learn(1)
     assert not same(actor, runner.alg.actor)
+    assert "note: agent.critic_first=2 waits for nothing" in capsys.readouterr().out
 
 
 def test_a_checkpoint_of_another_policy_is_named(tmp_path):

@@ -88,6 +88,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
         """
         if self.clock.is_over:
             print(f"nothing is learnt: the run has had {self.clock}, all that agent.{self.clock.limit} gives it")
+        if self.cfg.get("critic_first") and not self.cfg.get("init_policy"):
+            print(f"note: agent.critic_first={self.cfg['critic_first']} waits for nothing without agent.init_policy")
         if self.cfg.get("init_policy") and self.completed_iterations == 0:
             self._start_from(self.cfg["init_policy"])
         update, log, init_writer = self.alg.update, self.logger.log, self.logger.init_logging_writer

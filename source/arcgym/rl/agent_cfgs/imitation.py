@@ -96,6 +96,18 @@ class RslRlBehaviorCloningRunnerCfg(RslRlOnPolicyRunnerCfg):
     algorithm: Any = RslRlBehaviorCloningAlgorithmCfg()
     """Learning algorithm."""
 
+    def validate_config(self) -> None:
+        """Check bounds.
+
+        Raises:
+            ValueError: If a value is out of its bounds, or the network is to be compiled, which this runner does not.
+        """
+        super().validate_config()
+        if self.torch_compile_mode is not None:
+            raise FieldError(
+                self, "torch_compile_mode", f"is '{self.torch_compile_mode}', expected None: cloning has none."
+            )
+
 
 @configclass
 class RslRlDistillationAlgorithmCfg:
