@@ -80,7 +80,7 @@ def test_a_missing_file_names_its_neighbors(tmp_path: Path) -> None:
 )
 def test_checkpoints_get_as_many_trials_each(suite: str, count: int, shares: list[int]) -> None:
     conditions = read_conditions(read_suites()[suite].conditions_path)
-    numbers = [conditions.checkpoint_of(trial, count) for trial in conditions.trials]
+    numbers = [conditions.checkpoint_number(trial, count) for trial in conditions.trials]
     assert [numbers.count(number) for number in range(count)] == shares
     if count == conditions.groups:
         assert numbers == [trial.group for trial in conditions.trials]

@@ -17,7 +17,7 @@ from drawn_shafts import up_and_round, zigzag
 
 from arcgym.anatomy.segments import SEGMENTS
 from arcgym.managers import MetricsManager
-from arcgym_tasks.navigation.navigation_env_cfg import MetricsCfg
+from arcgym_tasks.navigation.metrics import MetricsCfg
 from arcgym_tasks.navigation.withdrawal_cfg import WithdrawalMetricsCfg
 
 ROOT = Path(__file__).parents[2]

@@ -10,7 +10,7 @@ import pickle
 import pytest
 import torch
 
-from arcgym.rl import OnPolicyRunner, RslRlVecEnvWrapper, run_folder
+from arcgym.rl import OnPolicyRunner, RslRlVecEnvWrapper
 from arcgym.rl.checkpoint import read_checkpoint, write_checkpoint
 from arcgym.rl.divergence import TrainingDiverged, check_finite
 from arcgym.rl.patient_writer import PatientWriter
@@ -59,7 +59,7 @@ def test_other_networks_are_named(counting_env, agent_cfg, tmp_path):
 def test_full_disk_keeps_the_last_whole_checkpoint(tmp_path, monkeypatch, capsys):
     path = tmp_path / "model_0.pt"
     assert write_checkpoint(path, {"infos": {"kept": 1}})
-    monkeypatch.setattr(run_folder.os, "fsync", full_disk)
+    monkeypatch.setattr(os, "fsync", full_disk)
     assert not write_checkpoint(path, {"infos": {"kept": 2}})
     assert read_checkpoint(path)["infos"] == {"kept": 1}
     assert [file.name for file in tmp_path.iterdir()] == ["model_0.pt"]
@@ -69,7 +69,7 @@ def test_full_disk_keeps_the_last_whole_checkpoint(tmp_path, monkeypatch, capsys
 def test_training_goes_on_with_a_full_disk(counting_env, agent_cfg, tmp_path, monkeypatch):
     runner = make_runner(counting_env, agent_cfg, tmp_path)
     runner.learn(1)
-    monkeypatch.setattr(run_folder.os, "fsync", full_disk)
+    monkeypatch.setattr(os, "fsync", full_disk)
     runner.learn(2)
     assert runner.completed_iterations == 3
     assert runner.last_checkpoint == tmp_path / "model_0.pt"

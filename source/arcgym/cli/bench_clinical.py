@@ -80,11 +80,11 @@ def _drive(args: argparse.Namespace) -> None:
     """Make the insertions of every variant."""
     from arcgym.assets.patient_files import find_stages
     from arcgym.benchmarks.clinical.insertions import Plan, insert
-    from arcgym.recordings.made_by import hold_to
     from arcgym.rl.device import choose_device
+    from arcgym.utils.made_by import check_made_by
 
     names = ("max_time", "patience", "speed", "seed", "overrides")
-    hold_to(args.out, {name: getattr(args, name) for name in names}, "*/*.npz")
+    check_made_by(args.out, {name: getattr(args, name) for name in names}, "*/*.npz")
     began = time.monotonic()
     try:
         stages = find_stages(args.colons, args.num_patients)

@@ -81,14 +81,14 @@ def run(args: argparse.Namespace) -> None:
     """
     from arcgym.assets.patient_files import find_stages
     from arcgym.benchmarks.experts.table import failures, read_rows, table
-    from arcgym.recordings.made_by import hold_to
+    from arcgym.utils.made_by import check_made_by
 
     began = time.monotonic()
     try:
         stages = find_stages(args.colons, args.num_patients)
     except (ValueError, OSError) as error:
         raise UsageError(str(error)) from error
-    hold_to(args.out, {name: getattr(args, name) for name in HELD}, "rows.jsonl")
+    check_made_by(args.out, {name: getattr(args, name) for name in HELD}, "rows.jsonl")
     rows = args.out / "rows.jsonl"
     for robot, tissue in product(args.robots, args.tissues):
         label = " ".join((tissue, *args.overrides))

@@ -93,10 +93,10 @@ def _record(
     from arcgym.envs import mdp
     from arcgym.recordings.data_card import write_card
     from arcgym.recordings.generating import GenerationPlan, generate
-    from arcgym.recordings.made_by import hold_to
     from arcgym.rl.device import place
     from arcgym.rl.playing import load_policy
     from arcgym.rl.preflight import check_environment
+    from arcgym.utils.made_by import check_made_by
 
     env_cfg.scene.colon.usd_path = list(stages)
     check_environment(env_cfg, args.device, [out])
@@ -108,7 +108,7 @@ def _record(
     plan = GenerationPlan(
         args.task, episodes, out, groups, args.agent, images if args.images else None, args.observations
     )
-    hold_to(out, _made_by(args, agent_cfg.seed, checkpoint), "*/*.hdf5")
+    check_made_by(out, _made_by(args, agent_cfg.seed, checkpoint), "*/*.hdf5")
     load = None if checkpoint is None else lambda env: load_policy(env, agent_cfg, checkpoint)
     with stopped_cleanly(f"{out} holds what was done; the same command goes on"):
         report = generate(plan, env_cfg, agent_cfg, load)

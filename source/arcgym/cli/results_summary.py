@@ -33,7 +33,7 @@ def run(namespace: argparse.Namespace) -> None:
     from arcgym.evaluation.results_keep import keep
     from arcgym.evaluation.results_page import read_sections, results_page
     from arcgym.rl.agent_checks import check_installed
-    from arcgym.rl.run_folder import write_whole
+    from arcgym.utils.files import write_whole
 
     if namespace.figure:
         check_installed("matplotlib", "--figure", "study")

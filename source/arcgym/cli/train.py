@@ -77,8 +77,7 @@ def run(namespace: argparse.Namespace) -> int:
 
 def _refuse_another_start(agent_cfg: Any, checkpoint: Path) -> None:
     """Raise if a resumed run is to have begun with another policy or teacher, which it would not load any more."""
-    from arcgym.evaluation.trained_on import BEGUN_FROM
-    from arcgym.rl.params import read_params
+    from arcgym.rl.params import BEGUN_FROM, read_params
 
     saved = read_params(checkpoint.parent)
     if saved is None:

@@ -68,7 +68,7 @@ def _run_task(
     left = [trial for trial in trials if trial.trial not in done]
     print(f"{task}: {len(left)} of {len(trials)} trials to run", flush=True)
     agents = options.agents_for(task)
-    of_agent = {trial.trial: agents[conditions.checkpoint_of(trial, len(agents))] for trial in trials}
+    of_agent = {trial.trial: agents[conditions.checkpoint_number(trial, len(agents))] for trial in trials}
     if len(unused := set(agents) - set(of_agent.values())) > 0:
         print(f"note: this share has no trial of {', '.join(sorted(unused))}: its figures are of the others alone")
     for agent, batch in _batches(left, of_agent, options.most(options.num_patients, PATIENTS)):

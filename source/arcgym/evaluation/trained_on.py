@@ -12,12 +12,9 @@ from typing import Any
 from arcgym.assets import ColonCfg
 from arcgym.evaluation.result_folder import UNKNOWN
 from arcgym.rl.demonstrations import demonstrated_patients
-from arcgym.rl.params import RunParams, read_params
+from arcgym.rl.params import BEGUN_FROM, RunParams, read_params
 from arcgym.rl.pretrained import ABOUT
 from arcgym.utils.hydra import apply_overrides
-
-BEGUN_FROM = ("init_policy", "teacher_checkpoint")
-"""Fields of an agent that name a checkpoint from which it learns."""
 
 
 def trained_on(checkpoint: Path) -> Any:

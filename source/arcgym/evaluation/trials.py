@@ -53,7 +53,7 @@ class Conditions:
         """Number of training seeds that the trials are for."""
         return len({trial.group for trial in self.trials})
 
-    def checkpoint_of(self, trial: Trial, count: int) -> int:
+    def checkpoint_number(self, trial: Trial, count: int) -> int:
         """Return which of several checkpoints runs a trial: that of its group, where each group has one.
 
         Of fewer checkpoints than groups each gets every ``count``-th trial of the file, so that all have as many.

@@ -38,7 +38,7 @@ def film(conditions: Conditions, load_cfgs: LoadCfgs, options: EvaluationOptions
             path = video_path(folder.path, row, label)
             if row["trial"] in trials and not path.is_file():
                 agents = options.agents_for(task)
-                agent = agents[conditions.checkpoint_of(trials[row["trial"]], len(agents))]
+                agent = agents[conditions.checkpoint_number(trials[row["trial"]], len(agents))]
                 _film(row, trials[row["trial"]], agent, path, load_cfgs, options)
                 made.append(path)
     return made

@@ -13,9 +13,9 @@ from typing import Any
 
 import torch
 
-from arcgym.rl.run_folder import write_whole
 from arcgym.rl.small_weights import restore
 from arcgym.utils.errors import UsageError
+from arcgym.utils.files import write_whole
 
 
 def read_checkpoint(path: str | Path, device: str = "cpu") -> dict[str, Any]:

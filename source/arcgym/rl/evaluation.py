@@ -11,8 +11,8 @@ from typing import Any
 
 from arcgym.rl.first_episodes import write_rows
 from arcgym.rl.rollout import RolloutResult, run_policy
-from arcgym.rl.run_folder import write_whole
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
+from arcgym.utils.files import write_whole
 from arcgym.utils.progress import counted
 
 EPISODES_FILE = "episodes.csv"

@@ -15,8 +15,8 @@ from typing import Any
 import torch
 
 from arcgym.rl.episode_sums import EpisodeRow, EpisodeSums
-from arcgym.rl.run_folder import write_whole
 from arcgym.rl.vecenv_wrapper import RslRlVecEnvWrapper
+from arcgym.utils.files import write_whole
 
 
 class FirstEpisodes:

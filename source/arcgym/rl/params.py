@@ -36,6 +36,10 @@ _CALLABLE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 _DOTTED = re.compile(r"[A-Za-z_]\w*(\.\w+)+")
 
 
+BEGUN_FROM = ("init_policy", "teacher_checkpoint")
+"""Fields of an agent that name a checkpoint from which it learns."""
+
+
 @dataclass(frozen=True)
 class RunParams:
     """What ``params/`` of a run holds."""

@@ -16,9 +16,9 @@ from pathlib import Path
 import torch
 
 from arcgym.rl.checkpoint import read_checkpoint
-from arcgym.rl.run_folder import write_whole
 from arcgym.rl.small_weights import LEVELS, SCALES, shrink
 from arcgym.utils.errors import UsageError
+from arcgym.utils.files import write_whole
 from arcgym.utils.paths import assets_dir
 from arcgym.utils.registry import plain_task
 

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
 from collections.abc import Iterator
@@ -18,6 +17,7 @@ import yaml
 
 from arcgym.utils.coerce import to_plain
 from arcgym.utils.errors import UsageError
+from arcgym.utils.files import write_whole
 
 LOG_ROOT = Path("logs") / "rsl_rl"
 """Folder of the runs, below the one in which a command is called."""
@@ -73,24 +73,6 @@ def write_params(folder: Path, **values: Any) -> None:
     for name, value in values.items():
         text = yaml.safe_dump(to_plain(value), sort_keys=False)
         write_whole(folder / "params" / f"{name}.yaml", text.encode())
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file that is complete whenever it exists under its name.
-
-    Raises:
-        OSError: The disk is full or the folder cannot be written; nothing is left behind, and an older file stays.
-    """
-    temporary = path.with_name(f"{path.name}.tmp")
-    try:
-        with temporary.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    except OSError:
-        temporary.unlink(missing_ok=True)
-        raise
 
 
 def find_checkpoint(experiment: str, load_run: str = ".*", checkpoint: str = "latest", root: Path = LOG_ROOT) -> Path:

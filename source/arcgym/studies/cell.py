@@ -12,7 +12,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from arcgym.rl.run_folder import find_newest_checkpoint, write_whole
+from arcgym.rl.run_folder import find_newest_checkpoint
+from arcgym.utils.files import write_whole
 
 CELL_FILE = "cell.json"
 """Settings and state of a cell."""

@@ -17,7 +17,6 @@ import hydra
 import yaml
 
 from arcgym.rl.agent_checks import check_installed
-from arcgym.rl.run_folder import write_whole
 from arcgym.studies.cell import Cell
 from arcgym.studies.checks import check_cells, check_names
 from arcgym.studies.grid import NAMED, is_left_out, make_cell, sweep_overrides
@@ -28,6 +27,7 @@ from arcgym.studies.suite_trials import seeds_of
 from arcgym.utils.coerce import from_dict, to_plain
 from arcgym.utils.configclass import validate
 from arcgym.utils.errors import UsageError
+from arcgym.utils.files import write_whole
 from arcgym.utils.string import did_you_mean
 
 CONFIG = "study"

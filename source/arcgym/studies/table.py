@@ -12,9 +12,9 @@ from typing import Any
 
 from arcgym.rl.evaluation import EPISODES_FILE, WITHOUT_RULES
 from arcgym.rl.first_episodes import read_rows, write_rows
-from arcgym.rl.run_folder import write_whole
 from arcgym.studies.cell import Cell
 from arcgym.studies.curves import read_curves
+from arcgym.utils.files import write_whole
 
 MEANS = {
     "progress": "progress",

@@ -9,7 +9,8 @@ from arcgym.envs import mdp
 from arcgym.managers import MetricsTermCfg as MetricsTerm
 from arcgym.managers import RewardTermCfg as RewTerm
 from arcgym.utils.configclass import configclass
-from arcgym_tasks.navigation.navigation_env_cfg import MetricsCfg, RewardsCfg, TerminationsCfg
+from arcgym_tasks.navigation.metrics import MetricsCfg
+from arcgym_tasks.navigation.navigation_env_cfg import RewardsCfg, TerminationsCfg
 
 
 @configclass

@@ -9,14 +9,14 @@ import json
 from pathlib import Path
 from typing import Any
 
-from arcgym.rl.run_folder import write_whole
 from arcgym.utils.errors import UsageError
+from arcgym.utils.files import write_whole
 
 MADE_BY = "made_by.json"
 """File that says what made what is beside it."""
 
 
-def hold_to(folder: Path, made_by: dict[str, Any], contents: str) -> None:
+def check_made_by(folder: Path, made_by: dict[str, Any], contents: str) -> None:
     """Write what makes the contents of a folder, or compare it with what made those that are there.
 
     Args:

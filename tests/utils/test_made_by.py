@@ -8,22 +8,22 @@ from pathlib import Path
 
 import pytest
 
-from arcgym.recordings.made_by import hold_to
 from arcgym.utils.errors import UsageError
+from arcgym.utils.made_by import check_made_by
 
 
 def test_another_maker_is_refused_once_something_is_made(tmp_path: Path) -> None:
     folder = tmp_path / "rows"
-    hold_to(folder, {"seed": 1, "overrides": ("a",)}, "*.jsonl")
-    hold_to(folder, {"seed": 2, "overrides": ("a",)}, "*.jsonl")  # nothing was made with the first
+    check_made_by(folder, {"seed": 1, "overrides": ("a",)}, "*.jsonl")
+    check_made_by(folder, {"seed": 2, "overrides": ("a",)}, "*.jsonl")  # nothing was made with the first
     (folder / "rows.jsonl").touch()
-    hold_to(folder, {"seed": 2, "overrides": ["a"]}, "*.jsonl")
+    check_made_by(folder, {"seed": 2, "overrides": ["a"]}, "*.jsonl")
     with pytest.raises(UsageError, match="was made with seed 2, and now it is 3: both would count as one"):
-        hold_to(folder, {"seed": 3, "overrides": ["a"]}, "*.jsonl")
+        check_made_by(folder, {"seed": 3, "overrides": ["a"]}, "*.jsonl")
 
 
 def test_what_was_made_before_there_was_such_a_file_is_taken_over(tmp_path: Path) -> None:
     (tmp_path / "rows.jsonl").touch()
-    hold_to(tmp_path, {"seed": 1}, "*.jsonl")
+    check_made_by(tmp_path, {"seed": 1}, "*.jsonl")
     with pytest.raises(UsageError, match="seed 1, and now it is 2"):
-        hold_to(tmp_path, {"seed": 2}, "*.jsonl")
+        check_made_by(tmp_path, {"seed": 2}, "*.jsonl")
