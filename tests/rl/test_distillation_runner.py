@@ -81,6 +81,22 @@ def test_a_student_begins_as_another_runs_policy(teacher_checkpoint, tmp_path, m
     runner.learn(1)
 
 
+@one_thread()
+def test_a_teacher_may_see_images_beside_the_state(tmp_path) -> None:
+    """As ``ppo_teacher_rgb``: its vectors are normalized as it learnt to, which the student's run takes over."""
+    teacher, groups = runner_cfg().actor.replace(obs_normalization=True), ["policy", "critic"]
+    cfg = runner_cfg(actor=teacher, obs_groups={"actor": groups, "critic": ["critic"]})
+    first = OnPolicyRunner(SteerToDot(4), cfg.to_dict(), device="cpu")
+    first.learn(1)
+    first.save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(
+        str(tmp_path / "model_0.pt"), 4, teacher=teacher, obs_groups={"student": ["policy"], "teacher": groups}
+    )
+    runner.learn(1)
+    obs = SteerToDot(4).get_observations()
+    torch.testing.assert_close(runner.alg.teacher(obs), first.get_inference_policy()(obs))
+
+
 def test_teacher_must_be_given():
     with pytest.raises(ValueError, match="agent.teacher_checkpoint"):
         make_runner().learn(1)

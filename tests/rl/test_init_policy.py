@@ -130,6 +130,26 @@ def test_a_policy_with_a_memory_learns_on_with_it_and_starts_others(tmp_path):
     assert same(copied(runner.alg.actor), further.alg.actor)
 
 
+@one_thread()
+@pytest.mark.parametrize("normalized", [True, False])
+def test_a_policy_of_images_is_the_start_of_one_that_reads_vectors_besides(tmp_path, normalized: bool) -> None:
+    """Columns of zeros read the vectors, so that it acts as before; an update gives them weights."""
+    first = make_runner(seed=0)
+    first.save(str(tmp_path / "model_0.pt"))
+    runner = make_runner(
+        seed=1,
+        actor=runner_cfg().actor.replace(obs_normalization=normalized),
+        obs_groups={"actor": ["policy", "critic"], "critic": ["critic"]},
+        init_policy=str(tmp_path / "model_0.pt"),
+    )
+    runner.learn(0)
+    obs, actor = SteerToDot(4).get_observations(), runner.alg.actor
+    assert torch.equal(actor(obs), first.alg.actor(obs))
+    assert not actor.mlp[0].weight[:, : actor.obs_dim].any()
+    runner.learn(1)
+    assert actor.obs_dim > 0 and actor.mlp[0].weight[:, : actor.obs_dim].any()
+
+
 def test_small_weights_hold_a_memory(tmp_path):
     """A GRU of 64 numbers has 64 x 3 x 64 weights that are worth it: whole numbers, off by 1/254 of a row's largest."""
     cfg = with_memory(rnn_hidden_dim=64)

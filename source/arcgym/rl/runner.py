@@ -28,7 +28,7 @@ from arcgym.rl.learning_rate import linear_rate, set_learning_rate
 from arcgym.rl.params import read_params
 from arcgym.rl.patient_writer import PatientWriter
 from arcgym.rl.run_clock import BudgetSpent, RunClock
-from arcgym.rl.widened import widened, with_memory
+from arcgym.rl.widened import widened, with_memory, with_vectors
 from arcgym.utils.errors import UsageError
 
 
@@ -165,6 +165,8 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             actor = widened(contents[own], wanted)
             if getattr(policy, "skip_connection", False):
                 actor = with_memory(actor, wanted, policy.rnn_hidden_dim)
+            else:
+                actor = with_vectors(actor, wanted, policy.obs_dim)
             self.alg.load({**contents, f"{self.policy_name}_state_dict": actor}, {self.policy_name: True}, strict=True)
         except (KeyError, RuntimeError, ValueError) as error:
             reason = " ".join(str(error).split())  # torch's has a line for each kind of mismatch

@@ -338,7 +338,8 @@ class RslRlOnPolicyRunnerCfg:
     init_policy: str | None = None
     """Checkpoint whose policy a new run starts from, of behavior cloning, of a distillation (its student), or of
     another task; None starts from scratch. The student of a distillation may start from one, too. A policy without
-    memory fits one with it whose ``skip_connection`` is on."""
+    memory fits one with it whose ``skip_connection`` is on, and a policy of images one that reads vectors besides
+    (``agent.obs_groups.actor``)."""
 
     critic_first: int = 0
     """Updates at the start of a run with ``init_policy`` in which the critics alone learn. A good policy gets worse

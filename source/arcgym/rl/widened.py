@@ -1,7 +1,7 @@
 # Copyright (c) 2026, The ARCGym Developers.
 # SPDX-License-Identifier: BSD-3-Clause
 
-"""Weights of a policy for one that sees further images, or that has a memory beside what it sees."""
+"""Weights of a policy for one that sees further images, reads vectors beside them, or has a memory."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ FIRST_MATRIX = "mlp.0.weight"
 
 RECURRENT = "rnn."
 """Beginning of the names of a recurrent layer's weights."""
+
+NORMALIZER = "obs_normalizer."
+"""Beginning of the names of the means and deviations by which vectors are normalized."""
 
 
 def widened(weights: dict[str, torch.Tensor], wanted: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
@@ -48,6 +51,29 @@ def with_memory(
         return weights
     recurrent = {name: value for name, value in wanted.items() if name.startswith(RECURRENT)}
     return {**weights, **recurrent, FIRST_MATRIX: torch.cat([matrix, matrix.new_zeros(len(matrix), width)], dim=1)}
+
+
+def with_vectors(
+    weights: dict[str, torch.Tensor], wanted: dict[str, torch.Tensor], width: int
+) -> dict[str, torch.Tensor]:
+    """Return weights of a policy of images for one that reads vectors besides, in front of the features.
+
+    The first matrix gets a column of zeros for each of their numbers, so that actions stay the same; what normalizes
+    the vectors, which the weights lack, stays as it is.
+
+    Args:
+        weights: Weights by name, as a checkpoint has them. Those whose first matrix differs in more than these columns
+            are left as they are.
+        wanted: Weights of the policy that is to take them over.
+        width: Numbers in the vectors.
+    """
+    if FIRST_MATRIX not in weights or width == 0:
+        return weights
+    matrix = weights[FIRST_MATRIX]
+    if wanted[FIRST_MATRIX].shape != (len(matrix), width + matrix.shape[-1]):
+        return weights
+    normalizer = {name: value for name, value in wanted.items() if name.startswith(NORMALIZER)}
+    return {**weights, **normalizer, FIRST_MATRIX: torch.cat([matrix.new_zeros(len(matrix), width), matrix], dim=1)}
 
 
 def _filled(value: torch.Tensor, wanted: torch.Tensor) -> torch.Tensor:

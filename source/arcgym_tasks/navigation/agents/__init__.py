@@ -20,8 +20,10 @@ AGENTS: dict[str, str] = {
     "rsl_rl_sac_squint_cfg_entry_point": f"{_AGENTS}.sac_cfg:SquintSACRunnerCfg",
     "rsl_rl_sac_paper_cfg_entry_point": f"{_AGENTS}.sac_cfg:PaperSACRunnerCfg",
     "rsl_rl_ppo_teacher_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationTeacherRunnerCfg",
+    "rsl_rl_ppo_teacher_rgb_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationSeeingTeacherRunnerCfg",
     "rsl_rl_distillation_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationDistillationRunnerCfg",
     "rsl_rl_distillation_recurrent_cfg_entry_point": f"{_AGENTS}.imitation_cfg:RecurrentDistillationRunnerCfg",
+    "rsl_rl_distillation_rgb_cfg_entry_point": f"{_AGENTS}.imitation_cfg:SeeingDistillationRunnerCfg",
     "rsl_rl_bc_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationBehaviorCloningRunnerCfg",
     "rsl_rl_bc_small_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationSmallBehaviorCloningRunnerCfg",
 }

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlMlpModelCfg
+from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlCnnModelCfg, RslRlMlpModelCfg
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg, RecurrentCnnModelCfg
 from arcgym.rl.agent_cfgs.imitation import (
     RslRlBehaviorCloningAlgorithmCfg,
@@ -16,7 +16,10 @@ from arcgym.rl.agent_cfgs.imitation import (
     RslRlDistillationRunnerCfg,
 )
 from arcgym.utils.configclass import configclass
+from arcgym_tasks.navigation.agents.ppo_variants_cfg import NavigationBoundedPPORunnerCfg
 from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
+
+_LEAKY = GaussianDistributionCfg(class_name="arcgym.rl.networks.leaky_gaussian:LeakyGaussianDistribution", init_std=0.6)
 
 
 @configclass
@@ -27,6 +30,18 @@ class NavigationTeacherRunnerCfg(NavigationPPORunnerCfg):
     actor: RslRlMlpModelCfg = RslRlMlpModelCfg(
         hidden_dims=[256, 128], obs_normalization=True, distribution_cfg=GaussianDistributionCfg(init_std=0.6)
     )
+
+
+@configclass
+class NavigationSeeingTeacherRunnerCfg(NavigationBoundedPPORunnerCfg):
+    """PPO whose policy sees the privileged state beside the images: ``agent.init_policy`` may be a policy of images.
+
+    It begins as that one and learns to use the state, so that it shows what its images did not tell it. The leaky
+    distribution fits policies of the plain one, too.
+    """
+
+    obs_groups: dict[str, list[str]] = {"actor": ["policy", "critic"], "critic": ["critic"]}
+    actor: RslRlMlpModelCfg = RslRlCnnModelCfg(hidden_dims=[256], obs_normalization=True, distribution_cfg=_LEAKY)
 
 
 @configclass
@@ -60,6 +75,17 @@ class RecurrentDistillationRunnerCfg(NavigationDistillationRunnerCfg):
         skip_connection=True,
     )
     algorithm: Any = RslRlDistillationAlgorithmCfg(gradient_length=24)
+
+
+@configclass
+class SeeingDistillationRunnerCfg(RecurrentDistillationRunnerCfg):
+    """The same from ``ppo_teacher_rgb``, whose images the student sees as well."""
+
+    obs_groups: dict[str, list[str]] = {"student": ["policy"], "teacher": ["policy", "critic"]}
+    student: RslRlMlpModelCfg = RecurrentDistillationRunnerCfg().student.replace(
+        distribution_cfg=_LEAKY.replace(init_std=0.1)
+    )
+    teacher: RslRlMlpModelCfg = NavigationSeeingTeacherRunnerCfg().actor
 
 
 @configclass
