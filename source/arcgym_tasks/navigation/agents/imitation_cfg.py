@@ -82,8 +82,12 @@ class SeeingDistillationRunnerCfg(RecurrentDistillationRunnerCfg):
     """The same from ``ppo_teacher_rgb``, whose images the student sees as well."""
 
     obs_groups: dict[str, list[str]] = {"student": ["policy"], "teacher": ["policy", "critic"]}
-    student: RslRlMlpModelCfg = RecurrentDistillationRunnerCfg().student.replace(
-        distribution_cfg=_LEAKY.replace(init_std=0.1)
+    student: RslRlMlpModelCfg = RecurrentCnnModelCfg(
+        hidden_dims=[256],
+        cnn_cfg=CnnCfg(),
+        distribution_cfg=GaussianDistributionCfg(class_name=_LEAKY.class_name, init_std=0.1),
+        rnn_type="gru",
+        skip_connection=True,
     )
     teacher: RslRlMlpModelCfg = NavigationSeeingTeacherRunnerCfg().actor
 
