@@ -225,6 +225,21 @@ def test_rules_on_actions_are_marked(tmp_path: Path) -> None:
     assert "| PPO with rules on actions, shipped reward | 100 (89–100)† |" in text
 
 
+@pytest.mark.parametrize(("sees", "mark"), [(["policy", "critic"], "¶"), (["policy", "force"], "")])
+def test_policies_that_see_the_state_are_marked(tmp_path: Path, sees: list[str], mark: str) -> None:
+    """In tables of methods and of agents; what a robot can sense is no state."""
+    inputs = {"sees": sees, "simulator_depth": False}
+    folders = [
+        write_result_folder(tmp_path / "sigmoid", 30, inputs={TASK: inputs}),
+        write_result_folder(
+            tmp_path / "all", 200, "ARC-LeftColon-Magnetic", "population", inputs={"ARC-LeftColon-Magnetic": inputs}
+        ),
+    ]
+    text = page(folders, tmp_path)
+    assert f"| PPO, shipped reward | 100 (89–100){mark} |" in text
+    assert f"ppo `abcdef01`{mark} | 200 | 100 (98–100) |" in text
+
+
 @pytest.mark.parametrize(
     ("run", "every", "reason"),
     [

@@ -25,6 +25,9 @@ from arcgym.evaluation.suites import read_suites, split_task
 from arcgym.evaluation.task_settings import PATIENCE, PHYSICS_STEP, marks
 from arcgym.utils.errors import UsageError
 
+STATE = "critic"
+"""Group of observations that holds the simulator's state."""
+
 LARGEST_SHARE = 10
 """Shares of a suite's trials that are shown: all of them to each tenth one."""
 
@@ -75,6 +78,11 @@ class Result:
     def reads_depth(self) -> bool:
         """Whether rules on the actions read the simulator's depth, which the policy itself does not see."""
         return any(inputs["simulator_depth"] for inputs in self.run.get("inputs", {}).values())
+
+    @property
+    def sees_state(self) -> bool:
+        """Whether the policy sees the simulator's state, the critic's group, as a teacher does."""
+        return any(STATE in inputs["sees"] for inputs in self.run.get("inputs", {}).values())
 
     @property
     def conditions(self) -> str:

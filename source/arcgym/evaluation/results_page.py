@@ -75,8 +75,9 @@ and nothing else. A cell has the share of successful trials [%] with Wilson's in
 number of trials where they are not all of the suite's; other figures are interquartile means with bootstrap
 intervals, but where a column says mean. `–` was not run: the command that would make it is below its table. *n* seeds
 are training runs, each with its share of the trials; of one seed the interval is that of this policy and not of the
-method. † marks rules on actions that read the simulator's depth, which the policy does not see. ‡ marks trials of an
-earlier physics step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what an agent commands,
+method. † marks rules on actions that read the simulator's depth, which the policy does not see. ¶ marks policies that
+see the simulator's state, which no scope knows: teachers, no results of images. ‡ marks trials of an earlier physics
+step, such as 1/480 s. `_roll9` is a roll to and fro of 9 rad/s, added to what an agent commands,
 `_roll8_2s` one of 8 rad/s in 2 s where others take 4; `_back45` goes back at 45 mm/s for a while where a tether no
 longer comes on; `_slow6.5` commands at most 6.5 mm/s. What was run where is in the
 [last table](#what-was-run).
@@ -224,7 +225,7 @@ def _agent_cells(result: Result, metrics: Sequence[str]) -> list[str]:
     ]
     name += f", limit {result.limits}" if result.limits else ""
     name += "" if result.conditions == read_suites()[result.suite].conditions else f", {result.conditions}"
-    name += result.marks
+    name += ("¶" if result.sees_state else "") + result.marks
     return [f"`{result.task}`", name, str(summary["trials"]), _interval(summary["success"], 0, 100.0), *figures]
 
 
@@ -267,7 +268,7 @@ UNMARKED = ("robustness", "paper")
 
 
 def _cell(result: Result | None, metric: str) -> str:
-    """Return a cell of a table of methods; † where rules on actions read what the policy does not see."""
+    """Return a cell of a table of methods; † where rules read true depth, ¶ where the policy sees the state."""
     if result is None:
         return NOTHING
     (summary,) = summarize(result.rows).values()
@@ -275,7 +276,8 @@ def _cell(result: Result | None, metric: str) -> str:
         return _interval(summary[metric], METRICS[metric][1]) + result.marks
     seeds = f", {len(result.checkpoints)} seeds" if len(result.checkpoints) > 1 else ""
     few = f" of {summary['trials']}" if summary["trials"] != 30 else ""
-    return _interval(summary["success"], 0, 100.0) + few + seeds + ("†" if result.reads_depth else "") + result.marks
+    more = ("†" if result.reads_depth else "") + ("¶" if result.sees_state else "")
+    return _interval(summary["success"], 0, 100.0) + few + seeds + more + result.marks
 
 
 def _provenance(results: Sequence[Result]) -> str:
