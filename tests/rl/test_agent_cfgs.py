@@ -69,7 +69,7 @@ def test_agent_learns_and_acts(key, counting_env, monkeypatch):
 def test_every_task_has_every_agent():
     """Those that learn from the environment, and those that need a teacher or recordings."""
     for task in list_tasks():
-        keys = (*KEYS, "distillation", "distillation_recurrent", "distillation_rgb", "bc")
+        keys = (*KEYS, "distillation", "distillation_recurrent", "distillation_rgb", "ppo_taught", "bc")
         assert {agent_key(key) for key in keys} <= set(gym.registry[task].kwargs)
 
 

@@ -7,7 +7,7 @@ import pytest
 import torch
 from pixel_tasks import RememberTheSide, mean_reward
 from rsl_rl.utils import split_and_pad_trajectories
-from small_agents import ENCODER, runner_cfg
+from small_agents import ENCODER, roll_and_update, runner_cfg, with_memory
 from tensordict import TensorDict
 
 from arcgym.evaluation.batched_policy import BatchedPolicy
@@ -169,3 +169,14 @@ def test_without_memory_the_side_is_lost():
     runner = OnPolicyRunner(RememberTheSide(128), runner_cfg(num_steps_per_env=10).to_dict(), device="cpu")
     runner.learn(15)
     assert abs(mean_reward(RememberTheSide(64, seed=1), runner.get_inference_policy(), 50)) < 0.15
+
+
+@one_thread()
+def test_probabilities_of_what_was_done_are_those_it_was_done_with() -> None:
+    """Nothing has learnt, so that all ratios are one and the mean advantage is nought: two worlds a mini-batch."""
+    torch.manual_seed(1)
+    algorithm = runner_cfg().algorithm.replace(learning_rate=1e-12, num_mini_batches=2, num_learning_epochs=1)
+    runner = OnPolicyRunner(
+        RememberTheSide(4), runner_cfg(actor=with_memory(), algorithm=algorithm).to_dict(), device="cpu"
+    )
+    assert [roll_and_update(runner)["surrogate"] for _ in range(3)] == pytest.approx([0.0] * 3, abs=1e-5)

@@ -57,11 +57,14 @@ def check_batches(num_envs: int, num_steps: int, num_mini_batches: int) -> None:
 
 
 def check_batches_of_worlds(num_envs: int, num_mini_batches: int) -> None:
-    """Raise if a mini-batch of a policy with memory, which is of whole worlds, would be empty."""
-    if num_envs < num_mini_batches:
+    """Raise if a mini-batch of a policy with memory, which is of whole worlds, would have fewer than two.
+
+    With one, rsl_rl's ``squeeze`` drops its axis, and each step's probability is set against those of all others.
+    """
+    if num_envs < 2 * num_mini_batches:
         raise UsageError(
             f"agent.algorithm.num_mini_batches is {num_mini_batches}, but there are {num_envs} worlds, and a policy "
-            "with memory learns on mini-batches of whole worlds; lower it, or raise --num_envs."
+            "with memory learns on mini-batches of two whole worlds or more; lower it, or raise --num_envs."
         )
 
 

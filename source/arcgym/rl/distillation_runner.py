@@ -5,11 +5,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from arcgym.rl.checkpoint import read_checkpoint
 from arcgym.rl.runner import OnPolicyRunner
-from arcgym.utils.errors import UsageError
+from arcgym.rl.teacher import load_teacher
 
 
 class DistillationRunner(OnPolicyRunner):
@@ -28,8 +25,7 @@ class DistillationRunner(OnPolicyRunner):
         Raises:
             UsageError: If there is no teacher.
         """
-        if not self.alg.teacher_loaded:  # type: ignore[attr-defined]
-            self._load_teacher(self.cfg.get("teacher_checkpoint"))
+        load_teacher(self.alg, self.cfg.get("teacher_checkpoint"), self.device)
         super().learn(num_learning_iterations, init_at_random_ep_len)
 
     def load(
@@ -38,11 +34,3 @@ class DistillationRunner(OnPolicyRunner):
         """Load a checkpoint; ``{"actor": True}``, as for playing, means the student."""
         wanted = {self.policy_name: True} if load_cfg == {"actor": True} else load_cfg
         return super().load(path, wanted, strict, map_location)
-
-    def _load_teacher(self, path: str | None) -> None:
-        if not path:
-            raise UsageError("No teacher: set agent.teacher_checkpoint to a checkpoint of a privileged PPO policy.")
-        if not Path(path).is_file():
-            raise UsageError(f"No teacher checkpoint '{path}'.")
-        checkpoint = read_checkpoint(path, self.device)
-        self.alg.load(checkpoint, {"teacher": True}, strict=True)

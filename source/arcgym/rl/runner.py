@@ -202,14 +202,17 @@ class OnPolicyRunner(RslRlOnPolicyRunner):
             self.completed_iterations += 1
         return losses
 
+    @property
+    def share_done(self) -> float:
+        """Share of the run that is done, by its updates or its clock, whichever is nearer to its end; 1 at the last."""
+        updates = self.resumed_at + self.cfg["max_iterations"]
+        return min(max(self.completed_iterations / max(updates - 1, 1), self.clock.fraction), 1.0)
+
     def _decay(self) -> None:
         """Set the learning rate of this iteration where the configuration lets it fall."""
         end = self.cfg.get("final_learning_rate")
         if end is not None:
-            start = self.cfg["algorithm"]["learning_rate"]
-            updates = self.resumed_at + self.cfg["max_iterations"]
-            done = self.completed_iterations / max(updates - 1, 1)
-            set_learning_rate(self.alg, linear_rate(start, end, max(done, self.clock.fraction)))
+            set_learning_rate(self.alg, linear_rate(self.cfg["algorithm"]["learning_rate"], end, self.share_done))
 
     def _hold_policy(self) -> None:
         """Let the critics alone learn in the first ``critic_first`` updates of a policy that another run has learnt."""

@@ -24,6 +24,7 @@ AGENTS: dict[str, str] = {
     "rsl_rl_distillation_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationDistillationRunnerCfg",
     "rsl_rl_distillation_recurrent_cfg_entry_point": f"{_AGENTS}.imitation_cfg:RecurrentDistillationRunnerCfg",
     "rsl_rl_distillation_rgb_cfg_entry_point": f"{_AGENTS}.imitation_cfg:SeeingDistillationRunnerCfg",
+    "rsl_rl_ppo_taught_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationTaughtPPORunnerCfg",
     "rsl_rl_bc_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationBehaviorCloningRunnerCfg",
     "rsl_rl_bc_small_cfg_entry_point": f"{_AGENTS}.imitation_cfg:NavigationSmallBehaviorCloningRunnerCfg",
 }

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlCnnModelCfg, RslRlMlpModelCfg
+from arcgym.rl import CnnCfg, GaussianDistributionCfg, RslRlCnnModelCfg, RslRlMlpModelCfg, RslRlPpoAlgorithmCfg
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg, RecurrentCnnModelCfg
 from arcgym.rl.agent_cfgs.imitation import (
     RslRlBehaviorCloningAlgorithmCfg,
@@ -15,9 +15,10 @@ from arcgym.rl.agent_cfgs.imitation import (
     RslRlDistillationAlgorithmCfg,
     RslRlDistillationRunnerCfg,
 )
+from arcgym.rl.agent_cfgs.ppo_taught import RslRlPpoTaughtAlgorithmCfg, RslRlTaughtRunnerCfg
 from arcgym.utils.configclass import configclass
 from arcgym_tasks.navigation.agents.ppo_variants_cfg import NavigationBoundedPPORunnerCfg
-from arcgym_tasks.navigation.agents.rsl_rl_cfg import NavigationPPORunnerCfg
+from arcgym_tasks.navigation.agents.rsl_rl_cfg import PPO_SETTINGS, NavigationPPORunnerCfg
 
 _LEAKY = GaussianDistributionCfg(class_name="arcgym.rl.networks.leaky_gaussian:LeakyGaussianDistribution", init_std=0.6)
 
@@ -90,6 +91,22 @@ class SeeingDistillationRunnerCfg(RecurrentDistillationRunnerCfg):
         skip_connection=True,
     )
     teacher: RslRlMlpModelCfg = NavigationSeeingTeacherRunnerCfg().actor
+
+
+@configclass
+class NavigationTaughtPPORunnerCfg(NavigationPPORunnerCfg, RslRlTaughtRunnerCfg):
+    """PPO from images with a memory, which ``ppo_teacher_rgb`` tells what it would do, less and less.
+
+    ``agent.teacher_checkpoint=...``, and ``agent.init_policy=...`` with a student of ``distillation_rgb``. Rollouts are
+    longer than PPO's, as the memory learns over them.
+    """
+
+    class_name: str = "arcgym.rl.taught_runner:TaughtRunner"
+    num_steps_per_env: int = 24
+    obs_groups: dict[str, list[str]] = {"actor": ["policy"], "critic": ["critic"], "teacher": ["policy", "critic"]}
+    actor: RslRlMlpModelCfg = SeeingDistillationRunnerCfg().student
+    teacher: RslRlMlpModelCfg = NavigationSeeingTeacherRunnerCfg().actor
+    algorithm: RslRlPpoAlgorithmCfg = RslRlPpoTaughtAlgorithmCfg(**PPO_SETTINGS)
 
 
 @configclass

@@ -27,7 +27,7 @@ class NavigationRecurrentPPORunnerCfg(NavigationPPORunnerCfg):
     """PPO with an LSTM behind the CNN.
 
     It also sees the frame stack of the task; ``env.observations.policy.rgb.history_length=1`` leaves the past to the
-    memory alone. Mini-batches are of whole worlds, so that there must be at least as many worlds as mini-batches.
+    memory alone. Mini-batches are of whole worlds, so that there must be twice as many worlds as mini-batches.
     """
 
     actor: RslRlMlpModelCfg = RecurrentCnnModelCfg(
