@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -89,18 +90,25 @@ class Told:
         return torch.stack([right, up, forward, -y * turn, x * turn, torch.zeros_like(x)], dim=-1)
 
 
-def main() -> None:
-    """Run the trials, and write a row for each as it ends."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def arguments(doc: str | None) -> argparse.ArgumentParser:
+    """Return the arguments of a script that runs trials of a policy which it changes."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--agent", required=True, help="checkpoint")
     parser.add_argument("--suite", default="population_clinical", help="suite whose trials are run")
     parser.add_argument("--task", default="ARC-LeftColon-Magnetic", help="task of the suite")
     parser.add_argument("--patients", help="numbers of patients, separated by commas; all without")
-    parser.add_argument("--tell", choices=KINDS, default="all", help="what takes over where no way is made")
     parser.add_argument("--device", default="cpu", help="device")
     parser.add_argument("--out", type=Path, required=True, help="CSV file")
-    args = parser.parse_args()
+    return parser
 
+
+def run(args: argparse.Namespace, change: Callable[[Any, Any], Any]) -> None:
+    """Run the trials, and write a row for each as it ends.
+
+    Args:
+        args: Those of :func:`arguments`.
+        change: Returns what drives, for the environment and its policy.
+    """
     suite = read_suites()[args.suite]
     trials = read_conditions(suite.conditions_path).trials
     if args.patients:
@@ -117,7 +125,15 @@ def main() -> None:
             table.writerow(row)
             print(", ".join(f"{name} {row[name]}" for name in table.fieldnames), flush=True)
 
-        run_trials(env, lambda env: Told(env, make(env), args.tell), trials, on_row, patients_of(trials))
+        run_trials(env, lambda env: change(env, make(env)), trials, on_row, patients_of(trials))
+
+
+def main() -> None:
+    """Run the trials with the steering."""
+    parser = arguments(__doc__)
+    parser.add_argument("--tell", choices=KINDS, default="all", help="what takes over where no way is made")
+    args = parser.parse_args()
+    run(args, lambda env, policy: Told(env, policy, args.tell))
 
 
 if __name__ == "__main__":
