@@ -94,7 +94,8 @@ def wall_penetrated(env: ManagerBasedRLEnv) -> torch.Tensor:
     The episode must end: the wall does not tear, and its later forces mean nothing.
 
     It takes a full push that is kept on and coils the shaft, or one with the shaft twisted to its limit; in soft tissue
-    some 15 N on the tip may do it by a flutter of the time step (docs/clinical.md, what pierces).
+    some 15 N on the tip may do it by a flutter of the time step. A bend drawn to a hairpin, whose walls go through each
+    other, may do it at a few newtons (docs/clinical.md, what pierces).
     """
     return env.sim.wall_penetrated
 
