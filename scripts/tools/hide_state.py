@@ -77,7 +77,9 @@ def main() -> None:
     parser.add_argument("--hide", nargs="+", default=["all"], help="terms that are held at their means; or all, none")
     parser.add_argument("--but", nargs="+", default=[], help="terms of these that are shown")
     args = parser.parse_args()
-    means = read_checkpoint(args.agent, args.device)["actor_state_dict"][MEANS]
+    means = read_checkpoint(args.agent, args.device)["actor_state_dict"].get(MEANS)
+    if means is None:
+        parser.error(f"{args.agent} sees no state; expected a checkpoint of --agent ppo_teacher or ppo_teacher_rgb")
 
     def change(env: Any, policy: Any) -> Blinkered:
         return Blinkered(policy, hidden_columns(env, args.hide, args.but), means)

@@ -67,6 +67,9 @@ def nothing_is_built(tmp_path, monkeypatch):
         ([*TRAIN, "env.scene.camera.width=20", "env.scene.camera.height=20"], "does not fit the 20x20 px images"),
         ([*TRAIN, "--num_envs", "1", "agent.num_steps_per_env=4"], "num_mini_batches is 6, but 1 worlds x 4 steps"),
         ([*TRAIN, "--agent", "ppo_recurrent", "--num_envs", "11"], "num_mini_batches is 6, but there are 11 worlds"),
+        ([*TRAIN, "agent.init_policy=nowhere.pt"], "agent.init_policy is 'nowhere.pt', and there is no such file"),
+        ([*TRAIN, "--agent", "ppo_taught"], "agent.teacher_checkpoint is not set"),
+        ([*TRAIN, "--agent", "distillation", "agent.teacher_checkpoint=no.pt"], "agent.teacher_checkpoint is 'no.pt'"),
         (
             [*TRAIN, "agent.algorithm.learning_rate=-1.0"],
             "agent.algorithm.learning_rate is -1.0, expected a number above 0",

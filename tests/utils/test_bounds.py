@@ -21,7 +21,7 @@ from arcgym.rl.agent_cfgs.a2c import RslRlA2cAlgorithmCfg
 from arcgym.rl.agent_cfgs.image_models import RecurrentCnnModelCfg
 from arcgym.rl.agent_cfgs.ppo_lagrangian import AscentMultiplierCfg, FixedPenaltyCfg, RslRlPpoLagrangianAlgorithmCfg
 from arcgym.rl.agent_cfgs.sac import RslRlSacRunnerCfg
-from arcgym.rl.runner_cfg import BetaDistributionCfg
+from arcgym.rl.model_cfg import BetaDistributionCfg
 from arcgym.utils.coerce import field_types, is_config
 from arcgym.utils.configclass import validate
 from arcgym.utils.hydra import apply_overrides

@@ -8,12 +8,14 @@ from __future__ import annotations
 import importlib.util
 import inspect
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import torch
 from rsl_rl.modules import CNN
 from rsl_rl.utils import resolve_callable as resolve_in_rsl_rl
 
+from arcgym.rl.params import BEGUN_FROM
 from arcgym.utils.configclass import copy
 from arcgym.utils.errors import UsageError
 from arcgym.utils.string import did_you_mean
@@ -31,7 +33,7 @@ def check_agent(env_cfg: Any, agent_cfg: Any, trains: bool) -> None:
         trains: Whether there will be updates, and curves to log.
 
     Raises:
-        UsageError: The first thing that does not fit.
+        UsageError: The first thing that does not fit, or is missing.
     """
     _check_classes(agent_cfg)
     env_cfg = copy(env_cfg)
@@ -40,6 +42,8 @@ def check_agent(env_cfg: Any, agent_cfg: Any, trains: bool) -> None:
     for name in agent_cfg.obs_groups:
         _check_images(env_cfg, agent_cfg, name)
     if trains:
+        if not agent_cfg.resume:
+            _check_begun_from(agent_cfg)
         num_mini_batches = getattr(agent_cfg.algorithm, "num_mini_batches", 1)
         check_batches(env_cfg.scene.num_envs, agent_cfg.num_steps_per_env, num_mini_batches)
         if hasattr(getattr(agent_cfg, "actor", None), "rnn_type"):
@@ -79,6 +83,16 @@ def check_installed(package: str, reason: str, extra: str | None = None) -> None
     if importlib.util.find_spec(package) is None:
         install = f"arcgym[{extra}]" if extra else package
         raise UsageError(f"{reason} needs the package '{package}', which is not installed: pip install '{install}'.")
+
+
+def _check_begun_from(agent_cfg: Any) -> None:
+    """Raise if a checkpoint that a new run begins from is missing, or a teacher is not given."""
+    for name in BEGUN_FROM:
+        path = getattr(agent_cfg, name, None)
+        if path and not Path(path).is_file():
+            raise UsageError(f"agent.{name} is '{path}', and there is no such file; expected a checkpoint.")
+        if path == "":
+            raise UsageError(f"agent.{name} is not set; expected a checkpoint, such as one of --agent ppo_teacher.")
 
 
 def _check_classes(agent_cfg: Any) -> None:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from arcgym.rl.runner_cfg import RslRlCnnModelCfg
+from arcgym.rl.model_cfg import RslRlCnnModelCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import Range, require, require_at_least
 

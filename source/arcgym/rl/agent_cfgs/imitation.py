@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
-from arcgym.rl.runner_cfg import GaussianDistributionCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
+from arcgym.rl.model_cfg import GaussianDistributionCfg, RslRlMlpModelCfg
+from arcgym.rl.runner_cfg import RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import FieldError, require, require_at_least, require_non_negative, require_positive
 

@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from arcgym.rl.runner_cfg import RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg, RslRlPpoAlgorithmCfg
+from arcgym.rl.model_cfg import RslRlMlpModelCfg
+from arcgym.rl.runner_cfg import RslRlOnPolicyRunnerCfg, RslRlPpoAlgorithmCfg
 from arcgym.utils.configclass import MISSING, configclass
 from arcgym.utils.validation import (
     FieldError,

@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 from arcgym.rl.agent_cfgs.ppo_bounded import RslRlPpoBoundedAlgorithmCfg
-from arcgym.rl.runner_cfg import GaussianDistributionCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
+from arcgym.rl.model_cfg import GaussianDistributionCfg, RslRlMlpModelCfg
+from arcgym.rl.runner_cfg import RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import require_non_negative
 

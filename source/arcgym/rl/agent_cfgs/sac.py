@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 from arcgym.rl.agent_cfgs.image_models import AugmentedCnnModelCfg
-from arcgym.rl.runner_cfg import CnnCfg, RslRlMlpModelCfg, RslRlOnPolicyRunnerCfg
+from arcgym.rl.model_cfg import CnnCfg, RslRlMlpModelCfg
+from arcgym.rl.runner_cfg import RslRlOnPolicyRunnerCfg
 from arcgym.utils.configclass import configclass
 from arcgym.utils.validation import FINITE, Range, require, require_at_least, require_positive
 

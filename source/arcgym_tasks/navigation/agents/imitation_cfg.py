@@ -34,7 +34,7 @@ class NavigationTeacherRunnerCfg(NavigationPPORunnerCfg):
 
 
 @configclass
-class NavigationSeeingTeacherRunnerCfg(NavigationBoundedPPORunnerCfg):
+class NavigationRgbTeacherRunnerCfg(NavigationBoundedPPORunnerCfg):
     """PPO whose policy sees the privileged state beside the images: ``agent.init_policy`` may be a policy of images.
 
     It begins as that one and learns to use the state, so that it shows what its images did not tell it. The leaky
@@ -79,7 +79,7 @@ class RecurrentDistillationRunnerCfg(NavigationDistillationRunnerCfg):
 
 
 @configclass
-class SeeingDistillationRunnerCfg(RecurrentDistillationRunnerCfg):
+class RgbDistillationRunnerCfg(RecurrentDistillationRunnerCfg):
     """The same from ``ppo_teacher_rgb``, whose images the student sees as well."""
 
     obs_groups: dict[str, list[str]] = {"student": ["policy"], "teacher": ["policy", "critic"]}
@@ -90,7 +90,7 @@ class SeeingDistillationRunnerCfg(RecurrentDistillationRunnerCfg):
         rnn_type="gru",
         skip_connection=True,
     )
-    teacher: RslRlMlpModelCfg = NavigationSeeingTeacherRunnerCfg().actor
+    teacher: RslRlMlpModelCfg = NavigationRgbTeacherRunnerCfg().actor
 
 
 @configclass
@@ -104,8 +104,8 @@ class NavigationTaughtPPORunnerCfg(NavigationPPORunnerCfg, RslRlTaughtRunnerCfg)
     class_name: str = "arcgym.rl.taught_runner:TaughtRunner"
     num_steps_per_env: int = 24
     obs_groups: dict[str, list[str]] = {"actor": ["policy"], "critic": ["critic"], "teacher": ["policy", "critic"]}
-    actor: RslRlMlpModelCfg = SeeingDistillationRunnerCfg().student
-    teacher: RslRlMlpModelCfg = NavigationSeeingTeacherRunnerCfg().actor
+    actor: RslRlMlpModelCfg = RgbDistillationRunnerCfg().student
+    teacher: RslRlMlpModelCfg = NavigationRgbTeacherRunnerCfg().actor
     algorithm: RslRlPpoAlgorithmCfg = RslRlPpoTaughtAlgorithmCfg(**PPO_SETTINGS)
 
 
